@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "mesh/triangle_mesh.h"
+
+/// Charts: where each triangle lies in the texture.
+namespace tuft::atlas {
+
+/// The atlas of a mesh: UVs per triangle corner in [0,1]², v up. Texel (i, j) of a
+/// size × size page covers u in [i, i+1]/size and v in [j, j+1]/size, its centre
+/// at +0.5; row 0 is at v = 0 (image files are flipped on writing).
+struct Atlas {
+    std::uint32_t size = 0;                ///< texels per side
+    std::uint32_t gutter = 4;              ///< texels kept free between charts
+    double texel_size = 0;                 ///< metres per texel, area-weighted mean
+    std::vector<Vec2f> corner_uvs;         ///< [3 n_triangles]
+    std::vector<std::uint32_t> triangle_chart;  ///< [n_triangles]
+    std::uint32_t n_charts = 0;
+    bool from_file = false;                ///< the file's own UVs were kept
+};
+
+enum class UvPolicy { automatic, keep, renew };
+
+struct UnwrapOptions {
+    std::uint32_t size = 0;        ///< texels per side; 0: from texel_size
+    double texel_size = 0;         ///< metres; used when size is 0. Both 0: size 2048
+    std::uint32_t gutter = 4;      ///< texels
+    UvPolicy uvs = UvPolicy::automatic;  ///< automatic: the file's UVs if they are valid
+    std::uint32_t max_size = 16384;
+    ProgressFn progress;
+};
+
+/// Figures of an atlas. Stretch after Sander et al. 2001 (1 = isometry).
+struct AtlasReport {
+    std::size_t charts = 0;
+    std::size_t flips = 0;             ///< triangles with negative area in UV
+    std::size_t overlapping_texels = 0;///< texel centres covered by two triangles
+    std::size_t roomless_triangles = 0;///< with a zero or non-finite UV area
+    double l2_stretch = 0, linf_stretch = 0;
+    double angle_distortion = 0, area_distortion = 0;  ///< area-weighted means, 1 = none
+    double utilisation = 0;            ///< covered texels over all
+    double seam_length = 0;            ///< over the diagonal of the bounding box
+    int smallest_gap = 0;              ///< texels between two charts, capped at 64
+    std::vector<std::pair<std::string, double>> seconds;  ///< per phase, in order
+};
+
+struct Unwrapped {
+    Atlas atlas;
+    AtlasReport report;
+};
+
+/// Gives every triangle its place in the texture. Any mesh made by `build_surface`
+/// gets an atlas without flips or overlaps. Throws `Error` when the size cannot
+/// hold the charts with their gutters, saying which size would, and when
+/// `UvPolicy::keep` is asked of UVs that are absent or overlap.
+Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& options = {});
+
+/// Measures any atlas; `seconds` stays empty.
+AtlasReport measure(const mesh::TriangleMesh& mesh, const Atlas& atlas);
+
+}  // namespace tuft::atlas

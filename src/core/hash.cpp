@@ -1,0 +1,11 @@
+#include "core/hash.h"
+
+#include <xxhash.h>
+
+namespace tuft {
+
+std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed) {
+    return XXH3_64bits_withSeed(data, size, seed);
+}
+
+}  // namespace tuft

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+/// What a model file says, before anything is repaired: polygons with any number
+/// of corners over shared points. Readers make it, `build_surface` cleans it.
+namespace tuft::mesh {
+
+struct PolygonSoup {
+    std::vector<Vec3> points;              ///< in the file's unit
+    std::vector<std::uint32_t> corners;    ///< point index per polygon corner, all polygons in a row
+    std::vector<std::uint32_t> polygon_start;  ///< [n_polygons + 1] offsets into `corners`
+    std::vector<Vec2f> corner_uvs;         ///< parallel to `corners`, v up, or empty
+    std::vector<std::array<std::uint8_t, 4>> point_colours;  ///< [n_points] or empty
+    std::vector<std::uint32_t> polygon_groups;               ///< [n_polygons] or empty
+    std::vector<std::string> group_names;
+    std::vector<std::string> warnings;     ///< one line each: what the reader dropped, with line numbers
+
+    std::size_t n_polygons() const { return polygon_start.empty() ? 0 : polygon_start.size() - 1; }
+};
+
+/// Readers for one format each; `path` is only used in messages. They throw
+/// `tuft::Error` with file and line, check every count against the bytes that are
+/// there before taking memory, and every index against the number of points.
+/// Rows with NaN or infinity are dropped together with the polygons that use
+/// them and reported by line in `warnings`.
+PolygonSoup read_obj(const std::vector<char>& bytes, const std::filesystem::path& path);
+PolygonSoup read_ply(const std::vector<char>& bytes, const std::filesystem::path& path);
+PolygonSoup read_stl(const std::vector<char>& bytes, const std::filesystem::path& path);
+PolygonSoup read_off(const std::vector<char>& bytes, const std::filesystem::path& path);
+
+/// Binary little-endian PLY of a soup (positions, colours, per-vertex UV where
+/// corners of a point agree). Written atomically.
+void write_ply(const std::filesystem::path& path, const PolygonSoup& soup);
+
+}  // namespace tuft::mesh

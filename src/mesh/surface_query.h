@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "mesh/triangle_mesh.h"
+
+namespace tuft::mesh {
+
+/// Ray and closest-point queries against a mesh by an Embree BVH. Keeps a
+/// reference to the mesh: the mesh must outlive it and not change. Building
+/// takes about 0.25 s per million triangles; queries are thread-safe.
+class SurfaceQuery {
+  public:
+    explicit SurfaceQuery(const TriangleMesh& mesh);
+    ~SurfaceQuery();
+    SurfaceQuery(SurfaceQuery&&) noexcept;
+    SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
+
+    /// Exact closest point within `max_distance` metres of `p`, or nothing.
+    /// A small `max_distance` makes it faster: 1–3 µs near the surface.
+    std::optional<SurfacePoint> closest_point(
+        const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
+
+    /// First hit of the ray at a distance in [t_min, t_max]; `direction` is unit length.
+    /// Both sides of a triangle are hit.
+    std::optional<SurfacePoint> ray(const Vec3& origin, const Vec3& direction, double t_min = 0,
+                                    double t_max = std::numeric_limits<double>::infinity()) const;
+
+    /// Whether anything lies on the ray within [t_min, t_max].
+    bool occluded(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const;
+
+    const TriangleMesh& mesh() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace tuft::mesh

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+/// Strokes as a device or a file gives them, before they meet a model.
+namespace tuft::stroke {
+
+/// How flat pen data gets onto the model.
+enum class Laying {
+    wrap,     ///< along the surface: (x, y) is walked as a geodesic from the placement's origin
+    project,  ///< along the placement's normal: first surface met by a ray from outside
+};
+
+/// Where flat pen data lies: its origin near the surface and the direction of its
+/// x (to the right) and y axis (down, as pens and tablets give it), metres, model frame.
+struct Placement {
+    Vec3 origin{0};
+    Vec3 right{1, 0, 0};
+    Vec3 down{0, -1, 0};
+    Laying laying = Laying::wrap;
+};
+
+/// One sample of the hand.
+struct TraceSample {
+    double time = 0;          ///< seconds since the start of the trace
+    Vec3 position{0};         ///< metres. Flat: x right, y down, z unused.
+                              ///< Spatial: the ferrule's mouth, model frame
+    double pressure = 0;      ///< flat: 0–1 of the brush's working depth; 0 lifts off
+    Vec2 tilt{0};             ///< flat: lean of the holder, radians: towards +x, towards +y (down)
+    Quat rotation{1, 0, 0, 0};///< spatial: of the ferrule (see brush::Pose)
+};
+
+/// One stroke from touch to lift.
+struct Trace {
+    bool flat = true;                    ///< flat pen data with a placement, or poses in space
+    Placement placement;                 ///< for flat traces
+    std::vector<TraceSample> samples;    ///< time never falls
+    std::string brush, ink;              ///< preset names; empty: as the command line says
+    std::uint64_t seed = 0;
+    std::string label;                   ///< free text for people: a character, a stroke's name
+};
+
+}  // namespace tuft::stroke
