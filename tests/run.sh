@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and runs every test.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. .ci/setup.sh
+install_missing "${packages_build[@]}" "${packages_test[@]}"
+# The Khronos glTF validator; the tests that need it say so and are skipped without it.
+if command -v npm >/dev/null && [ ! -d build/node/node_modules/gltf-validator ]; then
+  mkdir -p build/node
+  npm install --silent --no-fund --no-audit --prefix build/node gltf-validator@2.0.0-dev.3.10 >/dev/null 2>&1 ||
+    say "the glTF validator could not be installed; its test will be skipped"
+fi
+cmake_options=(-DTUFT_TESTS=ON)
+build all
+say "testing"
+ctest --preset release --parallel "$(nproc)" "$@"
