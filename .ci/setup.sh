@@ -1,0 +1,44 @@
+# Sourced by samples/run.sh and tests/run.sh: installs what is missing and builds.
+# Needs Debian 12 (or a system with the same packages); uses sudo when not root.
+
+packages_build=(build-essential cmake ninja-build pkg-config git ccache
+  libopenmesh-dev libcgal-dev libeigen3-dev libembree-dev libtbb-dev libglm-dev
+  libopenimageio-dev openimageio-tools libtinygltf-dev libsqlite3-dev libsqlitecpp-dev
+  libzstd-dev libxxhash-dev libpugixml-dev libtomlplusplus-dev libcli11-dev libfmt-dev
+  nlohmann-json3-dev libstb-dev libbenchmark-dev
+  libglfw3-dev libxrandr-dev libxi-dev libimgui-dev libepoxy-dev libgl-dev libegl-dev)
+packages_test=(libgtest-dev libgmock-dev xvfb xauth xdotool libgl1-mesa-dri libegl1)
+
+say() { printf '\n== %s\n' "$*" >&2; }
+
+install_missing() {
+  command -v dpkg-query >/dev/null || { say "not a Debian system: please install ${*}"; return 0; }
+  local missing=() sudo=()
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  [ "$(id -u)" -eq 0 ] || sudo=(sudo)
+  say "installing ${missing[*]}"
+  "${sudo[@]}" apt-get -o DPkg::Lock::Timeout=600 update -qq
+  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 \
+    install -y -qq --no-install-recommends "${missing[@]}"
+}
+
+# build TARGET...: configures the release preset and builds.
+build() {
+  local log=build/configure.log
+  mkdir -p build
+  say "building (release)"
+  cmake --preset release "${cmake_options[@]}" >"$log" 2>&1 || { cat "$log" >&2; return 1; }
+  cmake --build --preset release --parallel "$(jobs_for_memory)" --target "$@" >&2
+}
+
+# A CGAL source takes 2 GB to compile: as many jobs as cores, but no more than memory allows.
+jobs_for_memory() {
+  local cores gib
+  cores=$(nproc)
+  gib=$(awk '/MemAvailable/ {print int($2 / 1048576)}' /proc/meminfo)
+  local by_memory=$(( gib / 2 > 0 ? gib / 2 : 1 ))
+  echo $(( cores < by_memory ? cores : by_memory ))
+}
