@@ -1,0 +1,217 @@
+#include "cli/arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "core/units.h"
+
+namespace tuft::cli {
+namespace {
+
+// "A,B[,C]" into numbers.
+std::vector<double> numbers(const std::string& text, char separator, std::size_t count) {
+    std::vector<double> values;
+    std::stringstream stream(text);
+    std::string part;
+    while (std::getline(stream, part, separator)) {
+        std::size_t used = 0;
+        double value = 0;
+        try {
+            value = std::stod(part, &used);
+        } catch (const std::exception&) {
+            used = 0;
+        }
+        if (used == 0 || used != part.size() || !std::isfinite(value)) return {};
+        values.push_back(value);
+    }
+    if (values.size() != count) values.clear();
+    return values;
+}
+
+void add_common(CLI::App* app, Common& c) {
+    app->add_option("--threads", c.threads, "threads to use (0: one per core)")
+        ->check(CLI::Range(0, 1024));
+    app->add_flag("--json", c.json, "print one JSON object on standard output");
+    app->add_flag("--quiet", c.quiet, "no progress, no notes");
+}
+
+void add_surface(CLI::App* app, Surface& s, bool with_unit = true) {
+    if (with_unit)
+        app->add_option("--unit", s.unit, "unit of the model file: um, mm, cm, m, in, ft")
+            ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    auto* size = app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
+                     ->check(CLI::PositiveNumber);
+    auto* texel = app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")
+                      ->check(CLI::PositiveNumber);
+    size->excludes(texel);
+    auto* renew = app->add_flag("--new-uv", s.new_uv, "make a new atlas even if the file has UVs");
+    auto* keep = app->add_flag("--keep-uv", s.keep_uv, "use the file's UVs or fail");
+    renew->excludes(keep);
+}
+
+void add_view(CLI::App* app, View& v) {
+    app->add_option_function<std::string>(
+           "--size",
+           [&v](const std::string& text) {
+               const auto n = numbers(text, 'x', 2);
+               if (n.empty() || n[0] < 16 || n[1] < 16 || n[0] > 16384 || n[1] > 16384)
+                   throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT, such as 1280x720");
+               v.width = static_cast<int>(n[0]);
+               v.height = static_cast<int>(n[1]);
+           },
+           "size of the picture, WIDTHxHEIGHT")
+        ->type_name("WxH");
+    app->add_option_function<std::string>(
+           "--view",
+           [&v](const std::string& text) {
+               const auto n = numbers(text, ',', 2);
+               if (n.empty())
+                   throw CLI::ValidationError("--view", "'" + text + "' is not AZIMUTH,ELEVATION in degrees");
+               v.azimuth = n[0];
+               v.elevation = n[1];
+           },
+           "where to look from, in degrees: AZIMUTH,ELEVATION")
+        ->type_name("AZ,EL");
+    app->add_option("--zoom", v.zoom, "magnification (1: the whole model)")->check(CLI::Range(0.05, 100.0));
+    app->add_option_function<std::string>(
+           "--target",
+           [&v](const std::string& text) {
+               v.target_mm = numbers(text, ',', 3);
+               if (v.target_mm.empty())
+                   throw CLI::ValidationError("--target", "'" + text + "' is not X,Y,Z in millimetres");
+           },
+           "the point to look at, in millimetres: X,Y,Z")
+        ->type_name("X,Y,Z");
+}
+
+}  // namespace
+
+bool parse_arguments(int argc, const char* const* argv, Command& command, int& status) {
+    CLI::App app{"tuft: ink and a bending hair brush on the surface of 3D models", "tuft"};
+    app.set_version_flag("--version", std::string("tuft ") + TUFT_VERSION);
+    app.require_subcommand(1);
+    app.footer("Run 'tuft COMMAND --help' for the options of a command.");
+    app.get_formatter()->column_width(34);
+
+    Paint paint;
+    auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model");
+    p->add_option("MODEL", paint.model, "mesh: PLY, OBJ, STL, OFF, GLB or glTF")->required();
+    p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
+    p->add_option("--brush", paint.brush, "brush for strokes that name none ('tuft brush' lists them)");
+    p->add_option("--ink", paint.ink, "ink for strokes that name none");
+    p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
+    p->add_option("--spine", paint.spine, "how the tuft bends: rod (live solve) or table (query table)")
+        ->check(CLI::IsMember({"rod", "table"}));
+    p->add_option("--footprint", paint.footprint, "footprint laid along the surface, or on one plane")
+        ->check(CLI::IsMember({"surface", "plane"}));
+    p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
+        ->check(CLI::IsMember({"exact", "vertices"}));
+    p->add_option_function<std::string>(
+         "--place",
+         [&paint](const std::string& text) {
+             paint.place_mm = numbers(text, ',', 3);
+             if (paint.place_mm.empty())
+                 throw CLI::ValidationError("--place", "'" + text + "' is not X,Y,Z in millimetres");
+         },
+         "where flat strokes go that have no place of their own: X,Y,Z in millimetres")
+        ->type_name("X,Y,Z");
+    add_surface(p, paint.surface);
+    p->add_option("--project", paint.project, "write a project file (.tuft)");
+    p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
+    p->add_option("--preview", paint.preview, "write a picture (.png)");
+    p->add_option("--forces", paint.forces, "write time, pose, force and moment of every stamp (.csv)");
+    add_view(p, paint.view);
+    add_common(p, paint.common);
+
+    Inspect inspect;
+    auto* i = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
+    i->add_option("FILE", inspect.file, "mesh or project")->required();
+    i->add_option("--unit", inspect.unit, "unit of the model file (default: a guess from its size)")
+        ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    add_common(i, inspect.common);
+
+    Unwrap unwrap;
+    auto* u = app.add_subcommand("unwrap", "make a texture atlas for a model");
+    u->add_option("MODEL", unwrap.model, "mesh")->required();
+    u->add_option("-o,--output", unwrap.output, "write the model with its UVs (.obj or .glb)")->required();
+    u->add_option("--picture", unwrap.picture, "write a picture of the atlas (.png)");
+    add_surface(u, unwrap.surface);
+    add_common(u, unwrap.common);
+
+    Replay replay;
+    auto* r = app.add_subcommand("replay", "paint a project's strokes again, on the same or a revised model");
+    r->add_option("PROJECT", replay.project, "project file (.tuft)")->required();
+    r->add_option("--model", replay.model, "paint onto this revised mesh instead");
+    r->add_option("--brush", replay.brush, "use this brush for every stroke");
+    r->add_option("--ink", replay.ink, "use this ink for every stroke");
+    add_surface(r, replay.surface);
+    r->add_option("--project", replay.out_project, "write a project file (.tuft)");
+    r->add_option("--export", replay.exported, "write the textured model: .glb, .gltf or .obj");
+    r->add_option("--preview", replay.preview, "write a picture (.png)");
+    add_view(r, replay.view);
+    add_common(r, replay.common);
+
+    Export exported;
+    auto* e = app.add_subcommand("export", "write a project's textured model or maps");
+    e->add_option("PROJECT", exported.project, "project file (.tuft)")->required();
+    e->add_option("-o,--output", exported.output,
+                  ".glb, .gltf, .obj (model); .png, .exr (base colour map)")->required();
+    add_common(e, exported.common);
+
+    Render render;
+    auto* d = app.add_subcommand("render", "draw a picture of a model or a project");
+    d->add_option("FILE", render.file, "mesh or project")->required();
+    d->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
+    d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(CLI::Range(1, 3600));
+    d->add_option("--unit", render.unit, "unit of a model file")
+        ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    d->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
+    add_view(d, render.view);
+    add_common(d, render.common);
+
+    Brush brush;
+    auto* b = app.add_subcommand("brush", "print a brush's query table, draw it, or fit one to measurements");
+    b->add_option("NAME", brush.name, "brush name or .toml file; without it, the names are listed");
+    b->add_option("--picture", brush.picture, "draw the tuft at five loads (.png)");
+    b->add_option("--sweep-depth", brush.sweep_depth, "write line width over depth (.csv)");
+    auto* fit = b->add_subcommand("calibrate", "fit a brush to a table of depth against line width");
+    fit->add_option("MEASURED", brush.calibrate, "measured table (.csv)")->required();
+    fit->add_option("-o,--output", brush.output, "brush preset to write (.toml)")->required();
+    add_common(b, brush.common);
+
+    Bench bench;
+    auto* n = app.add_subcommand("bench", "measure the speed on this machine");
+    n->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones");
+    n->add_flag("--quick", bench.quick, "smaller models, fewer repeats");
+    add_common(n, bench.common);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp& help) {
+        status = app.exit(help);
+        return false;
+    } catch (const CLI::CallForAllHelp& help) {
+        status = app.exit(help);
+        return false;
+    } catch (const CLI::CallForVersion& version) {
+        status = app.exit(version);
+        return false;
+    } catch (const CLI::ParseError& error) {
+        std::string line = error.what();
+        if (const auto end = line.find('\n'); end != std::string::npos) line.resize(end);
+        std::cerr << "tuft: " << line << " (see 'tuft --help')\n";
+        status = 2;
+        return false;
+    }
+    if (p->parsed()) command = paint;
+    else if (i->parsed()) command = inspect;
+    else if (u->parsed()) command = unwrap;
+    else if (r->parsed()) command = replay;
+    else if (e->parsed()) command = exported;
+    else if (d->parsed()) command = render;
+    else if (b->parsed()) command = brush;
+    else command = bench;
+    return true;
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// What the command line asks for, as plain data. Lengths are in millimetres and
+/// angles in degrees here; the commands convert.
+namespace tuft::cli {
+
+/// Options that several commands share.
+struct Surface {
+    std::string unit = "mm";
+    std::uint32_t atlas_size = 0;   ///< texels per side; 0: from texel_size_mm or the default
+    double texel_size_mm = 0;
+    bool new_uv = false, keep_uv = false;
+    std::string substrate = "porcelain";
+};
+
+struct Common {
+    int threads = 0;                ///< 0: one per core
+    bool json = false;
+    bool quiet = false;
+};
+
+struct View {
+    int width = 1280, height = 720;
+    double azimuth = 30, elevation = 25;
+    double zoom = 1;
+    std::vector<double> target_mm;  ///< three numbers, or empty: the middle of the model
+};
+
+struct Paint {
+    std::filesystem::path model;
+    std::vector<std::filesystem::path> strokes;
+    std::string brush, ink;         ///< empty: as the stroke file says, else the default
+    std::string spine = "rod";      ///< rod | table
+    std::string footprint = "surface";  ///< surface | plane
+    std::string contact = "exact";  ///< exact | vertices
+    std::vector<double> place_mm;   ///< x,y,z of the placement for flat strokes, or empty
+    Surface surface;
+    std::filesystem::path project, exported, preview, forces;
+    View view;
+    Common common;
+};
+
+struct Inspect {
+    std::filesystem::path file;
+    std::string unit;               ///< empty: guess
+    Common common;
+};
+
+struct Unwrap {
+    std::filesystem::path model, output, picture;
+    Surface surface;
+    Common common;
+};
+
+struct Replay {
+    std::filesystem::path project, model, out_project, exported, preview;
+    std::string brush, ink;
+    Surface surface;
+    View view;
+    Common common;
+};
+
+struct Export {
+    std::filesystem::path project, output;
+    Common common;
+};
+
+struct Render {
+    std::filesystem::path file, output;
+    int turntable = 0;              ///< number of pictures; 0: one picture
+    std::string unit = "mm";
+    std::string material;           ///< empty: from the project's substrate, else porcelain
+    View view;
+    Common common;
+};
+
+struct Brush {
+    std::string name;
+    std::filesystem::path picture, sweep_depth;
+    std::filesystem::path calibrate, output;  ///< `tuft brush calibrate MEASURED.csv -o BRUSH.toml`
+    Common common;
+};
+
+struct Bench {
+    std::filesystem::path model;    ///< empty: models made by the benchmark
+    bool quick = false;
+    Common common;
+};
+
+using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Bench>;
+
+/// Reads the command line. Prints help or version and returns false with `status` set
+/// when there is nothing to run; a wrong command line gives one line on standard error
+/// and status 2.
+bool parse_arguments(int argc, const char* const* argv, Command& command, int& status);
+
+}  // namespace tuft::cli
