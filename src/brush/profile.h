@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+/// Profiles of the variable stiffness beam along ξ = x/L, root 0 to tip 1, in units of
+/// the length L and the root stiffness B0: forces in B0/L², moments in B0/L.
+namespace tuft::brush {
+
+/// B(ξ) = e^{αξ} (1+βξ)³ from modulus E0 e^{αξ} and height h0 (1+βξ);
+/// yield stress σ0 e^{γξ} gives M_e(ξ) = e · e^{γξ} (1+βξ)².
+struct Profile {
+    double alpha = -1;
+    double beta = -0.8;   ///< > -1
+    double yield = 0;     ///< e = M_e0 L / B0; 0 means elastic for ever
+    double gamma = -1;
+};
+
+double bending_stiffness(const Profile& p, double xi);  ///< B/B0
+double yield_moment(const Profile& p, double xi);       ///< M_e L/B0; infinite when p.yield is 0
+
+/// ∫ ds/B from xi0 to xi1, the compliance of a piece of the beam; 8-point Gauss.
+double compliance(const Profile& p, double xi0, double xi1);
+
+/// Lengths of n segments in arithmetic progression, root to tip, sum 1: the tip segment
+/// is `tip_ratio` / n, 0 < tip_ratio <= 1. Softer brushes take 0.25 + 0.75 hardness.
+std::vector<double> spine_segments(int n, double tip_ratio);
+
+struct SmallDeflection {
+    double w = 0;       ///< deflection, in P L³/B0
+    double slope = 0;   ///< dw/dx, in P L²/B0
+    double moment = 0;  ///< in P L
+};
+
+/// Cantilever with transverse tip load P by linear theory, B w'' = P (L - x), in closed
+/// form by exponential integrals; Gauss quadrature where the closed form cancels
+/// (|β| < 0.05). Overshoots for |w| > 0.1 L: not for shapes, see rod.h.
+/// Source: variable stiffness brush (Huang and Hou 2018), integrated anew.
+SmallDeflection small_deflection(const Profile& p, double xi);
+
+/// Smallest tip load that starts to yield, min over ξ of M_e(ξ)/(1-ξ), in B0/L².
+double elastic_limit_load(const Profile& p);
+
+/// Ideally plastic rectangular section along a path of curvature k = κ/κ_e: 0 → k1 → k2.
+struct SectionMoment {
+    double moment = 0;    ///< M/M_e at the end of the path
+    double residual = 0;  ///< curvature left after elastic unloading from there
+};
+SectionMoment section_moment(double k1);
+/// Masing's rule for the reversal; |k2| <= |k1|.
+SectionMoment section_moment(double k1, double k2);
+
+/// Nodes and weights of n-point Gauss–Legendre quadrature on (0, 1).
+struct Quadrature {
+    std::vector<double> x, w;
+};
+Quadrature gauss_legendre(int n);
+
+}  // namespace tuft::brush

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "brush/preset.h"
+
+/// What one brush leaves on a flat sheet at each depth, and the fit of a preset to
+/// measurements of it.
+namespace tuft::brush {
+
+/// Steady straight stroke, holder upright. Lengths in metres.
+struct SweepRow {
+    double depth = 0;    ///< of the ferrule below the height where the tip first touches
+    double width = 0;    ///< of the line left behind
+    double drag = 0;     ///< length of the contact patch along the stroke
+    double offset = 0;   ///< end of the patch nearer to the root, behind the foot of the holder's axis
+};
+
+/// Drags each depth until steady (three hair lengths). Depths in metres.
+std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> depths);
+
+/// CSV text with the columns z_mm,width_mm,drag_mm,offset_mm.
+std::string sweep_csv(std::span<const SweepRow> rows);
+
+/// Reads a measured table: columns by name as in `sweep_csv`, lines with # ignored, rows whose
+/// column `excluded_by_authors` is not 0 skipped. Throws `Error` with file and line.
+std::vector<SweepRow> read_sweep(const std::string& path);
+
+struct CalibrateOptions {
+    SweepRow repeatability{0, 1.4e-3, 0.5e-3, 0.7e-3};  ///< one standard deviation of each column
+    int max_evaluations = 400;
+};
+
+struct Calibration {
+    Preset preset;
+    SweepRow rms;        ///< root mean square residual of each column (depth unused)
+    double cost = 0;     ///< mean square of residual over repeatability
+    int evaluations = 0;
+};
+
+/// Fits radius, hardness of the flattening, side stiffness and friction of `start` to the
+/// measured rows by a simplex search. Deterministic.
+Calibration calibrate(const Preset& start, std::span<const SweepRow> measured,
+                      const CalibrateOptions& options = {});
+
+}  // namespace tuft::brush
