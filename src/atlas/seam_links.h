@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "atlas/piece_graph.h"
+
+/// Neighbour texels over chart seams, for whatever flows along the surface.
+namespace tuft::atlas {
+
+/// Texel `texel` of the slot that holds the link and `other_texel` of `other_slot`
+/// face each other over a seam. `weight` = shared length over distance, both in
+/// texels: 1 is the coupling of two texels side by side inside a chart, so
+/// flux = k · weight · (w_a − w_b). Each link is held by both of its tiles with the
+/// same weight, so the two fluxes cancel to the bit. Scale k where k Σ weight > 1.
+struct SeamLink {
+    std::uint32_t other_slot = kNone;
+    float weight = 0;
+    std::uint8_t texel = 0, other_texel = 0;
+};
+
+struct SeamLinks {
+    std::vector<std::uint32_t> start;  ///< [n_slots + 1]
+    std::vector<SeamLink> links;       ///< by slot, then texel, then other end
+};
+
+/// Walks every seam in quarter texels and couples the nearest texels of both sides.
+/// The same bits for any number of threads.
+SeamLinks build_seam_links(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                           const PieceGraph& graph);
+
+}  // namespace tuft::atlas

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "atlas/piece_graph.h"
+#include "footprint/footprint.h"
+
+/// From a footprint to the texels it exposes. A caller plans a batch of stamps (each on
+/// its own, in any thread), picks the mode of each in stroke order, sorts the tile jobs
+/// by slot, and then, one thread per slot, evaluates them in stamp order and lets the ink
+/// act. Every function is pure; scratch memory is the caller's.
+namespace tuft::footprint {
+
+/// How footprint and surface are matched.
+enum class Mapping : std::uint8_t {
+    log,    ///< along the surface (log map)
+    plane,  ///< paper: from the projection plane along the surface's normals
+};
+
+/// Instruction sets of the kernel; all give the same bits.
+enum class Isa : std::uint8_t { baseline, avx2, avx512 };
+Isa best_isa();  ///< of this machine
+
+struct Surface {
+    const mesh::TriangleMesh& mesh;
+    const atlas::Atlas& atlas;
+    const atlas::TexelMap& texels;
+    const atlas::PieceGraph& pieces;
+};
+
+/// How the footprint came to its present place since the stamp before, in its frame:
+/// it was turned by `turn` about the origin and then moved by `shift`.
+struct Motion {
+    Vec2 shift{0};    ///< metres
+    double turn = 0;  ///< radians, counter-clockwise
+};
+
+struct StampOptions {
+    Mapping mapping = Mapping::log;
+    double enter = 0.015;   ///< discrepancy over radius above which pieces get own frames
+    double leave = 0.010;   ///< and below which one frame serves all again
+    double sub_pose = 1.0;  ///< longest way of any point between sub-poses, texels
+    int max_sub_poses = 64;
+    Isa isa = best_isa();
+};
+
+/// Where the log map puts the texels of one piece in the footprint's picture:
+/// d = p − origin, (fu, fv) = (u0, v0) + (tu, tv)·d + ½ (a − g) (tu, tv)·m, in cells.
+struct PieceFrame {
+    std::array<float, 3> origin, normal, tu, tv;
+    float u0 = 0, v0 = 0;
+    std::uint8_t piece = 0, first_row = 0, last_row = 0;
+};
+
+struct TileJob {
+    std::uint32_t slot = kNone;
+    std::uint32_t first = 0, count = 0;  ///< in `StampJobs::frames`
+};
+
+/// A pose of the picture within the stamp: cell coordinates are turned and moved.
+struct SubPose {
+    float c = 1, s = 0, du = 0, dv = 0;
+};
+
+/// A planned stamp: its picture packed for the kernel and the tiles it may touch.
+struct StampJobs {
+    int width = 0, height = 0;  ///< of the packed picture
+    std::vector<std::uint32_t>
+        corners;  ///< coverage of cells (i,j) (i+1,j) (i,j+1) (i+1,j+1), a byte each
+    std::vector<SubPose> sub_poses;  ///< evenly spread over the motion
+    PieceFrame stamp_frame;          ///< serves all pieces when not piecewise
+    std::vector<PieceFrame> frames;  ///< one for each piece reached, by slot
+    std::vector<TileJob> tiles;      ///< by slot
+    double discrepancy = 0;          ///< between the two ways of mapping, over the radius
+    bool piecewise = false;          ///< set by `choose_mode`
+    Mapping mapping = Mapping::log;
+    Isa isa = Isa::baseline;
+
+    bool empty() const { return tiles.empty(); }
+};
+
+/// Memory of the walk over the pieces; one per thread, any stamp after any other.
+struct PlanScratch {
+    struct Node {
+        std::uint32_t epoch = 0;
+        bool final = false;
+        float u = 0, v = 0, c = 1, s = 0, key = 0;
+    };
+    std::uint32_t epoch = 0;
+    std::vector<Node> nodes;
+    std::vector<std::pair<float, std::uint32_t>> heap;
+    std::vector<std::uint32_t> reached;
+};
+
+/// Finds the pieces that hang together with the contact point within the footprint and
+/// do not face away from it, and their places in its picture. Cost grows with the
+/// footprint's area in texels, not with the mesh.
+StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
+                     const StampOptions& options, PlanScratch& scratch);
+
+/// One frame for all pieces or one for each, with hysteresis: `piecewise_before` is the
+/// mode of the stamp before in the stroke (false for the first). Returns the mode.
+bool choose_mode(StampJobs& jobs, bool piecewise_before, const StampOptions& options);
+
+/// Part of the stamp's motion during which the tuft covers each texel, in [0, 1]; zero
+/// for texels outside. Returns false when all are zero.
+bool evaluate_tile(const atlas::TexelTile& tile, const StampJobs& jobs, const TileJob& job,
+                   std::span<float, atlas::kTileTexels> exposure);
+
+}  // namespace tuft::footprint
