@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "ink/canvas.h"
+
+/// Ink from the tuft onto texels.
+namespace tuft::ink {
+
+/// Parts of the wet ink by plane of a canvas; their sum is at most 1.
+using Mix = std::array<float, kMaxPigments>;
+
+/// The planes of an ink's pigments in a canvas (added when new) and their fractions.
+Mix mix_of(Canvas& canvas, const Ink& ink);
+
+struct DepositParams {
+    Mix mix{};                       ///< what leaves the tuft
+    float target = 1.8f;             ///< c: film units of this ink under full coverage
+    float transfer_length = 0.5e-3f; ///< s0, metres of travel
+    float capacity = 8;              ///< film units that stay on a texel, all inks together
+};
+
+/// Lays down one stamp on one tile:
+///
+///     dw = max(0, min(c f, w + C − W) − w) (1 − exp(−ds/s0)),   w_p += mix_p dw
+///
+/// with f the texel's coverage, w the film of this very ink that is there already
+/// (the least w_p / mix_p over the ink's pigments), W all film and C the capacity.
+/// The film tends to c f however often and in whatever steps the tuft passes: edges
+/// keep the antialiasing of f, stamps do not bead, and any number of passes gives
+/// no more than the capacity. Another ink goes on top of what is there; nothing that
+/// lies there is removed.
+///
+/// `coverage` [256], 0–1; `area` [256], m² of surface per texel; `ds` metres of travel
+/// the stamp stands for. Returns the ink given, film·m²: the sum of what was really
+/// stored times `area`, so tuft and texels balance. Different slots may be done by
+/// different threads; the bits do not depend on the instruction set. About 0.3 µs.
+double deposit(Canvas& canvas, std::uint32_t slot,
+               std::span<const float, atlas::kTileTexels> coverage,
+               std::span<const float, atlas::kTileTexels> area, double ds,
+               const DepositParams& params);
+
+}  // namespace tuft::ink

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What inks are made of and what they are put on. Colour is computed from amounts,
+/// so presets hold optical coefficients, never colours.
+///
+/// Film unit: 10 µm of wet ink on the surface, about 5 g/m² when dry. Amounts of ink
+/// in bulk are film·m²; one millilitre is 0.1 film·m².
+namespace tuft::ink {
+
+inline constexpr int kBands = 3;           ///< linear RGB, sRGB primaries
+using Bands = std::array<float, kBands>;
+
+inline constexpr double kFilmUnit = 1e-5;  ///< metres of wet ink
+/// film·m² in one m³ of ink.
+inline constexpr double kFilmPerVolume = 1.0 / kFilmUnit;
+
+/// Film·m² in a volume given in millilitres.
+constexpr double film_of_millilitres(double ml) { return ml * 1e-6 * kFilmPerVolume; }
+
+struct Pigment {
+    std::string name;        ///< identifies the pigment across inks
+    Bands k{};               ///< absorption per film unit
+    Bands s{};               ///< scattering per film unit
+    float height = 2.5e-6f;  ///< metres left by one film unit when dry
+    float roughness = 0.5f;  ///< glTF perceptual roughness of the dry film
+    std::string source;      ///< where K and S come from
+};
+
+struct InkPart {
+    Pigment pigment;
+    double fraction = 1;     ///< of the wet ink; the rest of the ink is water
+};
+
+/// An ink as it is in the dish.
+struct Ink {
+    std::string name;                ///< preset name: file stem
+    std::string title;               ///< for people
+    std::vector<InkPart> parts;      ///< fractions sum to at most 1
+    double film = 1.8;               ///< film units a full brush leaves
+    double supply = 0.004;           ///< η: part of the tuft's ink offered per transfer length
+    double transfer_length = 0.5e-3; ///< s0, metres of travel in which a texel takes up its film
+
+    /// Sum of the fractions: 1 for undiluted ink.
+    double strength() const;
+};
+
+/// What is painted on.
+struct Substrate {
+    std::string name, title;
+    Bands reflectance{0.8f, 0.8f, 0.8f};  ///< linear, diffuse
+    float roughness = 0.5f;               ///< glTF perceptual roughness
+    float metallic = 0;
+    float capacity = 8;                   ///< film units that stay on it, all inks together
+};
+
+/// The preset `name` from data_folder()/models/inks, or the file when `name` ends in
+/// ".toml". Throws `Error` for an unknown name (with the nearest one suggested) and for
+/// a file that is malformed or out of range (with its line).
+Ink load_ink(std::string_view name);
+Substrate load_substrate(std::string_view name);
+
+/// Names of the presets, sorted.
+std::vector<std::string> list_inks();
+std::vector<std::string> list_substrates();
+
+/// From and to TOML text; `source` is used in messages. parse_ink(ink_toml(i)) == i.
+Ink parse_ink(std::string_view toml, const std::string& source);
+std::string ink_toml(const Ink& ink);
+Substrate parse_substrate(std::string_view toml, const std::string& source);
+std::string substrate_toml(const Substrate& substrate);
+
+}  // namespace tuft::ink
