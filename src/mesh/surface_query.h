@@ -7,6 +7,14 @@
 
 namespace tuft::mesh {
 
+/// The hit of a `SurfaceQuery::trace`: triangle (kNone: a miss), weights of its
+/// corners 1 and 2, distance along the ray in metres.
+struct RayHit {
+    std::uint32_t triangle = kNone;
+    float b1 = 0, b2 = 0;
+    float distance = 0;
+};
+
 /// Ray and closest-point queries against a mesh by an Embree BVH. Keeps a
 /// reference to the mesh: the mesh must outlive it and not change. Building
 /// takes about 0.25 s per million triangles; queries are thread-safe.
@@ -29,6 +37,11 @@ class SurfaceQuery {
 
     /// Whether anything lies on the ray within [t_min, t_max].
     bool occluded(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const;
+
+    /// `ray` and `occluded` in single precision and without the surface point, for pictures
+    /// (relative error of the distance about 1e-6).
+    RayHit trace(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const;
+    bool blocked(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const;
 
     const TriangleMesh& mesh() const;
 
