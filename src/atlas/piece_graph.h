@@ -50,13 +50,6 @@ struct PieceGraph {
 PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                              const TexelMap& map, const ProgressFn& progress = {});
 
-/// A texel of the map.
-struct TexelRef {
-    std::uint32_t slot = kNone;
-    std::uint8_t texel = 0;
-    bool valid() const { return slot != kNone; }
-};
-
 /// The texel that stands for a point of the mesh: the covered one that is nearest in
 /// space, among those near the point's place in the atlas; where the triangle and its
 /// surroundings are too thin to hold any, among those near its neighbours' places.

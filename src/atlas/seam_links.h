@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "atlas/piece_graph.h"
+#include "atlas/texel_map.h"
 
 /// Neighbour texels over chart seams, for whatever flows along the surface.
 namespace tuft::atlas {
@@ -26,7 +26,6 @@ struct SeamLinks {
 
 /// Walks every seam in quarter texels and couples the nearest texels of both sides.
 /// The same bits for any number of threads.
-SeamLinks build_seam_links(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                           const PieceGraph& graph);
+SeamLinks build_seam_links(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map);
 
 }  // namespace tuft::atlas

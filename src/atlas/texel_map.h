@@ -11,7 +11,7 @@
 /// touches, the position and normal of every texel centre.
 namespace tuft::atlas {
 
-inline constexpr int kTile = 16;                    ///< texels along the side of a tile
+inline constexpr int kTile = 16;  ///< texels along the side of a tile
 inline constexpr int kTileTexels = kTile * kTile;
 inline constexpr std::uint8_t kNoPiece = 255;
 
@@ -21,23 +21,59 @@ struct TexelTile {
     alignas(64) std::array<float, kTileTexels> px, py, pz;  ///< metres, model frame
     alignas(64) std::array<float, kTileTexels> nx, ny, nz;  ///< unit normal
     alignas(64) std::array<float, kTileTexels> area;        ///< m² of surface the texel stands for
-    alignas(64) std::array<std::uint8_t, kTileTexels> piece;///< index of the texel's piece in this tile
+    alignas(64)
+        std::array<std::uint8_t, kTileTexels> piece;  ///< index of the texel's piece in this tile
 };
 
 /// Occupied tiles ("slots") of an atlas in row-major tile order. Everything that is
 /// stored per texel elsewhere (ink, wetness) is stored per slot in this order.
 struct TexelMap {
-    std::uint32_t size = 0;            ///< texels per side of the atlas
-    std::uint32_t tiles_per_side = 0;  ///< ceil(size / 16)
-    double texel_size = 0;             ///< metres, mean
+    std::uint32_t size = 0;                   ///< texels per side of the atlas
+    std::uint32_t tiles_per_side = 0;         ///< ceil(size / 16)
+    double texel_size = 0;                    ///< metres, mean
     std::vector<std::uint32_t> slot_of_tile;  ///< [tiles_per_side²] slot or kNone
     std::vector<std::uint32_t> tile_of_slot;  ///< [n_slots] tile index = ty * tiles_per_side + tx
     std::vector<TexelTile> tiles;             ///< [n_slots]
+    std::vector<float> reach;                 ///< [n_slots] metres: neighbouring texels further
+                                              ///< apart than this do not hang together
+    std::vector<std::uint32_t> piece_start;   ///< [n_slots + 1] pieces, counted slot by slot
+    std::vector<std::uint32_t> piece_chart;   ///< [n_pieces]
 
     std::size_t n_slots() const { return tiles.size(); }
+    Vec3f position(std::uint32_t slot, int texel) const {
+        const TexelTile& t = tiles[slot];
+        return {t.px[texel], t.py[texel], t.pz[texel]};
+    }
+    Vec3f normal(std::uint32_t slot, int texel) const {
+        const TexelTile& t = tiles[slot];
+        return {t.nx[texel], t.ny[texel], t.nz[texel]};
+    }
 };
 
-/// Builds the map; about 1 s at 4096² on two threads.
+/// A texel of the map.
+struct TexelRef {
+    std::uint32_t slot = kNone;
+    std::uint8_t texel = 0;
+
+    bool valid() const { return slot != kNone; }
+    bool operator==(const TexelRef&) const = default;
+};
+
+/// The texel in column x and row y of the atlas; not valid where no chart covers it.
+inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
+    if (x < 0 || y < 0 || x >= map.size || y >= map.size) return {};
+    const std::uint32_t slot = map.slot_of_tile[(y / kTile) * map.tiles_per_side + x / kTile];
+    const auto texel = static_cast<std::uint8_t>((y % kTile) * kTile + x % kTile);
+    if (slot == kNone || map.tiles[slot].piece[texel] == kNoPiece) return {};
+    return {slot, texel};
+}
+
+/// Builds the map: a texel is covered when its centre lies in a triangle of the atlas
+/// (corners snapped to 1/4096 texel; a centre on a shared edge belongs to one side, and
+/// where triangles overlap to the one with the lowest index). Its piece is the set of
+/// texels of the same chart and tile that hang together with it and whose normals are
+/// within 35° of the first. The same bits for any number of threads; about 1 s at 4096²
+/// on two threads, memory for occupied tiles only.
 TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                          const ProgressFn& progress = {});
 

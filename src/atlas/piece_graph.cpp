@@ -1,0 +1,322 @@
+#include "atlas/piece_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "atlas/log_map.h"
+#include "atlas/seams.h"
+#include "core/parallel.h"
+
+namespace tuft::atlas {
+namespace {
+
+constexpr double kSeamSpacing = 0.7;  // texels between samples of a seam
+constexpr double kSeamSearch = 2.0;   // texels from a seam to the nearest texel
+const double kCreaseCos = std::cos(20 * 0.017453292519943295);
+
+Frame frame_of(const Piece& piece) {
+    Frame f;
+    f.origin = Vec3(piece.centre);
+    f.n = Vec3(piece.normal);
+    f.t = Vec3(piece.tangent);
+    f.b = glm::cross(f.n, f.t);
+    return f;
+}
+
+Piece make_piece(const TexelMap& map, std::uint32_t slot, std::uint8_t index, std::uint32_t chart) {
+    const TexelTile& tile = map.tiles[slot];
+    Piece piece{.slot = slot, .chart = chart, .index = index};
+    Vec3 mean{0};
+    int n = 0, first = kTile, last = 0;
+    for (int t = 0; t < kTileTexels; ++t) {
+        if (tile.piece[t] != index) continue;
+        mean += Vec3(map.position(slot, t));
+        first = std::min(first, t / kTile);
+        last = std::max(last, t / kTile);
+        ++n;
+    }
+    mean /= std::max(n, 1);
+    piece.first_row = static_cast<std::uint8_t>(std::min(first, last));
+    piece.last_row = static_cast<std::uint8_t>(last);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int t = 0; t < kTileTexels; ++t) {
+        if (tile.piece[t] != index) continue;
+        const Vec3 d = Vec3(map.position(slot, t)) - mean;
+        if (glm::dot(d, d) >= nearest) continue;
+        nearest = glm::dot(d, d);
+        piece.centre_texel = static_cast<std::uint8_t>(t);
+    }
+    piece.centre = map.position(slot, piece.centre_texel);
+    const Frame frame =
+        make_frame(Vec3(piece.centre), glm::normalize(Vec3(map.normal(slot, piece.centre_texel))));
+    piece.normal = Vec3f(frame.n);
+    piece.tangent = Vec3f(frame.t);
+    for (int t = 0; t < kTileTexels; ++t) {
+        if (tile.piece[t] != index) continue;
+        piece.radius = std::max(piece.radius, glm::length(map.position(slot, t) - piece.centre));
+        piece.cone_cos = std::min(piece.cone_cos, glm::dot(map.normal(slot, t), piece.normal));
+    }
+    return piece;
+}
+
+/// A place where pieces i < j meet: border point and the normals on both sides.
+struct Meeting {
+    std::uint32_t i, j;
+    double distance2;  ///< to the middle between the centres
+    Vec3 point, normal_i, normal_j;
+
+    auto key() const { return std::tie(i, j, distance2, point.x, point.y, point.z); }
+};
+
+void set_distance(Meeting& m, const std::vector<Piece>& pieces) {
+    const Vec3 middle = 0.5 * (Vec3(pieces[m.i].centre) + Vec3(pieces[m.j].centre));
+    const Vec3 d = m.point - middle;
+    m.distance2 = glm::dot(d, d);
+}
+
+/// Keeps the meeting nearest to the middle for each pair.
+void keep_best(std::vector<Meeting>& meetings, const Meeting& m) {
+    for (Meeting& other : meetings) {
+        if (other.i != m.i || other.j != m.j) continue;
+        if (m.key() < other.key()) other = m;
+        return;
+    }
+    meetings.push_back(m);
+}
+
+/// Border point of two neighbour texels: their middle where the surface is smooth; at a
+/// crease the point of both tangent planes that is nearest to the middle.
+Vec3 border_point(const Vec3& pa, const Vec3& na, const Vec3& pb, const Vec3& nb, double reach) {
+    const Vec3 middle = 0.5 * (pa + pb);
+    const double c = glm::dot(na, nb);
+    if (c > kCreaseCos || c < -0.99) return middle;
+    // middle + x na + y nb with na·(q − pa) = 0 and nb·(q − pb) = 0.
+    const double ra = glm::dot(na, pa - middle), rb = glm::dot(nb, pb - middle);
+    const double det = 1 - c * c;
+    const Vec3 step = ((ra - c * rb) / det) * na + ((rb - c * ra) / det) * nb;
+    return glm::length(step) < reach ? middle + step : middle;
+}
+
+void meet_inside_charts(const TexelMap& map, const std::vector<Piece>& pieces, std::uint32_t slot,
+                        std::vector<Meeting>& found) {
+    static constexpr std::array<std::array<int, 2>, 4> kForward{{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
+    const TexelTile& tile = map.tiles[slot];
+    const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kTile;
+    const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kTile;
+    const std::uint32_t n_pieces = map.piece_start[slot + 1] - map.piece_start[slot];
+    for (int t = 0; t < kTileTexels; ++t) {
+        if (tile.piece[t] == kNoPiece) continue;
+        const int x = t % kTile, y = t / kTile;
+        const bool inner = x > 0 && x < kTile - 1 && y < kTile - 1;
+        if (inner && n_pieces == 1) continue;
+        const std::uint32_t i = map.piece_start[slot] + tile.piece[t];
+        for (const auto& [dx, dy] : kForward) {
+            const TexelRef other = texel_ref(map, x0 + x + dx, y0 + y + dy);
+            if (!other.valid()) continue;
+            const std::uint32_t j =
+                map.piece_start[other.slot] + map.tiles[other.slot].piece[other.texel];
+            if (i == j || pieces[i].chart != pieces[j].chart) continue;
+            const Vec3 pa(map.position(slot, t)), pb(map.position(other.slot, other.texel));
+            const double reach = std::max(map.reach[slot], map.reach[other.slot]);
+            if (glm::dot(pa - pb, pa - pb) > reach * reach) continue;
+            Vec3 na(map.normal(slot, t)), nb(map.normal(other.slot, other.texel));
+            Meeting m{i, j, 0, border_point(pa, na, pb, nb, reach), na, nb};
+            if (glm::dot(na, nb) > kCreaseCos) m.normal_i = m.normal_j = glm::normalize(na + nb);
+            if (m.i > m.j) {
+                std::swap(m.i, m.j);
+                std::swap(m.normal_i, m.normal_j);
+            }
+            set_distance(m, pieces);
+            keep_best(found, m);
+        }
+    }
+}
+
+/// Texel on one side of a seam; where that side's chart is too thin to have one near by,
+/// that of the surface beyond it.
+TexelRef seam_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                    const SeamSide& side, const Vec3& position) {
+    const TexelRef near =
+        nearest_texel(map, atlas.triangle_chart[side.triangle], side.uv, position, kSeamSearch);
+    return near.valid() ? near : texel_at(mesh, atlas, map, side.triangle, position);
+}
+
+void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                     const std::vector<Piece>& pieces, const SeamEdge& edge,
+                     std::vector<SeamSample>& samples, std::vector<Meeting>& found) {
+    samples.clear();
+    sample_seam(mesh, atlas, edge, kSeamSpacing, samples);
+    for (const SeamSample& s : samples) {
+        const TexelRef a = seam_texel(mesh, atlas, map, s.a, s.position);
+        const TexelRef b = seam_texel(mesh, atlas, map, s.b, s.position);
+        if (!a.valid() || !b.valid()) continue;
+        Meeting m{map.piece_start[a.slot] + map.tiles[a.slot].piece[a.texel],
+                  map.piece_start[b.slot] + map.tiles[b.slot].piece[b.texel],
+                  0,
+                  s.position,
+                  s.a.normal,
+                  s.b.normal};
+        if (m.i == m.j) continue;
+        if (m.i > m.j) {
+            std::swap(m.i, m.j);
+            std::swap(m.normal_i, m.normal_j);
+        }
+        set_distance(m, pieces);
+        keep_best(found, m);
+    }
+}
+
+/// The motion i → j of a meeting: hop = log_i(q) − R log_j(q), R from carrying j's tangent
+/// over the normals on both sides of the border to i.
+PieceEdge edge_of(const Meeting& m, const std::vector<Piece>& pieces) {
+    const Frame fi = frame_of(pieces[m.i]), fj = frame_of(pieces[m.j]);
+    const Vec3 at_border =
+        parallel_transport(parallel_transport(fj.t, fj.n, m.normal_j), m.normal_j, m.normal_i);
+    const Vec2 turn = carried_direction(fi, at_border, m.normal_i);
+    const Vec2 li = log_map(fi, m.point, m.normal_i), lj = log_map(fj, m.point, m.normal_j);
+    return {m.j, static_cast<float>(li.x - (turn.x * lj.x - turn.y * lj.y)),
+            static_cast<float>(li.y - (turn.y * lj.x + turn.x * lj.y)), static_cast<float>(turn.x),
+            static_cast<float>(turn.y)};
+}
+
+PieceEdge inverse(const PieceEdge& e, std::uint32_t from) {
+    return {from, -(e.c * e.hop_u + e.s * e.hop_v), -(e.c * e.hop_v - e.s * e.hop_u), e.c, -e.s};
+}
+
+void store_edges(std::vector<Meeting>& meetings, PieceGraph& graph) {
+    std::sort(meetings.begin(), meetings.end(),
+              [](const Meeting& a, const Meeting& b) { return a.key() < b.key(); });
+    const auto same = [](const Meeting& a, const Meeting& b) { return a.i == b.i && a.j == b.j; };
+    meetings.erase(std::unique(meetings.begin(), meetings.end(), same), meetings.end());
+    std::vector<PieceEdge> forward(meetings.size());
+    parallel_for(meetings.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) forward[k] = edge_of(meetings[k], graph.pieces);
+    });
+    graph.edge_start.assign(graph.n_pieces() + 1, 0);
+    for (const Meeting& m : meetings) {
+        ++graph.edge_start[m.i + 1];
+        ++graph.edge_start[m.j + 1];
+    }
+    for (std::size_t i = 0; i < graph.n_pieces(); ++i)
+        graph.edge_start[i + 1] += graph.edge_start[i];
+    graph.edges.resize(graph.edge_start.back());
+    std::vector<std::uint32_t> next(graph.edge_start.begin(), graph.edge_start.end() - 1);
+    // Backward edges first: meetings are sorted by (i, j) with i < j, so both passes
+    // leave the edges of each piece sorted by their other end.
+    for (std::size_t k = 0; k < meetings.size(); ++k)
+        graph.edges[next[meetings[k].j]++] = inverse(forward[k], meetings[k].i);
+    for (std::size_t k = 0; k < meetings.size(); ++k)
+        graph.edges[next[meetings[k].i]++] = forward[k];
+}
+
+/// Barycentric weights of the point of the triangle that is near `p`: the projection to
+/// its plane, clamped.
+Vec3 clamped_weights(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const Vec3& p) {
+    const Vec3 a = mesh.position(triangle, 0);
+    const Vec3 e1 = mesh.position(triangle, 1) - a, e2 = mesh.position(triangle, 2) - a;
+    const Vec3 n = glm::cross(e1, e2);
+    const double nn = glm::dot(n, n);
+    if (!(nn > 0)) return {1, 0, 0};
+    const double b1 = glm::dot(glm::cross(p - a, e2), n) / nn;
+    const double b2 = glm::dot(glm::cross(e1, p - a), n) / nn;
+    const Vec3 w = glm::max(Vec3{1 - b1 - b2, b1, b2}, Vec3{0});
+    return w / (w.x + w.y + w.z);
+}
+
+/// Covered texel within `search` texels of the triangle's place in the atlas that is
+/// nearest to `p` in space.
+TexelRef texel_near(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                    std::uint32_t triangle, const Vec3& p, int search) {
+    const Vec3 w = clamped_weights(mesh, triangle, p);
+    Vec2 uv{0};
+    for (int k = 0; k < 3; ++k)
+        uv += w[k] * Vec2(atlas.corner_uvs[3 * std::size_t{triangle} + k]) * double(atlas.size);
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return {};
+    const auto x = static_cast<std::int64_t>(std::floor(std::clamp(uv.x, 0.0, double(atlas.size))));
+    const auto y = static_cast<std::int64_t>(std::floor(std::clamp(uv.y, 0.0, double(atlas.size))));
+    TexelRef best;
+    double best_distance = std::numeric_limits<double>::infinity();
+    for (std::int64_t dy = -search; dy <= search; ++dy) {
+        for (std::int64_t dx = -search; dx <= search; ++dx) {
+            const TexelRef ref = texel_ref(map, x + dx, y + dy);
+            if (!ref.valid()) continue;
+            const std::uint8_t piece = map.tiles[ref.slot].piece[ref.texel];
+            if (map.piece_chart[map.piece_start[ref.slot] + piece] !=
+                atlas.triangle_chart[triangle])
+                continue;
+            const Vec3 d = Vec3(map.position(ref.slot, ref.texel)) - p;
+            const double distance = glm::dot(d, d);
+            const double reach = (search + 1) * double(map.reach[ref.slot]);
+            if (distance >= best_distance || distance > reach * reach) continue;
+            best = ref;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                  std::uint32_t triangle, const Vec3& position) {
+    if (triangle >= mesh.n_triangles()) return {};
+    constexpr std::size_t kMaxVisited = 64;
+    std::array<std::uint32_t, kMaxVisited> queue{triangle};
+    std::size_t n = 1;
+    for (std::size_t i = 0; i < n; ++i) {
+        const TexelRef ref = texel_near(mesh, atlas, map, queue[i], position, 1);
+        if (ref.valid()) return ref;
+        for (int k = 0; k < 3 && n < kMaxVisited; ++k) {
+            const std::uint32_t next = mesh.neighbours[3 * std::size_t{queue[i]} + k];
+            if (next >= mesh.n_triangles()) continue;
+            if (std::find(queue.begin(), queue.begin() + n, next) == queue.begin() + n)
+                queue[n++] = next;
+        }
+    }
+    return texel_near(mesh, atlas, map, triangle, position, 4);
+}
+
+PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
+                             const TexelMap& map, const ProgressFn& progress) {
+    report(progress, "piece graph", 0);
+    PieceGraph graph;
+    graph.piece_start = map.piece_start;
+    graph.pieces.resize(map.piece_chart.size());
+    const std::size_t n_slots = map.n_slots();
+    parallel_for(n_slots, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t slot = begin; slot < end; ++slot) {
+            for (std::uint32_t i = map.piece_start[slot]; i < map.piece_start[slot + 1]; ++i)
+                graph.pieces[i] = make_piece(map, static_cast<std::uint32_t>(slot),
+                                             static_cast<std::uint8_t>(i - map.piece_start[slot]),
+                                             map.piece_chart[i]);
+        }
+    });
+
+    std::vector<std::vector<Meeting>> by_slot(n_slots);
+    parallel_for(n_slots, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t slot = begin; slot < end; ++slot)
+            meet_inside_charts(map, graph.pieces, static_cast<std::uint32_t>(slot), by_slot[slot]);
+    });
+    report(progress, "piece graph", 0.5);
+
+    const std::vector<SeamEdge> seams = find_seams(mesh, atlas);
+    constexpr std::size_t kChunk = 64;
+    std::vector<std::vector<Meeting>> by_chunk((seams.size() + kChunk - 1) / kChunk);
+    parallel_for(by_chunk.size(), 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<SeamSample> samples;
+        for (std::size_t chunk = begin; chunk < end; ++chunk) {
+            const std::size_t last = std::min(seams.size(), (chunk + 1) * kChunk);
+            for (std::size_t e = chunk * kChunk; e < last; ++e)
+                meet_over_seams(mesh, atlas, map, graph.pieces, seams[e], samples, by_chunk[chunk]);
+        }
+    });
+    std::vector<Meeting> all;
+    for (const auto& m : by_slot) all.insert(all.end(), m.begin(), m.end());
+    for (const auto& m : by_chunk) all.insert(all.end(), m.begin(), m.end());
+    store_edges(all, graph);
+    report(progress, "piece graph", 1);
+    return graph;
+}
+
+}  // namespace tuft::atlas
