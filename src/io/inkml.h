@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stroke/trace.h"
+
+/// Stroke files: InkML 1.0 (W3C Recommendation, 20 September 2011).
+namespace tuft::io {
+
+struct InkmlOptions {
+    double metres_per_unit = 1e-3;    ///< of X, Y, Z where the file declares neither unit nor resolution
+    double flat_width = 0;            ///< metres: scales all flat traces together to this width; 0: as written
+    double full_force = 1;            ///< newtons of F that count as pressure 1 where no maximum is declared
+    double pen_speed = 0.06;          ///< m/s, for traces without a time channel or sample rate
+    double flat_pressure = 0.5;       ///< middle of the default pressure, for traces without P and F
+    double max_extent = 1000;         ///< metres; coordinates beyond are refused
+    std::size_t max_bytes = std::size_t{1} << 30;
+    std::size_t max_samples = 10'000'000;
+};
+
+/// The pen-down traces of a file, in order.
+///
+/// Understood: `traceFormat` with regular and intermittent channels, units, `min`, `max`,
+/// `default`, and `channelProperty` resolution; contexts, ink sources, brushes and
+/// canvas-free definitions by reference or as the current ones; `traceGroup`s; continued
+/// traces; explicit values, first (') and second (") differences, `*` and `?`, booleans and
+/// hexadecimal numbers. Channels: X, Y, Z (lengths); P, or F in newtons; T (ms unless
+/// declared, rebased to the start of the trace); OTx and OTy (tilt towards +x and +y),
+/// or OA and OE (azimuth from +x towards +y, elevation), in degrees unless declared rad;
+/// QW, QX, QY, QZ: rotation of the ferrule (own channels). Others are skipped.
+///
+/// A trace is in space when it has Z or a quaternion, else flat: then `y` grows downwards
+/// and it needs a placement. Own names, as `annotation` children of `ink`, `traceGroup`,
+/// `brush` or `trace`, inner ones overriding outer ones:
+///
+///     tuft:brush    preset name          tuft:origin  "x y z" in mm, model frame
+///     tuft:ink      preset name          tuft:right   "x y z" direction of +x
+///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
+///     tuft:label    any text             tuft:laying  wrap | project
+///
+/// Flat traces without P and F get pressure that swells in and tapers out over their length
+/// and falls with speed; P without a declared range is 0–1, or scaled by its largest value.
+///
+/// Throws `Error` with file and line: not well formed, not InkML, no traces, a value that is
+/// no finite number, too few values in a point, a reference to nothing, absurd sizes.
+std::vector<stroke::Trace> read_inkml(const std::filesystem::path& path,
+                                      const InkmlOptions& options = {});
+
+/// The same from text; `source` names it in errors.
+std::vector<stroke::Trace> parse_inkml(std::string_view text, const std::string& source,
+                                       const InkmlOptions& options = {});
+
+/// InkML text, millimetres and milliseconds, explicit values: traces that share a placement,
+/// brush and ink form a `traceGroup`. Read back, positions agree to 1e-9 m (flat: 5e-7 m),
+/// times to 1e-6 s, pressures to 1e-5, tilts to 1e-4 rad, rotations to 1e-9.
+std::string inkml_text(std::span<const stroke::Trace> traces, const std::string& title = {});
+
+/// Writes the text atomically.
+void write_inkml(const std::filesystem::path& path, std::span<const stroke::Trace> traces,
+                 const std::string& title = {});
+
+}  // namespace tuft::io

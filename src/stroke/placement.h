@@ -1,0 +1,96 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "brush/preset.h"
+#include "brush/tuft_state.h"
+#include "mesh/surface_query.h"
+#include "stroke/trace.h"
+
+/// From flat pen data to the hand that holds a brush over a model: lay the samples
+/// onto the surface, then hold the brush over them.
+namespace tuft::stroke {
+
+/// A flat sample on the model.
+struct LaidSample {
+    mesh::SurfacePoint on;     ///< where it lies; past an edge: the last point of the surface
+    Vec3 position{0};          ///< metres, model frame: `on.position`, or beyond the edge the
+                               ///< place where the surface would be if it went on flat
+    Vec3 normal{0, 0, 1};      ///< unit, smooth, out of the surface
+    Vec3 right{1, 0, 0};       ///< unit, along the surface: the direction of +x there
+    Vec3 down{0, -1, 0};       ///< unit, along the surface, normal to `right`: that of +y
+    bool on_surface = true;    ///< false past an edge, or where the ray met nothing
+    double time = 0;           ///< seconds
+    double pressure = 0;       ///< 0–1 of the working depth
+    Vec2 tilt{0};              ///< radians, towards right, towards down
+};
+
+struct LaidTrace {
+    std::vector<LaidSample> samples;  ///< one per sample of the trace, in order
+    std::size_t missed = 0;           ///< samples that are not on the surface
+    double origin_gap = 0;            ///< metres between the placement's origin and the surface
+};
+
+/// Lays a flat trace onto the mesh.
+///
+/// `Laying::wrap` is the exponential map of the polyhedral surface at the point nearest to
+/// the placement's origin: sample (x, y) lies |(x, y)| away along the straightest line that
+/// leaves in direction x right + y down (Polthier and Schmies 1998: a line crosses an edge
+/// straight in the unfolded plane), and its frame is carried along that line. Lengths and
+/// angles at the origin are kept; on a developable surface all of them are.
+/// `Laying::project` shoots a ray along the placement's inward normal right × down from
+/// outside the mesh and takes the first hit.
+///
+/// Past a border the line goes on straight in the last triangle's plane, and a ray that
+/// misses takes the height and frame of the nearest sample in time that hit.
+/// Throws `Error` when the trace is not flat, a number is not finite, or the placement's
+/// directions are zero or parallel. Cost: about 0.1 µs per triangle crossed.
+LaidTrace lay(const mesh::SurfaceQuery& query, const Trace& trace);
+
+/// The point a straightest line of the given length reaches, and the frame carried to it.
+struct Walk {
+    mesh::SurfacePoint end;    ///< `distance`: length walked on the surface
+    Vec3 direction{1, 0, 0};   ///< unit, in the plane of the last triangle: where the line points
+    double beyond = 0;         ///< metres left when it met a border
+};
+
+/// Walks from `start` (a point of the mesh) along `direction`, which is taken into the
+/// triangle's plane. Bounded work: at most 4 n_triangles + 1000 crossings.
+Walk walk(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& start, const Vec3& direction,
+          double length);
+
+/// Length of the hand's lead at one depth.
+struct Lead {
+    double depth = 0;          ///< metres, of the unbent tip below the surface
+    double length = 0;         ///< metres
+};
+
+struct HoldOptions {
+    double tuft_length = 0.02;      ///< metres from the ferrule's mouth to the unbent tip
+    double working_depth = 0.008;   ///< metres of the unbent tip below the surface at pressure 1
+    double hover = 0.002;           ///< metres of the tip above the surface when not pressed
+    double max_tilt = 1.2;          ///< radians; more lean than this is cut
+    /// A dragged tuft paints behind the hand. With a table, rising in depth, the ferrule runs
+    /// ahead of the trace by the length for its depth, so that the ink lies on the trace.
+    std::vector<Lead> lead;
+    double lead_turn = 0.0015;      ///< metres of travel in which the lead follows a turn
+};
+
+/// Working depth of a brush: 0.4 of the free hair, where its belly reaches the paper.
+double working_depth(const brush::Preset& preset);
+
+/// Options for a brush, without a lead.
+HoldOptions hold_options(const brush::Preset& preset);
+
+/// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the
+/// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
+/// pressure · working depth below the sample (hover above it where the pressure is 0).
+/// The lead's direction is that of a point dragged behind the trace on a string of
+/// `lead_turn`, so it knows no future and can run while a pen is moving.
+std::vector<brush::Pose> hold(std::span<const LaidSample> samples, const HoldOptions& options);
+
+/// Poses of a trace in space (not flat): its samples as they are.
+std::vector<brush::Pose> spatial_poses(const Trace& trace);
+
+}  // namespace tuft::stroke
