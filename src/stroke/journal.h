@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "stroke/trace.h"
+
+/// The document: what the hand did, in order. Texels are made from it.
+namespace tuft::stroke {
+
+/// How strokes become texels. Part of the journal, so that a replay is the same.
+struct Settings {
+    std::string spine = "rod";          ///< rod | table
+    std::string footprint = "surface";  ///< surface | plane
+    std::string contact = "exact";      ///< exact | vertices
+    double spacing = 1.0;               ///< texels between two stamps
+    bool dip = true;                    ///< dip the brush before this stroke
+
+    bool operator==(const Settings&) const = default;
+};
+
+/// Settings as one line of JSON, and back; unknown keys are ignored, wrong types throw `Error`.
+std::string to_json(const Settings& settings);
+Settings settings_from_json(const std::string& json);
+
+struct Stroke {
+    std::uint64_t id = 0;     ///< unique in its journal, never used again
+    Trace trace;              ///< with the names of its brush and ink filled in
+    Settings settings;
+    bool hidden = false;      ///< kept, but not painted
+};
+
+/// Strokes in the order in which they are painted, with undo and redo.
+class Journal {
+  public:
+    /// Appends a stroke (its id is set here); what could be redone is gone.
+    const Stroke& append(Stroke stroke);
+    /// Puts a stroke back as it was stored, id kept.
+    void restore(Stroke stroke);
+    /// Takes the last stroke off, to be put back by `redo`; false when there is none.
+    bool undo();
+    bool redo();
+    bool can_undo() const { return !strokes_.empty(); }
+    bool can_redo() const { return !undone_.empty(); }
+
+    const std::vector<Stroke>& strokes() const { return strokes_; }
+    bool empty() const { return strokes_.empty(); }
+
+  private:
+    std::vector<Stroke> strokes_;
+    std::vector<Stroke> undone_;  ///< last undone at the back
+    std::uint64_t next_id_ = 1;
+};
+
+}  // namespace tuft::stroke

@@ -1,0 +1,92 @@
+#include "stroke/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+
+namespace tuft::stroke {
+namespace {
+
+// Bytes per texel of a full tile: the texel map's seven floats and a piece number, one
+// pigment plane and the copy kept for undo, and a share of the piece graph.
+constexpr double kBytesPerTexel = 29.0 + 4.0 + 4.0 + 1.0;
+// Charts cover no more than this part of an atlas; the tiles they touch a little more.
+constexpr double kOccupied = 0.9;
+
+void check_memory(std::uint32_t size, std::size_t limit) {
+    if (limit == 0) limit = available_memory();
+    const std::size_t needed = atlas_memory(size);
+    if (needed > limit)
+        throw Error("an atlas of " + std::to_string(size) + " x " + std::to_string(size) +
+                    " texels needs " + std::to_string(needed >> 20) + " MiB, but only " +
+                    std::to_string(limit >> 20) +
+                    " MiB are free; choose a smaller --atlas-size or a larger --texel-size");
+}
+
+void finish(Model& model, const ProgressFn& progress) {
+    report(progress, "search tree", 0);
+    model.query = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
+    report(progress, "search tree", 1);
+    model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress);
+    model.pieces = atlas::build_piece_graph(*model.mesh, model.atlas, model.texels, progress);
+}
+
+}  // namespace
+
+std::size_t atlas_memory(std::uint32_t size) {
+    return static_cast<std::size_t>(static_cast<double>(size) * size * kOccupied * kBytesPerTexel);
+}
+
+std::size_t available_memory() {
+    std::size_t available = std::size_t{1} << 40;
+    std::ifstream info("/proc/meminfo");
+    for (std::string key; info >> key;) {
+        std::size_t kib = 0;
+        std::string unit;
+        if (key == "MemAvailable:" && info >> kib) {
+            available = kib << 10;
+            break;
+        }
+        std::getline(info, unit);
+    }
+    std::ifstream limit_file("/sys/fs/cgroup/memory.max"), used_file("/sys/fs/cgroup/memory.current");
+    std::size_t limit = 0, used = 0;
+    if (limit_file >> limit && used_file >> used)
+        available = std::min(available, limit > used ? limit - used : 0);
+    return available;
+}
+
+Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options) {
+    atlas::UnwrapOptions unwrap = options.unwrap;
+    if (unwrap.size > 0) check_memory(unwrap.size, options.memory_limit);
+    mesh::RepairOptions repair = options.repair;
+    repair.progress = unwrap.progress = options.progress;
+
+    Model model;
+    mesh::Surface surface = mesh::build_surface(std::move(soup), repair);
+    model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(surface.mesh));
+    model.repairs = std::move(surface.report);
+    if (unwrap.size == 0 && unwrap.texel_size > 0) {
+        // Before the charts are made: their area alone asks for this many texels.
+        const double side = std::sqrt(mesh::surface_area(*model.mesh)) / unwrap.texel_size;
+        check_memory(static_cast<std::uint32_t>(std::min(side, 4e9)), options.memory_limit);
+    }
+    atlas::Unwrapped unwrapped = atlas::unwrap(*model.mesh, unwrap);
+    model.atlas = std::move(unwrapped.atlas);
+    model.atlas_report = std::move(unwrapped.report);
+    check_memory(model.atlas.size, options.memory_limit);
+    finish(model, options.progress);
+    return model;
+}
+
+Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress) {
+    Model model;
+    model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(mesh));
+    model.atlas = std::move(atlas);
+    check_memory(model.atlas.size, 0);
+    finish(model, progress);
+    return model;
+}
+
+}  // namespace tuft::stroke
