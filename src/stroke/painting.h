@@ -1,0 +1,113 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "brush/preset.h"
+#include "ink/canvas.h"
+#include "ink/pigments.h"
+#include "stroke/journal.h"
+#include "stroke/model.h"
+
+namespace tuft::stroke {
+
+/// One stamp as the hand felt it.
+struct ForceRecord {
+    brush::Pose pose;
+    Vec3 force{0};             ///< newtons, of the surface on the tuft
+    double moment = 0;         ///< N·m, bending moment at the ferrule
+};
+
+/// What a stroke did.
+struct StrokeReport {
+    std::uint64_t stroke_id = 0;
+    std::size_t samples = 0;
+    std::size_t stamps = 0;          ///< poses at which the tuft touched
+    std::size_t unconverged = 0;     ///< of them, solved only to the iteration limit
+    double ink_given = 0;            ///< film·m², now on the texels
+    double ink_left = 0;             ///< film·m², in the tuft
+    double nearest = 0;              ///< metres: least distance of tuft and model; 0 when it touched
+    std::vector<ForceRecord> forces; ///< only when asked for
+
+    bool touched() const { return stamps > 0; }
+};
+
+struct PaintingOptions {
+    std::string substrate = "porcelain";
+    std::size_t undo_bytes = std::size_t{256} << 20;  ///< kept copies of tiles; older strokes undo by replay
+    bool record_forces = false;
+};
+
+/// A model being painted: its journal and the texels made from it. The model must
+/// outlive it. All strokes take one path, whether they come from a file, a project or a
+/// hand that moves right now: sample → resample → contact → brush → footprint → ink.
+class Painting {
+  public:
+    explicit Painting(const Model& model, const PaintingOptions& options = {});
+    ~Painting();
+    Painting(Painting&&) noexcept;
+    Painting& operator=(Painting&&) noexcept;
+
+    /// Presets that take the place of the shipped ones of the same name, for the strokes
+    /// that are painted from now on (a project brings its own).
+    void use_brush(const brush::Preset& preset);
+    void use_ink(const ink::Ink& ink);
+    const brush::Preset& brush(const std::string& name);
+    const ink::Ink& ink(const std::string& name);
+
+    /// Paints a whole stroke and appends it to the journal. Throws `Error` for a stroke
+    /// that names an unknown brush or ink or has no samples, before anything is changed.
+    StrokeReport paint(Stroke stroke, const ProgressFn& progress = {});
+
+    /// The same in pieces: `begin`, any number of `extend`, `end`. `stroke` brings the
+    /// header; its samples may be empty. `cancel` takes the stroke back instead.
+    void begin(Stroke stroke);
+    void extend(std::span<const TraceSample> samples);
+    StrokeReport end();
+    void cancel();
+    bool in_stroke() const { return hand_ != nullptr; }
+    /// The bent tuft at the last sample, for drawing it; empty between strokes.
+    const brush::TuftState* tuft() const;
+
+    /// Loads a stored journal and paints it.
+    std::vector<StrokeReport> replay(std::vector<Stroke> strokes, const ProgressFn& progress = {});
+
+    bool undo();
+    bool redo();
+
+    const Journal& journal() const { return journal_; }
+    const Model& model() const { return *model_; }
+    const ink::Canvas& canvas() const { return canvas_; }
+    ink::Canvas& canvas() { return canvas_; }
+    const ink::Substrate& substrate() const { return substrate_; }
+    std::vector<std::uint32_t> take_dirty() { return canvas_.take_dirty(); }
+
+  private:
+    struct Hand;  // the stroke in work
+    struct Undo {
+        std::uint64_t stroke_id = 0;
+        std::vector<ink::TileSnapshot> before;
+        std::size_t bytes = 0;
+    };
+
+    void keep_undo(std::uint64_t id, std::vector<ink::TileSnapshot> before);
+    void repaint_all();
+
+    const Model* model_;
+    PaintingOptions options_;
+    ink::Substrate substrate_;
+    ink::Canvas canvas_;
+    Journal journal_;
+    std::map<std::string, brush::Preset> brushes_;
+    std::map<std::string, ink::Ink> inks_;
+    std::deque<Undo> undo_;
+    std::size_t undo_bytes_ = 0;
+    std::unique_ptr<Hand> hand_;
+};
+
+}  // namespace tuft::stroke

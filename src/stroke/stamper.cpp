@@ -1,0 +1,82 @@
+#include "stroke/stamper.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+
+namespace tuft::stroke {
+
+Stamper::Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options)
+    : model_(model), canvas_(canvas), options_(options), scratch_(kBatch) {
+    batch_.reserve(kBatch);
+}
+
+bool Stamper::add(Stamp stamp) {
+    batch_.push_back(std::move(stamp));
+    return batch_.size() >= kBatch;
+}
+
+double Stamper::flush() {
+    if (batch_.empty()) return 0;
+    const footprint::Surface surface = model_.surface();
+    std::array<footprint::StampJobs, kBatch> jobs;
+    parallel_for(batch_.size(), 2, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            jobs[i] = footprint::plan_stamp(surface, batch_[i].footprint, batch_[i].motion, options_,
+                                            scratch_[i]);
+    });
+
+    struct Job {
+        std::uint32_t slot, stamp, tile;
+    };
+    std::vector<Job> order;
+    for (std::uint32_t i = 0; i < batch_.size(); ++i) {
+        if (jobs[i].empty()) continue;
+        piecewise_ = footprint::choose_mode(jobs[i], piecewise_, options_);
+        for (std::uint32_t k = 0; k < jobs[i].tiles.size(); ++k)
+            order.push_back({jobs[i].tiles[k].slot, i, k});
+    }
+    std::sort(order.begin(), order.end(), [](const Job& a, const Job& b) {
+        return a.slot != b.slot ? a.slot < b.slot : a.stamp < b.stamp;
+    });
+    std::vector<std::uint32_t> runs;  // where each slot's jobs start
+    for (std::uint32_t k = 0; k < order.size(); ++k) {
+        if (k > 0 && order[k].slot == order[k - 1].slot) continue;
+        runs.push_back(k);
+        if (!before_.contains(order[k].slot))
+            before_.emplace(order[k].slot, canvas_.snapshot(order[k].slot));
+    }
+    runs.push_back(static_cast<std::uint32_t>(order.size()));
+
+    std::vector<double> given(order.size(), 0.0);
+    parallel_for(runs.size() - 1, 4, [&](std::size_t begin, std::size_t end) {
+        alignas(64) std::array<float, atlas::kTileTexels> exposure;
+        for (std::size_t r = begin; r < end; ++r) {
+            for (std::uint32_t k = runs[r]; k < runs[r + 1]; ++k) {
+                const Job& job = order[k];
+                const atlas::TexelTile& tile = model_.texels.tiles[job.slot];
+                const footprint::StampJobs& plan = jobs[job.stamp];
+                if (!footprint::evaluate_tile(tile, plan, plan.tiles[job.tile], exposure)) continue;
+                const Stamp& stamp = batch_[job.stamp];
+                given[k] = ink::deposit(canvas_, job.slot, exposure, tile.area, stamp.ds, stamp.ink);
+            }
+        }
+    });
+    batch_.clear();
+    double sum = 0;
+    for (const double g : given) sum += g;
+    return sum;
+}
+
+std::vector<ink::TileSnapshot> Stamper::take_before() {
+    std::vector<ink::TileSnapshot> tiles;
+    tiles.reserve(before_.size());
+    for (auto& [slot, snapshot] : before_) tiles.push_back(std::move(snapshot));
+    before_.clear();
+    std::sort(tiles.begin(), tiles.end(),
+              [](const ink::TileSnapshot& a, const ink::TileSnapshot& b) { return a.slot < b.slot; });
+    return tiles;
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "footprint/stamp.h"
+#include "ink/deposit.h"
+#include "stroke/model.h"
+
+namespace tuft::stroke {
+
+/// One footprint with the ink it brings.
+struct Stamp {
+    footprint::Footprint footprint;
+    footprint::Motion motion;    ///< since the stamp before, in the footprint's frame
+    ink::DepositParams ink;
+    double ds = 0;               ///< metres of travel it stands for
+};
+
+/// Puts stamps onto the texels, a batch at a time: tiles in parallel, on each tile the
+/// stamps in their order, so the texels do not depend on the number of threads. Batches
+/// have a fixed length; ink given is known after each.
+class Stamper {
+  public:
+    static constexpr std::size_t kBatch = 8;
+
+    Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options);
+
+    /// Takes a stamp; true when the batch is full and must be flushed.
+    bool add(Stamp stamp);
+    /// Lays down what was added. Returns the ink given, film·m².
+    double flush();
+
+    /// Tiles as they were before this stamper first wrote to them.
+    std::vector<ink::TileSnapshot> take_before();
+
+  private:
+    const Model& model_;
+    ink::Canvas& canvas_;
+    footprint::StampOptions options_;
+    std::vector<Stamp> batch_;
+    std::vector<footprint::PlanScratch> scratch_;  ///< one per place in the batch
+    bool piecewise_ = false;
+    std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
+};
+
+}  // namespace tuft::stroke
