@@ -38,13 +38,13 @@ struct Preset {
 
     // Contact.
     double transverse_stiffness = 1.2e4;  ///< k_c, N/m²: force per length per indentation of the tuft's side
-    double core_stiffness = 30;   ///< times k_c once the hair is packed
+    double core_stiffness = 150;  ///< times k_c once the hair is packed
     double core_start = 0.65;     ///< indentation over radius at which it is packed
     double friction_wet = 0.30, friction_dry = 0.45;  ///< Coulomb μ
     double grain = 0.4;           ///< κ_f: share of friction along the hair; 0.5 is isotropic
     double with_hair = 0.3;       ///< C_η: part of friction lost when dragged tip last
     double pore_grip = 0.5;       ///< extra μ at the tip against being pushed tip first
-    double stick = 4;             ///< tangential over normal stiffness of a sticking contact
+    double stick = 40;            ///< tangential over normal stiffness of a sticking contact
 
     // Sections.
     double flatten_moment = 0.8;  ///< κ1 of a = r (1 + κ1 |m|/M_e0 + κ2 k_F)

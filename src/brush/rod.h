@@ -36,8 +36,10 @@ struct Rod {
 /// The beam cut into segments (see `spine_segments`): k_j = 1 / ∫ ds/B over the joint's
 /// share, half a segment to each side.
 Rod make_rod(const Profile& profile, int n, double tip_ratio);
-/// The part of the beam from ξ0 to the tip as a rod of its own, still in units of the whole.
-Rod make_rod(const Profile& profile, int n, double tip_ratio, double xi0, double stiffness_scale);
+
+/// Segments from `first` to the tip as a rod of their own, with 1/share of the stiffness;
+/// still in units of the whole. Its clamp is the segment inboard of `first`.
+Rod outer_part(const Rod& rod, int first, double share);
 
 /// Root of the rod. `side` is a unit vector normal to `tangent` that marks the ferrule's turn.
 struct Clamp {

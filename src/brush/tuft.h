@@ -59,6 +59,9 @@ void reset(Tuft& tuft);
 /// contacts are gone; the pose stays.
 void reshape(Tuft& tuft);
 
+/// What the hand feels, newtons, world: min(G |F|, limit) along the force on the tuft.
+Vec3 hand_force(const Preset& preset, const TuftState& state);
+
 /// Radius of the resting tuft, metres: r(u) = 1.06 R (1-u^2.4)^q (1 - 0.14 (1-u)^6), u from root to tip.
 double rest_radius(const Preset& preset, double u);
 

@@ -1,0 +1,376 @@
+#include "brush/rod.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "brush/rod_energy.h"
+
+namespace tuft::brush::rod {
+
+Rod make_rod(const Profile& profile, int n, double tip_ratio) {
+    Rod rod;
+    rod.length = spine_segments(n, tip_ratio);
+    rod.stiffness.resize(n);
+    rod.yield.resize(n);
+    rod.weight.assign(n + 1, 0);
+    double node = 0, from = 0;
+    for (int j = 0; j < n; ++j) {
+        const double to = node + 0.5 * rod.length[j];
+        rod.stiffness[j] = 1 / compliance(profile, from, to);
+        rod.yield[j] = yield_moment(profile, node) / rod.stiffness[j];
+        rod.weight[j] += 0.5 * rod.length[j];
+        rod.weight[j + 1] += 0.5 * rod.length[j];
+        from = to;
+        node += rod.length[j];
+    }
+    return rod;
+}
+
+Rod outer_part(const Rod& rod, int first, double share) {
+    Rod part;
+    part.length.assign(rod.length.begin() + first, rod.length.end());
+    part.stiffness.assign(rod.stiffness.begin() + first, rod.stiffness.end());
+    for (double& k : part.stiffness) k /= share;
+    part.yield.assign(rod.yield.begin() + first, rod.yield.end());
+    part.weight.assign(rod.weight.begin() + first, rod.weight.end());
+    return part;
+}
+
+Memory make_memory(const Rod& rod, const Clamp& clamp) {
+    Memory memory;
+    memory.clamp = clamp;
+    memory.tangent.assign(rod.segments(), clamp.tangent);
+    memory.joint.resize(rod.segments());
+    memory.contact.resize(rod.segments() + 1);
+    memory.node = nodes(rod, memory);
+    return memory;
+}
+
+void carry(Memory& memory, const Clamp& clamp) {
+    const Clamp& was = memory.clamp;
+    const Mat3 from(was.tangent, was.side, glm::cross(was.tangent, was.side));
+    const Mat3 to(clamp.tangent, clamp.side, glm::cross(clamp.tangent, clamp.side));
+    const Mat3 turn = to * glm::transpose(from);
+    for (Vec3& t : memory.tangent) t = glm::normalize(turn * t);
+    for (Vec3& x : memory.node) x = clamp.position + turn * (x - was.position);
+    memory.clamp = clamp;
+}
+
+std::vector<Vec3> nodes(const Rod& rod, const Memory& memory) {
+    std::vector<Vec3> x(rod.segments() + 1);
+    x[0] = memory.clamp.position;
+    for (int j = 0; j < rod.segments(); ++j) x[j + 1] = x[j] + rod.length[j] * memory.tangent[j];
+    return x;
+}
+
+namespace {
+
+using DenseMatrix = Eigen::MatrixXd;
+
+/// Buffers of one thread, kept so that a warm solve allocates little.
+struct Workspace {
+    Evaluation at, trial;
+    Shape next;
+    std::vector<double> gradient, hessian, step;
+    DenseMatrix matrix;
+    Eigen::LLT<DenseMatrix> factor;
+};
+
+/// Solves (H + shift) u = -g into ws.step; raises the shift until H is positive definite.
+bool newton_step(Workspace& ws, double& shift) {
+    const auto size = static_cast<Eigen::Index>(ws.gradient.size());
+    const Eigen::Map<const DenseMatrix> h(ws.hessian.data(), size, size);
+    const double scale = h.diagonal().cwiseAbs().maxCoeff();
+    for (int attempt = 0; attempt < 12; ++attempt) {
+        ws.matrix = h;
+        ws.matrix.diagonal().array() += shift;
+        ws.factor.compute(ws.matrix);
+        if (ws.factor.info() == Eigen::Success) {
+            ws.step.resize(ws.gradient.size());
+            Eigen::Map<Eigen::VectorXd> u(ws.step.data(), size);
+            u = -ws.factor.solve(Eigen::Map<const Eigen::VectorXd>(ws.gradient.data(), size));
+            return u.allFinite();
+        }
+        shift = std::max(4 * shift, 1e-3 * scale);
+    }
+    return false;
+}
+
+constexpr double kLongestStep = 0.3;  ///< radians any segment turns in one iteration
+
+struct NewtonResult {
+    bool converged = false;
+    int iterations = 0;
+};
+
+/// Descends Π from `shape` for frozen friction; Π never rises.
+NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit) {
+    const double tolerance = frozen.law->tolerance;
+    NewtonResult out;
+    double shift = 0;
+    evaluate(frozen, shape, ws.at);
+    while (true) {
+        differentiate(frozen, shape, ws.at, ws.gradient, ws.hessian);
+        double residual = 0;
+        for (const double g : ws.gradient) residual = std::max(residual, std::abs(g));
+        if (residual < tolerance) {
+            out.converged = true;
+            return out;
+        }
+        if (out.iterations >= limit || !std::isfinite(residual)) return out;
+        ++out.iterations;
+        if (!newton_step(ws, shift)) return out;
+        double longest = 0, slope = 0;
+        for (std::size_t j = 0; 2 * j < ws.step.size(); ++j) {
+            longest = std::max(longest, std::hypot(ws.step[2 * j], ws.step[2 * j + 1]));
+        }
+        for (std::size_t i = 0; i < ws.step.size(); ++i) slope += ws.gradient[i] * ws.step[i];
+        double scale = std::min(1.0, kLongestStep / longest);
+        // Below this a change of Π is round-off.
+        const double noise = 1e-14 * (1 + std::abs(ws.at.value));
+        bool accepted = false;
+        for (int halving = 0; halving < 20 && !accepted; ++halving, scale *= 0.5) {
+            advance(shape, ws.step, scale, ws.next);
+            evaluate(frozen, ws.next, ws.trial);
+            accepted = ws.trial.value <= ws.at.value + 1e-4 * scale * slope + noise;
+        }
+        if (!accepted) {
+            out.converged = residual < 1e3 * tolerance && -slope < 1e3 * noise;
+            return out;
+        }
+        std::swap(shape, ws.next);
+        std::swap(ws.at, ws.trial);
+        shift = scale >= 0.5 ? 0.25 * shift : shift;
+        if (shift < 1e-9) shift = 0;
+    }
+}
+
+/// Where node i first touched on its way from its last place to `x`.
+Vec3 touching_point(const Obstacle& o, const Vec3& x_t0, const Vec3& x) {
+    const double z0 = glm::dot(x_t0 - o.origin, o.normal) - o.radius;
+    const double z1 = glm::dot(x - o.origin, o.normal) - o.radius;
+    if (z0 <= 0 || z1 >= z0) return x;
+    return x_t0 + std::min(1.0, z0 / (z0 - z1)) * (x - x_t0);
+}
+
+/// Friction of node i for the next pass, from the normal force and tangent known so far.
+Friction friction_of(const Rod& rod, const Law& law, int i, const Obstacle& o, double normal_force,
+                     const Vec3& anchor, const Vec3& x, const Vec3& tangent) {
+    Friction f;
+    f.anchor = anchor;
+    f.stick = law.stick_stiffness * rod.weight[i];
+    f.cap = law.friction * normal_force;
+    const Vec3 flat = tangent - glm::dot(tangent, o.normal) * o.normal;
+    const double lean = glm::length(flat);
+    if (lean < 1e-6) return f;
+    const Vec3 hair = flat / lean;
+    f.grain = hair;
+    f.along = 1 + (2 * law.grain - 1) * lean;
+    f.across = 1 + (1 - 2 * law.grain) * lean;
+    if (law.with_hair > 0) {
+        Vec3 d = x - anchor;
+        d -= glm::dot(d, o.normal) * o.normal;
+        const double moved = glm::length(d);
+        if (moved > 0) {
+            const double with = std::max(0.0, -glm::dot(d, hair) / moved);
+            f.cap *= 1 - law.with_hair * lean * with * with * with * with;
+        }
+    }
+    if (i == rod.segments()) {
+        f.pore_cap = law.pore_grip * normal_force * std::max(0.0, -glm::dot(tangent, o.normal));
+    }
+    return f;
+}
+
+/// One solve: friction passes around Newton, then the memory moves on.
+struct Solver {
+    const Rod& rod;
+    Memory& memory;
+    std::span<const Obstacle> obstacles;
+    const Law& law;
+    Frozen frozen;
+    Shape shape;
+    std::vector<double> normal;       ///< lagged N̂
+    std::vector<Vec3> anchor;
+    std::vector<char> anchored;
+    Workspace& ws;
+
+    int n() const { return rod.segments(); }
+
+    void begin(const Load& load, const std::vector<Vec3>& before) {
+        shape.tangent = memory.tangent;
+        shape.side = transported_sides(memory.clamp, shape.tangent);
+        Vec3 a = memory.clamp.tangent, side = memory.clamp.side;
+        for (int j = 0; j < n(); ++j) {
+            // Frames are laid anew along the rod, so that spin gathered in one solve is dropped.
+            if (memory.joint[j].yielded) memory.joint[j].bend = bend_of(a, side, shape.tangent[j]);
+            a = shape.tangent[j];
+            side = shape.side[j];
+        }
+        frozen.rod = &rod;
+        frozen.joint = &memory.joint;
+        frozen.obstacles = obstacles;
+        frozen.law = &law;
+        frozen.load = load;
+        frozen.clamp = memory.clamp;
+        frozen.friction.assign(n() + 1, {});
+        frozen.multiplier.assign(n() + 1, 0);
+        normal.assign(n() + 1, 0);
+        anchor.assign(n() + 1, Vec3{0});
+        anchored.assign(n() + 1, 0);
+        for (int i = 1; i <= n() && !obstacles.empty(); ++i) {
+            const ContactMemory& c = memory.contact[i];
+            const Obstacle& o = obstacles[i];
+            const Vec3& x = memory.node[i];
+            if (c.touching) {
+                anchor[i] = c.anchor;
+                anchored[i] = 1;
+                normal[i] = c.force;
+                frozen.multiplier[i] = c.multiplier;
+            } else if (glm::dot(x - o.origin, o.normal) < o.radius) {
+                anchor[i] = touching_point(o, before[i], x);
+                anchored[i] = 1;
+            }
+        }
+    }
+
+    void freeze_friction(const std::vector<Vec3>& x) {
+        if (obstacles.empty() || law.friction <= 0) return;
+        for (int i = 1; i <= n(); ++i) {
+            frozen.friction[i] = {};
+            if (!anchored[i] || normal[i] <= 0) continue;
+            frozen.friction[i] = friction_of(rod, law, i, obstacles[i], normal[i], anchor[i], x[i],
+                                             shape.tangent[i - 1]);
+        }
+    }
+
+    /// Takes the normal forces of the pass; true when they no longer change.
+    bool take_normal_forces(int pass) {
+        double change = 0, sum = 0;
+        for (int i = 1; i <= n(); ++i) {
+            const double fresh = ws.at.normal[i];
+            change += std::abs(fresh - (law.hard ? frozen.multiplier[i] : normal[i]));
+            sum += fresh;
+            if (law.hard) frozen.multiplier[i] = fresh;
+            if (fresh > 0 && !anchored[i]) {
+                anchor[i] = ws.at.node[i];
+                anchored[i] = 1;
+            }
+            normal[i] = pass > 6 ? 0.5 * (normal[i] + fresh) : fresh;
+        }
+        if (law.friction <= 0 && !law.hard) return true;
+        return change <= law.pass_tolerance * sum;
+    }
+
+    Result run() {
+        Result out;
+        std::vector<Vec3> x = memory.node;
+        for (out.passes = 1;; ++out.passes) {
+            freeze_friction(x);
+            const NewtonResult r = newton(frozen, shape, ws, law.max_iterations - out.iterations);
+            out.iterations += r.iterations;
+            x = ws.at.node;
+            const bool settled = obstacles.empty() || take_normal_forces(out.passes);
+            out.converged = r.converged && settled;
+            if (out.converged || out.passes >= law.max_passes ||
+                out.iterations >= law.max_iterations) {
+                break;
+            }
+        }
+        finish(out);
+        return out;
+    }
+
+    /// Forces from the last evaluation; stops and anchors move on.
+    void finish(Result& out) {
+        const Evaluation& at = ws.at;
+        out.moment.resize(n());
+        out.normal_force = at.normal;
+        out.contact_force.assign(n() + 1, Vec3{0});
+        for (int j = 0; j < n(); ++j) {
+            out.moment[j] = glm::length(at.joint[j].moment + end_moment(frozen));
+            out.dissipation += commit_joint(rod, j, memory.joint[j], at.joint[j].bend);
+            out.bend_energy += stored_energy(rod, j, memory.joint[j], at.joint[j].bend);
+        }
+        for (int i = 1; i <= n(); ++i) {
+            Vec3 f = -at.slope[i];
+            if (i == n()) f -= frozen.load.tip_force;
+            out.contact_force[i] = f;
+            out.force += f;
+            out.root_moment += glm::cross(at.node[i] - at.node[0], f);
+        }
+        out.root_moment += glm::cross(at.node[n()] - at.node[0], frozen.load.tip_force);
+        for (int i = 1; i <= n(); ++i) finish_contact(i, out);
+        memory.tangent = shape.tangent;
+        memory.node = at.node;
+    }
+
+    void finish_contact(int i, Result& out) {
+        ContactMemory& c = memory.contact[i];
+        c.touching = !obstacles.empty() && ws.at.normal[i] > 0;
+        if (!c.touching) {
+            c = {};
+            return;
+        }
+        c.force = ws.at.normal[i];
+        c.multiplier = law.hard ? c.force : 0;
+        const Friction& f = frozen.friction[i];
+        c.anchor = anchored[i] ? anchor[i] : ws.at.node[i];
+        if (f.cap <= 0 || f.stick <= 0) {
+            if (law.friction <= 0) c.anchor = ws.at.node[i];
+            return;
+        }
+        const Vec3& normal_dir = obstacles[i].normal;
+        Vec3 d = ws.at.node[i] - c.anchor;
+        d -= glm::dot(d, normal_dir) * normal_dir;
+        const double along = glm::dot(d, f.grain);
+        const Vec3 side = d - along * f.grain;
+        const double q = std::sqrt(f.along * f.along * along * along +
+                                   f.across * f.across * glm::dot(side, side));
+        const double reach = f.cap / f.stick;
+        out.contact_energy += 0.5 * f.stick * std::min(q, reach) * std::min(q, reach);
+        if (q > reach) {
+            out.dissipation += f.cap * (q - reach);
+            c.anchor = ws.at.node[i] - d * (reach / q);
+        }
+    }
+};
+
+}  // namespace
+
+Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
+             std::span<const Obstacle> obstacles, const Law& law, const Load& load) {
+    thread_local Workspace workspace;
+    const std::vector<Vec3> before = memory.node;
+    carry(memory, clamp);
+    Solver solver{rod, memory, obstacles, law, {}, {}, {}, {}, {}, workspace};
+    solver.begin(load, before);
+    return solver.run();
+}
+
+Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles,
+                   const Law& law, const Load& load, std::span<const double> x) {
+    Workspace ws;
+    Memory copy = memory;
+    Solver solver{rod, copy, obstacles, law, {}, {}, {}, {}, {}, ws};
+    solver.begin(load, memory.node);
+    for (std::size_t i = 0; i < memory.contact.size(); ++i) {
+        solver.normal[i] = memory.contact[i].force;
+        if (memory.contact[i].force > 0) {
+            solver.anchor[i] = memory.contact[i].anchor;
+            solver.anchored[i] = 1;
+        }
+    }
+    solver.freeze_friction(copy.node);
+    Shape moved;
+    advance(solver.shape, x, 1, moved);
+    Probe probe;
+    evaluate(solver.frozen, moved, ws.at);
+    probe.value = ws.at.value;
+    differentiate(solver.frozen, moved, ws.at, probe.gradient, ws.hessian);
+    return probe;
+}
+
+}  // namespace tuft::brush::rod

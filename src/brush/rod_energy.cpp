@@ -1,0 +1,382 @@
+#include "brush/rod_energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tuft::brush::rod {
+
+namespace {
+
+/// Bend at which the hairs of a joint lie on each other and stiffen, radians; more than any
+/// smooth shape has between two segments.
+constexpr double kFullBend = 1.2;
+constexpr double kFullBendStiffness = 20;  ///< times the joint's own
+
+/// φ = θ/sin θ, χ = -dφ/dc and dχ/dc as functions of c = cos θ.
+struct AngleFunctions {
+    double phi, chi, dchi;
+};
+
+AngleFunctions angle_functions(double c, double s) {
+    const double theta = std::atan2(s, c);
+    if (theta < 0.05) {
+        const double x = theta * theta;
+        return {1 + x / 6 + 7 * x * x / 360, 1.0 / 3 + 2 * x / 15 + 2 * x * x / 63,
+                (2.0 / 15 + 4 * x / 63) / (-0.5 + x / 12)};
+    }
+    s = std::max(s, 1e-3);  // folded flat back: only reached from absurd poses
+    const double d = s - theta * c;
+    return {theta / s, d / (s * s * s), -(theta * s * s - 3 * c * d) / (s * s * s * s * s)};
+}
+
+const Quadrature& fibres() {
+    static const Quadrature rule = gauss_legendre(kFibres);
+    return rule;
+}
+
+struct Fibre {
+    double stiffness, limit;
+};
+
+Fibre fibre(const Rod& rod, int j, int f) {
+    const Quadrature& q = fibres();
+    return {3 * rod.stiffness[j] * q.x[f] * q.x[f] * q.w[f], rod.yield[j] / q.x[f]};
+}
+
+void add_full_bend(double k, const Vec2& w, JointForce& out) {
+    const double angle = glm::length(w), over = angle - kFullBend;
+    if (over <= 0) return;
+    const double kf = kFullBendStiffness * k;
+    const Vec2 d = w / angle;
+    out.energy += 0.5 * kf * over * over;
+    out.moment += kf * over * d;
+    const double round = kf * over / angle;
+    out.d00 += kf * d.x * d.x + round * d.y * d.y;
+    out.d01 += (kf - round) * d.x * d.y;
+    out.d11 += kf * d.y * d.y + round * d.x * d.x;
+}
+
+}  // namespace
+
+Vec2 bend_of(const Vec3& a, const Vec3& side, const Vec3& outer) {
+    const Vec2 p{glm::dot(side, outer), glm::dot(glm::cross(a, side), outer)};
+    return angle_functions(glm::dot(a, outer), glm::length(p)).phi * p;
+}
+
+JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const Vec2& w) {
+    JointForce out;
+    out.bend = w;
+    const double k = rod.stiffness[j];
+    if (!memory.yielded && glm::dot(w, w) <= rod.yield[j] * rod.yield[j]) {
+        out.energy = 0.5 * k * glm::dot(w, w);
+        out.moment = k * w;
+        out.d00 = out.d11 = k;
+    } else {
+        for (int f = 0; f < kFibres; ++f) {
+            const Fibre fb = fibre(rod, j, f);
+            const Vec2 s = memory.yielded ? memory.stop[f] + (w - memory.bend) : w;
+            const double size = glm::length(s);
+            if (size <= fb.limit) {
+                out.energy += 0.5 * fb.stiffness * size * size;
+                out.moment += fb.stiffness * s;
+                out.d00 += fb.stiffness;
+                out.d11 += fb.stiffness;
+            } else {
+                const Vec2 d = s / size;
+                const double round = fb.stiffness * fb.limit / size;
+                out.energy += fb.stiffness * fb.limit * (size - 0.5 * fb.limit);
+                out.moment += fb.stiffness * fb.limit * d;
+                out.d00 += round * d.y * d.y;
+                out.d01 -= round * d.x * d.y;
+                out.d11 += round * d.x * d.x;
+            }
+        }
+    }
+    add_full_bend(k, w, out);
+    return out;
+}
+
+double commit_joint(const Rod& rod, int j, JointMemory& memory, const Vec2& w) {
+    double lost = 0;
+    if (!memory.yielded && glm::dot(w, w) <= rod.yield[j] * rod.yield[j]) {
+        memory.bend = w;
+        return lost;
+    }
+    for (int f = 0; f < kFibres; ++f) {
+        const Fibre fb = fibre(rod, j, f);
+        Vec2 s = memory.yielded ? memory.stop[f] + (w - memory.bend) : w;
+        const double size = glm::length(s);
+        if (size > fb.limit) {
+            lost += fb.stiffness * fb.limit * (size - fb.limit);
+            s *= fb.limit / size;
+        }
+        memory.stop[f] = s;
+    }
+    memory.yielded = true;
+    memory.bend = w;
+    return lost;
+}
+
+double stored_energy(const Rod& rod, int j, const JointMemory& memory, const Vec2& w) {
+    JointForce limit;
+    add_full_bend(rod.stiffness[j], w, limit);
+    if (!memory.yielded) return limit.energy + 0.5 * rod.stiffness[j] * glm::dot(w, w);
+    double sum = limit.energy;
+    for (int f = 0; f < kFibres; ++f) {
+        sum += 0.5 * fibre(rod, j, f).stiffness * glm::dot(memory.stop[f], memory.stop[f]);
+    }
+    return sum;
+}
+
+std::vector<Vec3> transported_sides(const Clamp& clamp, const std::vector<Vec3>& tangents) {
+    std::vector<Vec3> sides(tangents.size());
+    Vec3 t = clamp.tangent, s = clamp.side;
+    for (std::size_t j = 0; j < tangents.size(); ++j) {
+        s = parallel_transport(s, t, tangents[j]);
+        t = tangents[j];
+        s = glm::normalize(s - glm::dot(s, t) * t);
+        sides[j] = s;
+    }
+    return sides;
+}
+
+namespace {
+
+/// Normal force of an indentation with its potential.
+struct NormalForce {
+    double energy = 0, force = 0, stiffness = 0;
+};
+
+NormalForce normal_force(const Law& law, double weight, double radius, double depth,
+                         double multiplier) {
+    if (law.hard) {
+        const double k = law.stiffness * weight, force = multiplier + k * depth;
+        if (force <= 0) return {-multiplier * multiplier / (2 * k), 0, 0};
+        return {(force * force - multiplier * multiplier) / (2 * k), force, k};
+    }
+    if (depth <= 0) return {};
+    const double k = law.stiffness * weight;
+    NormalForce out{0.5 * k * depth * depth, k * depth, k};
+    const double packed = depth - law.core_start * radius;
+    if (packed > 0) {
+        const double kc = law.core_stiffness * weight;
+        out.energy += 0.5 * kc * packed * packed;
+        out.force += kc * packed;
+        out.stiffness += kc;
+    }
+    return out;
+}
+
+Mat3 outer(const Vec3& v) { return glm::outerProduct(v, v); }
+
+/// Spring that slips at `cap` along a displacement of metric length q; G d is the metric's slope.
+void add_slider(double cap, double k, const Vec3& gd, const Mat3& g, double q, double& energy,
+                Vec3& slope, Mat3& curvature) {
+    if (q * k <= cap) {
+        energy += 0.5 * k * q * q;
+        slope += k * gd;
+        curvature += k * g;
+    } else {
+        energy += cap * (q - 0.5 * cap / k);
+        slope += cap / q * gd;
+        curvature += cap / q * (g - outer(gd) / (q * q));
+    }
+}
+
+void add_friction(const Friction& f, const Vec3& normal, const Vec3& x, double& energy,
+                  Vec3& slope, Mat3& curvature) {
+    if (f.cap <= 0 || f.stick <= 0) return;
+    Vec3 d = x - f.anchor;
+    d -= glm::dot(d, normal) * normal;
+    const Mat3 plane = Mat3(1.0) - outer(normal);
+    const double a2 = f.across * f.across, l2 = f.along * f.along;
+    const Mat3 g = a2 * plane + (l2 - a2) * outer(f.grain);
+    const Vec3 gd = g * d;
+    add_slider(f.cap, f.stick, gd, g, std::sqrt(std::max(0.0, glm::dot(d, gd))), energy, slope,
+               curvature);
+    const double pushed = glm::dot(d, f.grain);
+    if (f.pore_cap > 0 && pushed > 0) {
+        add_slider(f.pore_cap, f.stick, pushed * f.grain, outer(f.grain), pushed, energy, slope,
+                   curvature);
+    }
+}
+
+}  // namespace
+
+Vec2 end_moment(const Frozen& frozen) {
+    const Clamp& c = frozen.clamp;
+    const Vec3& toward = frozen.load.toward;
+    return frozen.load.end_moment *
+           Vec2{glm::dot(c.side, toward), glm::dot(glm::cross(c.tangent, c.side), toward)};
+}
+
+void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
+    const Rod& rod = *frozen.rod;
+    const int n = rod.segments();
+    out.node.resize(n + 1);
+    out.slope.assign(n + 1, Vec3{0});
+    out.curvature.assign(n + 1, Mat3(0.0));
+    out.normal.assign(n + 1, 0.0);
+    out.joint.resize(n);
+
+    double value = 0;
+    const Vec2 moment = end_moment(frozen);
+    Vec3 a = frozen.clamp.tangent, side = frozen.clamp.side;
+    out.node[0] = frozen.clamp.position;
+    for (int j = 0; j < n; ++j) {
+        const Vec3& b = shape.tangent[j];
+        out.joint[j] = joint_force(rod, j, (*frozen.joint)[j], bend_of(a, side, b));
+        // A dead moment at the end does the same work in every joint.
+        value += out.joint[j].energy - glm::dot(moment, out.joint[j].bend);
+        out.joint[j].moment -= moment;
+        out.node[j + 1] = out.node[j] + rod.length[j] * b;
+        a = b;
+        side = shape.side[j];
+    }
+    value -= glm::dot(frozen.load.tip_force, out.node[n]);
+    out.slope[n] -= frozen.load.tip_force;
+    if (!frozen.obstacles.empty()) {
+        for (int i = 1; i <= n; ++i) {
+            const Obstacle& o = frozen.obstacles[i];
+            const double depth = o.radius - glm::dot(out.node[i] - o.origin, o.normal);
+            const NormalForce f =
+                normal_force(*frozen.law, rod.weight[i], o.radius, depth, frozen.multiplier[i]);
+            value += f.energy;
+            out.normal[i] = f.force;
+            out.slope[i] -= f.force * o.normal;
+            if (f.stiffness > 0) out.curvature[i] += f.stiffness * outer(o.normal);
+            add_friction(frozen.friction[i], o.normal, out.node[i], value, out.slope[i],
+                         out.curvature[i]);
+        }
+    }
+    out.value = value;
+}
+
+namespace {
+
+struct Mat2 {
+    double m[2][2] = {{0, 0}, {0, 0}};
+};
+
+/// Blocks of the gradient and Hessian of one joint between inner segment a and outer b.
+struct JointBlocks {
+    Vec2 ga, gb;
+    Mat2 aa, ab, bb;
+};
+
+JointBlocks joint_blocks(const JointForce& jf, const Vec3& a, const Vec3& a1, const Vec3& b,
+                         const Vec3& b1) {
+    const Vec3 a2 = glm::cross(a, a1), b2 = glm::cross(b, b1);
+    const double c = glm::dot(a, b);
+    const double p[2] = {glm::dot(a1, b), glm::dot(a2, b)};
+    const double q[2] = {glm::dot(b1, a), glm::dot(b2, a)};
+    const double r[2][2] = {{glm::dot(a1, b1), glm::dot(a1, b2)}, {glm::dot(a2, b1), glm::dot(a2, b2)}};
+    const AngleFunctions f = angle_functions(c, std::hypot(p[0], p[1]));
+    const double m[2] = {jf.moment.x, jf.moment.y};
+    const double d[2][2] = {{jf.d00, jf.d01}, {jf.d01, jf.d11}};
+    const double mp = m[0] * p[0] + m[1] * p[1];
+    const double rm[2] = {r[0][0] * m[0] + r[1][0] * m[1], r[0][1] * m[0] + r[1][1] * m[1]};
+
+    double ja[2][2], jb[2][2], dja[2][2], djb[2][2];
+    for (int i = 0; i < 2; ++i) {
+        for (int k = 0; k < 2; ++k) {
+            ja[i][k] = -f.chi * p[i] * p[k] - (i == k ? f.phi * c : 0);
+            jb[i][k] = -f.chi * p[i] * q[k] + f.phi * r[i][k];
+        }
+    }
+    JointBlocks out;
+    for (int k = 0; k < 2; ++k) {
+        out.ga[k] = ja[0][k] * m[0] + ja[1][k] * m[1];
+        out.gb[k] = jb[0][k] * m[0] + jb[1][k] * m[1];
+        for (int i = 0; i < 2; ++i) {
+            dja[i][k] = d[i][0] * ja[0][k] + d[i][1] * ja[1][k];
+            djb[i][k] = d[i][0] * jb[0][k] + d[i][1] * jb[1][k];
+        }
+    }
+    // Jᵀ D J plus the moment times the second derivative of w.
+    for (int i = 0; i < 2; ++i) {
+        for (int k = 0; k < 2; ++k) {
+            const double id = i == k ? 1 : 0;
+            out.aa.m[i][k] = ja[0][i] * dja[0][k] + ja[1][i] * dja[1][k] +
+                             (f.chi * c - 0.5 * f.phi) * (m[i] * p[k] + p[i] * m[k]) +
+                             f.chi * c * mp * id - f.dchi * mp * p[i] * p[k];
+            out.bb.m[i][k] = jb[0][i] * djb[0][k] + jb[1][i] * djb[1][k] +
+                             (f.chi * c - f.phi) * mp * id -
+                             f.chi * (q[i] * rm[k] + rm[i] * q[k]) - f.dchi * mp * q[i] * q[k];
+            out.ab.m[i][k] = ja[0][i] * djb[0][k] + ja[1][i] * djb[1][k] +
+                             (f.chi * c - f.phi) * m[i] * q[k] - f.chi * p[i] * rm[k] -
+                             f.chi * mp * r[i][k] - f.dchi * mp * p[i] * q[k];
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at,
+                   std::vector<double>& gradient, std::vector<double>& hessian) {
+    const Rod& rod = *frozen.rod;
+    const int n = rod.segments(), size = 2 * n;
+    gradient.assign(size, 0);
+    hessian.assign(static_cast<std::size_t>(size) * size, 0);
+    const auto h = [&](int row, int col) -> double& {
+        return hessian[static_cast<std::size_t>(col) * size + row];
+    };
+
+    Vec3 a = frozen.clamp.tangent, side = frozen.clamp.side;
+    for (int j = 0; j < n; ++j) {
+        const JointBlocks jb = joint_blocks(at.joint[j], a, side, shape.tangent[j], shape.side[j]);
+        for (int i = 0; i < 2; ++i) {
+            gradient[2 * j + i] += jb.gb[i];
+            if (j > 0) gradient[2 * (j - 1) + i] += jb.ga[i];
+            for (int k = 0; k < 2; ++k) {
+                h(2 * j + i, 2 * j + k) += jb.bb.m[i][k];
+                if (j > 0) {
+                    h(2 * (j - 1) + i, 2 * (j - 1) + k) += jb.aa.m[i][k];
+                    h(2 * j + k, 2 * (j - 1) + i) += jb.ab.m[i][k];
+                }
+            }
+        }
+        a = shape.tangent[j];
+        side = shape.side[j];
+    }
+
+    // Forces and stiffness outboard of segment b, seen through the lever arms.
+    Vec3 slope{0};
+    Mat3 stiffness(0.0);
+    std::vector<Vec3> second(n);
+    for (int j = 0; j < n; ++j) second[j] = glm::cross(shape.tangent[j], shape.side[j]);
+    for (int b = n - 1; b >= 0; --b) {
+        slope += at.slope[b + 1];
+        stiffness += at.curvature[b + 1];
+        const double lb = rod.length[b];
+        const Vec3 tb[2] = {shape.side[b], second[b]};
+        const double straight = -lb * glm::dot(shape.tangent[b], slope);
+        for (int k = 0; k < 2; ++k) {
+            gradient[2 * b + k] += lb * glm::dot(tb[k], slope);
+            h(2 * b + k, 2 * b + k) += straight;
+            const Vec3 y = lb * (stiffness * tb[k]);
+            for (int c = 0; c <= b; ++c) {
+                const double lc = rod.length[c];
+                h(2 * b + k, 2 * c) += lc * glm::dot(shape.side[c], y);
+                h(2 * b + k, 2 * c + 1) += lc * glm::dot(second[c], y);
+            }
+        }
+    }
+}
+
+void advance(const Shape& from, std::span<const double> u, double scale, Shape& to) {
+    const std::size_t n = from.tangent.size();
+    to.tangent.resize(n);
+    to.side.resize(n);
+    for (std::size_t j = 0; j < n; ++j) {
+        const Vec3 &t = from.tangent[j], &s = from.side[j];
+        const Vec3 moved = glm::normalize(
+            t + scale * (u[2 * j] * s + u[2 * j + 1] * glm::cross(t, s)));
+        const Vec3 side = parallel_transport(s, t, moved);
+        to.tangent[j] = moved;
+        to.side[j] = glm::normalize(side - glm::dot(side, moved) * moved);
+    }
+}
+
+}  // namespace tuft::brush::rod

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <vector>
+
+#include "brush/rod.h"
+
+/// Inside of the rod solver: Π and its derivatives for frozen friction and multipliers.
+namespace tuft::brush::rod {
+
+/// Friction of one node, frozen during one Newton solve.
+struct Friction {
+    double cap = 0;          ///< μ N̂, force at slip
+    double stick = 0;        ///< force per displacement while sticking
+    Vec3 anchor{0};
+    Vec3 grain{0};           ///< unit, in the plane, along the hair towards the tip; zero: isotropic
+    double along = 1, across = 1;  ///< factors on displacement along the grain and across
+    double pore_cap = 0;     ///< force against being pushed along the grain
+};
+
+/// Everything that stays fixed during one Newton solve.
+struct Frozen {
+    const Rod* rod = nullptr;
+    const std::vector<JointMemory>* joint = nullptr;
+    std::span<const Obstacle> obstacles;
+    const Law* law = nullptr;
+    Load load;
+    Clamp clamp;
+    std::vector<Friction> friction;   ///< [n+1]
+    std::vector<double> multiplier;   ///< [n+1]
+};
+
+/// Unit tangent t and unit normal s of every segment; the pair (s, t × s) moves without spin.
+struct Shape {
+    std::vector<Vec3> tangent, side;
+};
+
+struct JointForce {
+    Vec2 bend{0};            ///< w: log of the outer tangent at the inner one
+    Vec2 moment{0};          ///< ∂ψ/∂w
+    double d00 = 0, d01 = 0, d11 = 0;  ///< ∂²ψ/∂w²
+    double energy = 0;
+};
+
+/// Value of Π and what its derivatives are made of. Reused between calls.
+struct Evaluation {
+    double value = 0;
+    std::vector<Vec3> node;          ///< [n+1]
+    std::vector<Vec3> slope;         ///< [n+1] ∂V/∂x_i of contact, friction and load
+    std::vector<Mat3> curvature;     ///< [n+1] ∂²V/∂x_i²
+    std::vector<double> normal;      ///< [n+1] normal force
+    std::vector<JointForce> joint;   ///< [n]
+};
+
+/// Sides by parallel transport from the clamp along the rod.
+std::vector<Vec3> transported_sides(const Clamp& clamp, const std::vector<Vec3>& tangents);
+
+/// The load's end moment in the frame of any inner segment (plane bending).
+Vec2 end_moment(const Frozen& frozen);
+
+/// Joint moments in `out` are less the end moment, whose work is part of Π.
+void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out);
+
+/// Gradient [2n] and lower half of the Hessian [2n × 2n, column major] over steps along
+/// (side, tangent × side) of every segment.
+void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at,
+                   std::vector<double>& gradient, std::vector<double>& hessian);
+
+/// The shape after steps u [2n] scaled by `scale`.
+void advance(const Shape& from, std::span<const double> u, double scale, Shape& to);
+
+/// Moment, stiffness and energy of joint j at bend w; what the stops do is in `memory`.
+JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const Vec2& w);
+
+/// Moves the stops of joint j to bend w; returns the energy lost by yielding.
+double commit_joint(const Rod& rod, int j, JointMemory& memory, const Vec2& w);
+
+/// Energy stored in the stops of joint j.
+double stored_energy(const Rod& rod, int j, const JointMemory& memory, const Vec2& w);
+
+/// Log map w of `outer` at the inner segment (a, side): θ along the direction of bending.
+Vec2 bend_of(const Vec3& a, const Vec3& side, const Vec3& outer);
+
+}  // namespace tuft::brush::rod

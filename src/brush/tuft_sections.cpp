@@ -1,0 +1,104 @@
+#include "brush/tuft_sections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tuft::brush {
+
+namespace {
+
+/// Unit tangents at the nodes, root first: bisectors of the two segments.
+std::vector<Vec3> node_tangents(const rod::Memory& m) {
+    const std::size_t n = m.tangent.size();
+    std::vector<Vec3> t(n + 1);
+    for (std::size_t i = 0; i <= n; ++i) {
+        const Vec3& inner = i == 0 ? m.clamp.tangent : m.tangent[i - 1];
+        const Vec3& outer = i == n ? m.tangent[n - 1] : m.tangent[i];
+        const Vec3 sum = inner + outer;
+        const double size = glm::length(sum);
+        t[i] = size > 1e-6 ? sum / size : outer;
+    }
+    return t;
+}
+
+struct Wide {
+    std::size_t node = 0;
+    Vec3 direction{1, 0, 0};
+};
+
+/// Where the wide axis is known best, and its direction there.
+Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
+    const Vec3 kept = in.rotation * in.spine.wide;
+    Wide best;
+    double most = 0;
+    for (std::size_t i = 1; i < t.size() && !in.obstacles.empty(); ++i) {
+        const Vec3 across = glm::cross(t[i], in.obstacles[i].normal);
+        const double weight = in.result.normal_force[i] * glm::length(across);
+        if (weight > most) {
+            most = weight;
+            best = {i, across};
+        }
+    }
+    if (most <= 0) {
+        Vec3 bend{0};
+        const rod::Memory& m = in.spine.memory;
+        for (std::size_t j = 0; j < m.tangent.size(); ++j) {
+            bend += glm::cross(j == 0 ? m.clamp.tangent : m.tangent[j - 1], m.tangent[j]);
+        }
+        if (glm::length(bend) > 0.02) best = {0, bend};
+        else best = {0, kept};
+    }
+    Vec3& e = best.direction;
+    e -= glm::dot(e, t[best.node]) * t[best.node];
+    if (glm::length(e) < 1e-9) e = glm::cross(t[best.node], Vec3{0.36, 0.48, 0.8});
+    e = glm::normalize(e);
+    Vec3 at_node = kept;
+    for (std::size_t i = 0; i < best.node; ++i) at_node = parallel_transport(at_node, t[i], t[i + 1]);
+    if (glm::dot(at_node, e) < 0) e = -e;
+    return best;
+}
+
+}  // namespace
+
+SectionOutput make_sections(const SectionInput& in) {
+    const Preset& p = in.preset;
+    const rod::Memory& m = in.spine.memory;
+    const std::size_t count = m.node.size();
+    const std::vector<Vec3> t = node_tangents(m);
+    const Wide wide = wide_axis(in, t);
+    std::vector<Vec3> e(count);
+    e[wide.node] = wide.direction;
+    for (std::size_t i = wide.node + 1; i < count; ++i) e[i] = parallel_transport(e[i - 1], t[i - 1], t[i]);
+    for (std::size_t i = wide.node; i-- > 0;) e[i] = parallel_transport(e[i + 1], t[i + 1], t[i]);
+
+    const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
+    const double force = glm::length(in.result.force) * p.stiffness / (p.length * p.length);
+    const double k_f = std::min(1.0, p.force_gain * force / p.force_limit);
+    SectionOutput out;
+    out.sections.resize(count);
+    out.half_height.resize(count);
+    double s = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double r = in.spine.rest_radius[i];
+        const double moment = i + 1 < count ? in.result.moment[i] : 0;
+        // The ferrule holds the hair round within about one radius of its mouth.
+        const double held = in.share > 1 ? 1 : 1 - std::exp(-s * p.length / p.radius);
+        const double widen = 1 + held * (p.flatten_moment * moment / yield + p.flatten_force * k_f);
+        Section& section = out.sections[count - 1 - i];
+        section.a = r * std::min(widen, p.flatten_max);
+        section.b = r > 0 ? r * r / section.a : 0;
+        section.centre = m.node[i] * p.length;
+        section.tangent = t[i];
+        section.e = glm::normalize(e[i] - glm::dot(e[i], t[i]) * t[i]);
+        section.m = glm::cross(section.e, t[i]);
+        section.moment = moment * p.stiffness / p.length;
+        section.pressure = in.result.normal_force[i] / in.spine.rod.weight[i] * p.stiffness /
+                           (p.length * p.length * p.length);
+        out.half_height[i] = section.b;
+        if (i + 1 < count) s += in.spine.rod.length[i];
+    }
+    out.wide = glm::conjugate(in.rotation) * e[0];
+    return out;
+}
+
+}  // namespace tuft::brush
