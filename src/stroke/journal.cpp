@@ -1,5 +1,6 @@
 #include "stroke/journal.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -8,7 +9,7 @@ namespace tuft::stroke {
 
 std::string to_json(const Settings& s) {
     return nlohmann::json{{"spine", s.spine},     {"footprint", s.footprint}, {"contact", s.contact},
-                          {"spacing", s.spacing}, {"dip", s.dip}}
+                          {"spacing", s.spacing}, {"lead", s.lead}}
         .dump();
 }
 
@@ -20,7 +21,7 @@ Settings settings_from_json(const std::string& json) {
         s.footprint = j.value("footprint", s.footprint);
         s.contact = j.value("contact", s.contact);
         s.spacing = j.value("spacing", s.spacing);
-        s.dip = j.value("dip", s.dip);
+        s.lead = j.value("lead", s.lead);
         if (!(s.spacing > 0 && s.spacing < 1000)) throw Error("spacing is out of range");
         return s;
     } catch (const nlohmann::json::exception&) {

@@ -15,7 +15,7 @@ struct Settings {
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";      ///< exact | vertices
     double spacing = 1.0;               ///< texels between two stamps
-    bool dip = true;                    ///< dip the brush before this stroke
+    bool lead = true;                   ///< flat traces: the hand runs ahead so that the ink lies on them
 
     bool operator==(const Settings&) const = default;
 };

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/sweep.h"
 #include "contact/contact.h"
 #include "footprint/outline.h"
 #include "ink/reservoir.h"
-#include "stroke/placement.h"
 #include "stroke/resample.h"
 #include "stroke/stamper.h"
 
 namespace tuft::stroke {
 namespace {
 
-constexpr std::size_t kPosesPerReport = 64;
+constexpr std::size_t kPosesPerReport = 16;
 
 footprint::StampOptions stamp_options(const Settings& settings) {
     footprint::StampOptions o;
@@ -21,12 +21,22 @@ footprint::StampOptions stamp_options(const Settings& settings) {
     return o;
 }
 
-// Half of the width across the motion, from the picture's box: near enough for the
-// ink's supply, which only asks how broad the brush paints.
 double footprint_area(const footprint::Footprint& f) {
     std::size_t sum = 0;
     for (const std::uint8_t c : f.coverage) sum += c;
     return static_cast<double>(sum) / 255.0 * f.cell * f.cell;
+}
+
+// How far the middle of the ink lies behind the hand at each depth: half of the contact
+// patch and what it is behind the foot of the holder.
+std::vector<Lead> drag_lead(const brush::Preset& preset) {
+    std::vector<double> depths;
+    for (const double part : {0.05, 0.15, 0.3, 0.5, 0.75, 1.0})
+        depths.push_back(part * working_depth(preset));
+    std::vector<Lead> lead{{0, 0}};
+    for (const brush::SweepRow& row : brush::sweep_depth(preset, depths))
+        lead.push_back({row.depth, std::max(0.0, row.offset)});
+    return lead;
 }
 
 }  // namespace
@@ -42,7 +52,6 @@ struct Painting::Hand {
     contact::Options contact_options;
     Resampler resampler;
     Stamper stamper;
-    Placer placer;
     double step = 0, cell = 0;
     std::vector<brush::Pose> poses;
     StrokeReport report;
@@ -60,13 +69,18 @@ struct Painting::Hand {
           mix(ink::mix_of(canvas, i)),
           resampler({.step = step_, .lever = preset.length}),
           stamper(model, canvas, stamp_options(stroke.settings)),
-          placer(*model.mesh, *model.query, stroke.trace, preset),
           step(step_),
           cell(0.5 * texel) {
         contact_options.method = stroke.settings.contact == "vertices" ? contact::Method::vertices
                                                                        : contact::Method::exact;
         ink::dip(reservoir, mix);
         report.nearest = std::numeric_limits<double>::infinity();
+    }
+
+    void flush() {
+        const double given = stamper.flush();
+        ink::take(reservoir, std::min(given, reservoir.remaining()));
+        report.ink_given += given;
     }
 };
 
@@ -100,29 +114,28 @@ void Painting::begin(Stroke stroke) {
     brush::Preset preset = brush(stroke.trace.brush);
     if (stroke.settings.spine == "table") preset.spine = brush::SpineMethod::table;
     const double texel = model_->texels.texel_size;
-    // A thin brush needs no finer steps than a tenth of its width.
     const double spacing = stroke.settings.spacing * texel;
     hand_ = std::make_unique<Hand>(std::move(stroke), preset, ink(stroke.trace.ink), *model_,
                                    canvas_, spacing, texel);
 }
 
-void Painting::extend(std::span<const TraceSample> samples) {
-    Hand& h = *hand_;
-    for (const TraceSample& sample : samples) {
-        h.stroke.trace.samples.push_back(sample);
-        ++h.report.samples;
-        if (const auto pose = h.placer.pose(sample)) h.resampler.push(*pose, h.poses);
+void Painting::extend(std::span<const brush::Pose> poses) {
+    for (const brush::Pose& pose : poses)
+        hand_->stroke.trace.samples.push_back(
+            {.time = pose.time, .position = pose.position, .rotation = pose.rotation});
+    advance(poses);
+}
+
+void Painting::advance(std::span<const brush::Pose> poses) {
+    for (const brush::Pose& pose : poses) {
+        ++hand_->report.samples;
+        hand_->resampler.push(pose, hand_->poses);
     }
     draw_poses();
 }
 
 void Painting::draw_poses() {
     Hand& h = *hand_;
-    const auto flush = [&] {
-        const double given = h.stamper.flush();
-        ink::take(h.reservoir, std::min(given, h.reservoir.remaining()));
-        h.report.ink_given += given;
-    };
     for (const brush::Pose& pose : h.poses) {
         h.tuft.ink_left = h.reservoir.fullness();
         const double dt = h.moved ? pose.time - h.last_time : 0.0;
@@ -131,8 +144,7 @@ void Painting::draw_poses() {
         h.last_time = pose.time;
         h.moved = true;
         h.state = contact.tuft;
-        if (contact.triangle != kNone) h.report.nearest = std::min(h.report.nearest, contact.distance);
-        else h.report.nearest = std::min(h.report.nearest, contact.distance);
+        h.report.nearest = std::min(h.report.nearest, contact.distance);
         if (options_.record_forces)
             h.report.forces.push_back({pose, contact.tuft.force, contact.tuft.root_moment});
         if (!contact.tuft.touching || contact.triangle == kNone) {
@@ -166,25 +178,30 @@ void Painting::draw_poses() {
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, substrate_);
         stamp.ink.capacity = substrate_.capacity;
         stamp.ds = h.step;
-        if (h.stamper.add(std::move(stamp))) flush();
+        if (h.stamper.add(std::move(stamp))) h.flush();
     }
     h.poses.clear();
 }
 
-StrokeReport Painting::end() {
+// Ends the stroke in work without a word to the journal.
+StrokeReport Painting::finish_hand() {
     Hand& h = *hand_;
     h.resampler.finish(h.poses);
     draw_poses();
-    const double given = h.stamper.flush();
-    ink::take(h.reservoir, std::min(given, h.reservoir.remaining()));
-    h.report.ink_given += given;
+    h.flush();
     h.report.ink_left = h.reservoir.remaining();
     if (h.report.touched()) h.report.nearest = 0;
-    const Stroke& kept = journal_.append(std::move(h.stroke));
-    h.report.stroke_id = kept.id;
-    keep_undo(kept.id, h.stamper.take_before());
+    keep_undo(h.stroke.id, h.stamper.take_before());
     StrokeReport report = std::move(h.report);
     hand_.reset();
+    return report;
+}
+
+StrokeReport Painting::end() {
+    Stroke stroke = hand_->stroke;
+    StrokeReport report = finish_hand();
+    report.stroke_id = journal_.append(std::move(stroke)).id;
+    undo_.back().stroke_id = report.stroke_id;
     return report;
 }
 
@@ -194,45 +211,56 @@ void Painting::cancel() {
     hand_.reset();
 }
 
-StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
-    const std::vector<TraceSample> samples = std::move(stroke.trace.samples);
-    stroke.trace.samples.clear();
-    if (samples.empty()) throw Error("a stroke without samples cannot be painted");
-    begin(std::move(stroke));
+std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
+    if (!stroke.trace.flat) return spatial_poses(stroke.trace);
+    const brush::Preset& preset = brush(stroke.trace.brush);
+    HoldOptions options = hold_options(preset);
+    if (stroke.settings.lead) {
+        auto [lead, is_new] = leads_.try_emplace(preset.name);
+        if (is_new) lead->second = drag_lead(preset);
+        options.lead = lead->second;
+    }
+    return hold(lay(*model_->query, stroke.trace).samples, options);
+}
+
+StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
+    if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
+    const std::vector<brush::Pose> poses = poses_of(stroke);
+    begin(stroke);
     try {
-        for (std::size_t i = 0; i < samples.size(); i += kPosesPerReport) {
-            const std::size_t n = std::min(kPosesPerReport, samples.size() - i);
-            extend(std::span(samples).subspan(i, n));
-            tuft::report(progress, "painting", static_cast<double>(i + n) / static_cast<double>(samples.size()));
+        for (std::size_t i = 0; i < poses.size(); i += kPosesPerReport) {
+            const std::size_t n = std::min(kPosesPerReport, poses.size() - i);
+            advance(std::span(poses).subspan(i, n));
+            tuft::report(progress, "painting",
+                         static_cast<double>(i + n) / static_cast<double>(poses.size()));
         }
+        return finish_hand();
     } catch (...) {
         cancel();
         throw;
     }
-    return end();
+}
+
+StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
+    StrokeReport report = draw(stroke, progress);
+    report.stroke_id = journal_.append(std::move(stroke)).id;
+    undo_.back().stroke_id = report.stroke_id;
+    return report;
 }
 
 const brush::TuftState* Painting::tuft() const { return hand_ ? &hand_->state : nullptr; }
 
 std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const ProgressFn& progress) {
     std::vector<StrokeReport> reports;
-    double done = 0;
     const double all = std::max<double>(1.0, static_cast<double>(strokes.size()));
-    for (Stroke& stroke : strokes) {
-        const std::uint64_t id = stroke.id;
-        if (stroke.hidden) {
-            journal_.restore(std::move(stroke));
-        } else {
-            reports.push_back(paint(std::move(stroke), [&](std::string_view phase, double f) {
-                return !progress || progress(phase, (done + f) / all);
+    for (std::size_t i = 0; i < strokes.size(); ++i) {
+        if (!strokes[i].hidden) {
+            reports.push_back(draw(strokes[i], [&](std::string_view phase, double fraction) {
+                return !progress || progress(phase, (static_cast<double>(i) + fraction) / all);
             }));
-            if (id != 0) {
-                journal_.renumber_last(id);
-                reports.back().stroke_id = id;
-                if (!undo_.empty()) undo_.back().stroke_id = id;
-            }
+            reports.back().stroke_id = strokes[i].id;
         }
-        done += 1;
+        journal_.restore(std::move(strokes[i]));
     }
     return reports;
 }
@@ -252,45 +280,33 @@ void Painting::keep_undo(std::uint64_t id, std::vector<ink::TileSnapshot> before
 bool Painting::undo() {
     cancel();
     if (!journal_.can_undo()) return false;
-    const Stroke& last = journal_.strokes().back();
-    const std::uint64_t id = last.id;
-    const bool hidden = last.hidden;
+    const std::uint64_t id = journal_.strokes().back().id;
+    const bool hidden = journal_.strokes().back().hidden;
     journal_.undo();
     if (hidden) return true;
-    if (!undo_.empty() && undo_.back().stroke_id == id) {
-        for (const ink::TileSnapshot& tile : undo_.back().before) canvas_.restore(tile);
-        undo_bytes_ -= undo_.back().bytes;
-        undo_.pop_back();
-    } else {
+    if (undo_.empty() || undo_.back().stroke_id != id) {
         repaint_all();
+        return true;
     }
+    for (const ink::TileSnapshot& tile : undo_.back().before) canvas_.restore(tile);
+    undo_bytes_ -= undo_.back().bytes;
+    undo_.pop_back();
     return true;
 }
 
 bool Painting::redo() {
     cancel();
     if (!journal_.redo()) return false;
-    Stroke stroke = journal_.take_last();
-    if (stroke.hidden) {
-        journal_.restore(std::move(stroke));
-        return true;
-    }
-    const std::uint64_t id = stroke.id;
-    journal_.hold_redo([&] { paint(std::move(stroke)); });
-    journal_.renumber_last(id);
-    if (!undo_.empty()) undo_.back().stroke_id = id;
+    if (const Stroke& stroke = journal_.strokes().back(); !stroke.hidden) draw(stroke, {});
     return true;
 }
 
 void Painting::repaint_all() {
-    std::vector<Stroke> strokes = journal_.strokes();
-    Journal undone = journal_;
     canvas_.clear();
     undo_.clear();
     undo_bytes_ = 0;
-    journal_ = Journal();
-    replay(std::move(strokes));
-    journal_.adopt_undone(std::move(undone));
+    for (const Stroke& stroke : journal_.strokes())
+        if (!stroke.hidden) draw(stroke, {});
 }
 
 }  // namespace tuft::stroke

@@ -13,6 +13,7 @@
 #include "ink/pigments.h"
 #include "stroke/journal.h"
 #include "stroke/model.h"
+#include "stroke/placement.h"
 
 namespace tuft::stroke {
 
@@ -64,19 +65,22 @@ class Painting {
     /// that names an unknown brush or ink or has no samples, before anything is changed.
     StrokeReport paint(Stroke stroke, const ProgressFn& progress = {});
 
-    /// The same in pieces: `begin`, any number of `extend`, `end`. `stroke` brings the
-    /// header; its samples may be empty. `cancel` takes the stroke back instead.
+    /// The same in pieces for poses in space: `begin`, any number of `extend`, `end`.
+    /// `stroke` brings the header; its samples may be empty. `cancel` takes it back instead.
     void begin(Stroke stroke);
-    void extend(std::span<const TraceSample> samples);
+    void extend(std::span<const brush::Pose> poses);
     StrokeReport end();
     void cancel();
     bool in_stroke() const { return hand_ != nullptr; }
     /// The bent tuft at the last sample, for drawing it; empty between strokes.
     const brush::TuftState* tuft() const;
 
-    /// Loads a stored journal and paints it.
+    /// Takes over a stored journal, ids kept, and paints what is not hidden.
     std::vector<StrokeReport> replay(std::vector<Stroke> strokes, const ProgressFn& progress = {});
 
+    /// Takes the last stroke back, or paints the last one taken back again; false when
+    /// there is none. Costs a copy of the tiles it touched, or a replay of everything
+    /// once `undo_bytes` are used up.
     bool undo();
     bool redo();
 
@@ -95,8 +99,13 @@ class Painting {
         std::size_t bytes = 0;
     };
 
+    StrokeReport draw(const Stroke& stroke, const ProgressFn& progress);
+    void advance(std::span<const brush::Pose> poses);
+    void draw_poses();
+    StrokeReport finish_hand();
     void keep_undo(std::uint64_t id, std::vector<ink::TileSnapshot> before);
     void repaint_all();
+    std::vector<brush::Pose> poses_of(const Stroke& stroke);
 
     const Model* model_;
     PaintingOptions options_;
@@ -105,6 +114,7 @@ class Painting {
     Journal journal_;
     std::map<std::string, brush::Preset> brushes_;
     std::map<std::string, ink::Ink> inks_;
+    std::map<std::string, std::vector<Lead>> leads_;  ///< by brush
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
     std::unique_ptr<Hand> hand_;
