@@ -33,7 +33,7 @@ struct AtlasMap {
 
 struct ComposeOptions {
     std::uint32_t gutter = 4;  ///< texels round the charts that are filled too
-    ProgressFn progress;
+    ProgressFn progress = {};
 };
 
 /// Base colour, sRGB-encoded 8 bit (3 channels). Texels far from any chart have the

@@ -30,7 +30,7 @@ struct Pigment {
     Bands s{};               ///< scattering per film unit
     float height = 2.5e-6f;  ///< metres left by one film unit when dry
     float roughness = 0.5f;  ///< glTF perceptual roughness of the dry film
-    std::string source;      ///< where K and S come from
+    std::string source = {}; ///< where K and S come from
 };
 
 struct InkPart {

@@ -1,0 +1,158 @@
+#include "ink/composite.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "ink/kubelka_munk.h"
+
+namespace tuft::ink {
+namespace {
+
+constexpr int kN = atlas::kTileTexels;
+
+/// A page of `size` texels with a disc-shaped chart in its middle.
+atlas::TexelMap disc_map(std::uint32_t size, double radius) {
+    atlas::TexelMap map;
+    map.size = size;
+    map.tiles_per_side = (size + 15) / 16;
+    map.texel_size = 1e-4;
+    map.slot_of_tile.assign(std::size_t{map.tiles_per_side} * map.tiles_per_side, kNone);
+    for (std::uint32_t tile = 0; tile < map.slot_of_tile.size(); ++tile) {
+        auto made = atlas::TexelTile{};
+        bool any = false;
+        for (int t = 0; t < kN; ++t) {
+            const double x = tile % map.tiles_per_side * 16 + t % 16 + 0.5 - size / 2.0;
+            const double y = tile / map.tiles_per_side * 16 + t / 16 + 0.5 - size / 2.0;
+            const bool inside = x * x + y * y < radius * radius;
+            made.piece[t] = inside ? 0 : atlas::kNoPiece;
+            made.area[t] = inside ? 1e-8f : 0.0f;
+            any |= inside;
+        }
+        if (!any) continue;
+        map.slot_of_tile[tile] = static_cast<std::uint32_t>(map.tiles.size());
+        map.tile_of_slot.push_back(tile);
+        map.tiles.push_back(made);
+    }
+    return map;
+}
+
+TEST(Composite, AgreesWithTheScalarFormulas) {
+    Canvas canvas(1);
+    for (const char* name : {"carbon", "shell-white", "gamboge"})
+        canvas.add_pigment(load_ink(name).parts[0].pigment);
+    Pigment clear{.name = "clear", .k = {0, 0, 0}, .s = {0, 1e-4f, 300}};
+    canvas.add_pigment(clear);
+    for (int p = 0; p < 4; ++p)
+        for (int t = 0; t < kN; ++t)  // from 1e-7 to 10 film units, and some exact zeros
+            canvas.touch(0, p)[t] =
+                (t + p) % 7 == 0 ? 0.0f : static_cast<float>(std::pow(10, 8 * uniform(p, t) - 7));
+    const Substrate porcelain = load_substrate("porcelain");
+    const TileLook look = look_of_tile(canvas, 0, porcelain);
+    for (int t = 0; t < kN; ++t) {
+        double height = 0;
+        for (int b = 0; b < kBands; ++b) {
+            double k = 0, s = 0;
+            for (int p = 0; p < 4; ++p) {
+                const double w = (*canvas.plane(0, p))[t];
+                k += w * canvas.pigments()[p].k[b];
+                s += w * canvas.pigments()[p].s[b];
+            }
+            // Single precision through a dozen operations.
+            EXPECT_NEAR(look.colour[b][t], over(layer(k, s, 1), porcelain.reflectance[b]), 2e-6) << t;
+        }
+        for (int p = 0; p < 4; ++p) height += (*canvas.plane(0, p))[t] * canvas.pigments()[p].height * 1e6;
+        EXPECT_NEAR(look.height[t], height, 1e-5 * height);
+        EXPECT_GE(look.roughness[t], 0);
+        EXPECT_LE(look.roughness[t], 1);
+    }
+}
+
+TEST(Composite, AnEmptyTileLooksLikeTheSubstrate) {
+    Canvas canvas(1);
+    canvas.add_pigment(load_ink("carbon").parts[0].pigment);
+    canvas.touch(0, 0);
+    const Substrate clay = load_substrate("clay");
+    const TileLook look = look_of_tile(canvas, 0, clay);
+    for (int b = 0; b < kBands; ++b) EXPECT_FLOAT_EQ(look.colour[b][9], clay.reflectance[b]);
+    EXPECT_EQ(look.height[9], 0);
+    EXPECT_FLOAT_EQ(look.roughness[9], clay.roughness);
+}
+
+TEST(Composite, MoreInkIsNeverLighter) {
+    Canvas canvas(1);
+    canvas.add_pigment(load_ink("carbon").parts[0].pigment);
+    for (int t = 0; t < kN; ++t) canvas.touch(0, 0)[t] = 0.02f * static_cast<float>(t);
+    const TileLook look = look_of_tile(canvas, 0, load_substrate("porcelain"));
+    for (int t = 1; t < kN; ++t) EXPECT_LE(look.colour[1][t], look.colour[1][t - 1] + 1e-7f);
+}
+
+TEST(Composite, MapsHaveTheChartsTheirGutterAndTheBackground) {
+    const atlas::TexelMap map = disc_map(100, 30);
+    Canvas canvas(map.n_slots());
+    canvas.add_pigment(load_ink("cinnabar").parts[0].pigment);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (int t = 0; t < kN; ++t)
+            if (map.tiles[slot].piece[t] != atlas::kNoPiece) canvas.touch(slot, 0)[t] = 3;
+    const Substrate porcelain = load_substrate("porcelain");
+    const AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, porcelain, {.gutter = 4});
+    ASSERT_EQ(image.texels.size(), 100u * 100u * 3u);
+    const TileLook look = look_of_tile(canvas, map.slot_of_tile[3 * map.tiles_per_side + 3], porcelain);
+    for (int y = 0; y < 100; ++y)
+        for (int x = 0; x < 100; ++x) {
+            const double r = std::hypot(x + 0.5 - 50, y + 0.5 - 50);
+            const int red = image.texels[(y * 100 + x) * 3 + 1];
+            if (r < 33) {
+                EXPECT_NEAR(red, 255 * srgb_encode(look.colour[1][0]), 1) << x << " " << y;
+            } else if (r > 35) {
+                EXPECT_NEAR(red, 255 * srgb_encode(porcelain.reflectance[1]), 1) << x << " " << y;
+            }
+        }
+}
+
+TEST(Composite, RefreshingDirtyTilesEqualsComposingAnew) {
+    const atlas::TexelMap map = disc_map(200, 80);
+    Canvas canvas(map.n_slots());
+    canvas.add_pigment(load_ink("indigo").parts[0].pigment);
+    const Substrate paper = load_substrate("rice-paper");
+    AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, paper);
+    for (std::uint32_t slot = 5; slot < 40; ++slot)
+        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
+    const TileSnapshot before = canvas.snapshot(2);
+    canvas.touch(2, 0).fill(1);
+    refresh_srgb8(image, canvas.take_dirty(), canvas, map, paper);
+    canvas.restore(before);  // undo: an empty tile shows the substrate again
+    refresh_srgb8(image, canvas.take_dirty(), canvas, map, paper);
+    EXPECT_EQ(image.texels, compose_srgb8(canvas, map, paper).texels);
+}
+
+TEST(Composite, ThreadsDoNotChangeTheMaps) {
+    const atlas::TexelMap map = disc_map(300, 140);
+    Canvas canvas(map.n_slots());
+    canvas.add_pigment(load_ink("cobalt").parts[0].pigment);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
+    const Substrate bisque = load_substrate("bisque");
+    set_thread_count(1);
+    const auto one = compose_linear(canvas, map, bisque);
+    const auto orm = compose_orm8(canvas, map, bisque);
+    set_thread_count(4);
+    EXPECT_EQ(compose_linear(canvas, map, bisque).texels, one.texels);
+    EXPECT_EQ(compose_orm8(canvas, map, bisque).texels, orm.texels);
+    set_thread_count(0);
+    EXPECT_EQ(orm.texels[0], 255) << "no occlusion";
+    const AtlasMap<float> height = compose_height(canvas, map);
+    const Plane& w = *canvas.plane(map.slot_of_tile[5 * map.tiles_per_side + 5], 0);
+    EXPECT_NEAR(height.texels[(5 * 16 + 3) * 300 + 5 * 16 + 2],
+                w[3 * 16 + 2] * canvas.pigments()[0].height * 1e6f, 1e-6);
+}
+
+TEST(Srgb, DecodingUndoesEncoding) {
+    for (int i = 0; i <= 255; ++i)
+        EXPECT_NEAR(255 * srgb_encode(srgb_decode(static_cast<float>(i) / 255)), i, 1e-3);
+}
+
+}  // namespace
+}  // namespace tuft::ink
