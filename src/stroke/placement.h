@@ -60,7 +60,7 @@ struct Walk {
 Walk walk(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& start, const Vec3& direction,
           double length);
 
-/// Length of the hand's lead at one depth.
+/// How far the hand runs ahead of the ink at one depth.
 struct Lead {
     double depth = 0;          ///< metres, of the unbent tip below the surface
     double length = 0;         ///< metres
@@ -71,9 +71,7 @@ struct HoldOptions {
     double working_depth = 0.008;   ///< metres of the unbent tip below the surface at pressure 1
     double hover = 0.002;           ///< metres of the tip above the surface when not pressed
     double max_tilt = 1.2;          ///< radians; more lean than this is cut
-    /// A dragged tuft paints behind the hand. With a table, rising in depth, the ferrule runs
-    /// ahead of the trace by the length for its depth, so that the ink lies on the trace.
-    std::vector<Lead> lead;
+    std::vector<Lead> lead;         ///< rising in depth, linear between, constant outside; empty: none
     double lead_turn = 0.0015;      ///< metres of travel in which the lead follows a turn
 };
 
@@ -83,14 +81,24 @@ double working_depth(const brush::Preset& preset);
 /// Options for a brush, without a lead.
 HoldOptions hold_options(const brush::Preset& preset);
 
+/// A dragged tuft paints behind the hand. Moves the samples of a flat trace ahead along the
+/// path by the lead for their depth, so that the ink will lie where the trace was. The
+/// direction is that of a point dragged behind the trace on a string of `lead_turn` (a
+/// tractrix), so it knows no future and can run while a pen is moving; where the path
+/// reverses, the lead passes through zero.
+Trace lead_hand(Trace trace, const HoldOptions& options);
+
 /// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the
 /// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
 /// pressure · working depth below the sample (hover above it where the pressure is 0).
-/// The lead's direction is that of a point dragged behind the trace on a string of
-/// `lead_turn`, so it knows no future and can run while a pen is moving.
 std::vector<brush::Pose> hold(std::span<const LaidSample> samples, const HoldOptions& options);
 
-/// Poses of a trace in space (not flat): its samples as they are.
-std::vector<brush::Pose> spatial_poses(const Trace& trace);
+/// The whole way for any trace: lead, lay, hold; or the poses as they are for one in space
+/// (then `laid` is empty).
+struct HandPath {
+    LaidTrace laid;
+    std::vector<brush::Pose> poses;
+};
+HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HoldOptions& options);
 
 }  // namespace tuft::stroke
