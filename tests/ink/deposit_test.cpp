@@ -206,7 +206,7 @@ TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
     const Mix mix = mix_of(canvas, ink);
     Reservoir tuft = make_reservoir(0.0005);
     const double start = dip(tuft, mix);
-    const Texels area = random_texels(8, 2e-8, 4e-8);  // 0.17 mm texels: 64 tiles are 5 cm²
+    const Texels area = random_texels(8, 2e-6, 4e-6);  // coarse: much surface, little ink
     for (int i = 0; i < 1500; ++i) {
         const StampContact contact{.moment_factor = 0.5, .width = 5e-3, .area = 2.5e-5};
         const DepositParams params = stamp_deposit(tuft, ink, contact, substrate);
