@@ -16,13 +16,13 @@ namespace tuft::footprint {
 /// lo + ((i + 0.5) cell, (j + 0.5) cell); coverage is the part of the cell
 /// that the tuft touches, in [0, 1], zero along the border cells.
 struct Footprint {
-    Frame frame;                 ///< world; n out of the surface, origin on it
-    std::uint32_t triangle = kNone;  ///< of the mesh under the origin
-    Vec2 lo{0};                  ///< metres, lower corner of cell (0, 0)
-    double cell = 0;             ///< metres
-    int width = 0, height = 0;   ///< cells
+    Frame frame;                         ///< world; n out of the surface, origin on it
+    std::uint32_t triangle = kNone;      ///< of the mesh under the origin
+    Vec2 lo{0};                          ///< metres, lower corner of cell (0, 0)
+    double cell = 0;                     ///< metres
+    int width = 0, height = 0;           ///< cells
     std::vector<std::uint8_t> coverage;  ///< [width * height], 255 = 1
-    double radius = 0;           ///< metres: no coverage further than this from the origin
+    double radius = 0;                   ///< metres: no coverage further than this from the origin
 
     bool empty() const { return coverage.empty(); }
 };

@@ -86,7 +86,7 @@ struct StampJobs {
 struct PlanScratch {
     struct Node {
         std::uint32_t epoch = 0;
-        bool final = false;
+        std::uint8_t state = 0;
         float u = 0, v = 0, c = 1, s = 0, key = 0;
     };
     std::uint32_t epoch = 0;

@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "footprint/outline.h"
+
+namespace tuft::footprint {
+namespace {
+
+constexpr int kMaxCells = 4096;  // along a side
+
+/// Signed area to the right of edges, per cell, and height they cross, per cell: summed
+/// from the left they give the covered part of each cell.
+struct Coverage {
+    int width, height;
+    std::vector<float> right, crossed;
+
+    Coverage(int w, int h)
+        : width(w), height(h), right(std::size_t(w) * h, 0), crossed(std::size_t(w) * h, 0) {}
+
+    /// Part of an edge inside one cell.
+    void add_in_cell(int i, int j, double x0, double x1, double dy) {
+        const std::size_t cell = static_cast<std::size_t>(j) * width + i;
+        right[cell] += static_cast<float>(dy * (1 - (0.5 * (x0 + x1) - i)));
+        crossed[cell] += static_cast<float>(dy);
+    }
+
+    /// Part of an edge inside one row of cells.
+    void add_in_row(int j, double x0, double x1, double dy) {
+        const int first = static_cast<int>(std::floor(x0)), last = static_cast<int>(std::floor(x1));
+        if (first == last) {
+            add_in_cell(first, j, x0, x1, dy);
+            return;
+        }
+        const double per_x = dy / (x1 - x0);
+        const int step = last > first ? 1 : -1;
+        double x = x0;
+        for (int i = first; i != last; i += step) {
+            const double border = step > 0 ? i + 1 : i;
+            add_in_cell(i, j, x, border, per_x * (border - x));
+            x = border;
+        }
+        add_in_cell(last, j, x, x1, per_x * (x1 - x));
+    }
+
+    void add(const Vec2& p, const Vec2& q) {
+        if (p.y == q.y) return;
+        const bool up = q.y > p.y;
+        const Vec2 &lo = up ? p : q, &hi = up ? q : p;
+        const double slope = (hi.x - lo.x) / (hi.y - lo.y);
+        double y = lo.y, x = lo.x;
+        for (int j = static_cast<int>(std::floor(lo.y)); y < hi.y; ++j) {
+            const double next = std::min(hi.y, double(j) + 1);
+            const double x_next = next == hi.y ? hi.x : lo.x + slope * (next - lo.y);
+            add_in_row(j, x, x_next, up ? next - y : y - next);
+            y = next;
+            x = x_next;
+        }
+    }
+
+    /// Cells of one row; counter-clockwise outlines cover positively.
+    void resolve(int j, std::uint8_t* out) const {
+        float sum = 0;
+        for (int i = 0; i < width; ++i) {
+            const std::size_t cell = static_cast<std::size_t>(j) * width + i;
+            const float covered = std::abs(sum + right[cell]);
+            sum += crossed[cell];
+            out[i] = static_cast<std::uint8_t>(std::min(covered, 1.0f) * 255.0f + 0.5f);
+        }
+    }
+};
+
+}  // namespace
+
+Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle,
+                    double cell) {
+    Footprint result;
+    result.frame = frame;
+    result.triangle = triangle;
+    result.cell = cell;
+    std::vector<std::vector<Vec2>> curves;
+    Vec2 lo{1e9}, hi{-1e9};
+    for (const Outline& o : outlines) {
+        curves.push_back(curve_points(o));
+        for (const Vec2& p : curves.back()) {
+            lo = glm::min(lo, p);
+            hi = glm::max(hi, p);
+            result.radius = std::max(result.radius, glm::length(p));
+        }
+    }
+    if (!(lo.x <= hi.x && lo.y <= hi.y)) return result;
+    const Vec2 first = glm::floor(lo / cell) - 1.0, last = glm::floor(hi / cell) + 2.0;
+    const Vec2 size = last - first;
+    if (!(size.x <= kMaxCells && size.y <= kMaxCells))
+        throw Error("a footprint " + std::to_string(1e3 * std::max(hi.x - lo.x, hi.y - lo.y)) +
+                    " mm wide does not fit into " + std::to_string(kMaxCells) +
+                    " texels: use a larger texel size or a smaller brush");
+    result.lo = first * cell;
+    result.width = static_cast<int>(size.x);
+    result.height = static_cast<int>(size.y);
+    result.radius += 2 * cell;
+    Coverage coverage(result.width, result.height);
+    for (const auto& curve : curves) {
+        for (std::size_t k = 0; k < curve.size(); ++k)
+            coverage.add(curve[k] / cell - first, curve[(k + 1) % curve.size()] / cell - first);
+    }
+    result.coverage.resize(static_cast<std::size_t>(result.width) * result.height);
+    for (int j = 0; j < result.height; ++j)
+        coverage.resolve(j, result.coverage.data() + static_cast<std::size_t>(j) * result.width);
+    return result;
+}
+
+}  // namespace tuft::footprint

@@ -1,0 +1,276 @@
+#include "footprint/stamp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "atlas/log_map.h"
+
+namespace tuft::footprint {
+namespace {
+
+constexpr double kFacingAway = atlas::kLogMapMinCos;  // normals beyond this are never touched
+constexpr float kSlack = 1.1f;  // of a piece's radius: the log map stretches it a little
+
+enum : std::uint8_t { kOpen, kFinal, kOutside };
+
+/// What the walk needs to know of a stamp.
+struct Reach {
+    Vec3f normal{0};
+    float radius = 0;    ///< metres, motion included
+    Vec2f lo{0}, hi{0};  ///< of the picture, motion included, metres
+};
+
+struct Walk {
+    const atlas::PieceGraph& graph;
+    PlanScratch& scratch;
+    Reach reach;
+
+    PlanScratch::Node& node(std::uint32_t piece) {
+        PlanScratch::Node& n = scratch.nodes[piece];
+        if (n.epoch != scratch.epoch) {
+            n = {};
+            n.epoch = scratch.epoch;
+            n.key = std::numeric_limits<float>::infinity();
+        }
+        return n;
+    }
+
+    void push(std::uint32_t piece, float key) {
+        PlanScratch::Node& n = node(piece);
+        if (n.state != kOpen || key >= n.key) return;
+        n.key = key;
+        scratch.heap.emplace_back(key, piece);
+        std::push_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
+    }
+
+    /// Place of a piece: mean of what its settled neighbours say, those in radial direction
+    /// and near by first.
+    void place(std::uint32_t piece, PlanScratch::Node& n) {
+        float total = 0, u = 0, v = 0, c = 0, s = 0;
+        for (std::uint32_t k = graph.edge_start[piece]; k < graph.edge_start[piece + 1]; ++k) {
+            const atlas::PieceEdge& e = graph.edges[k];
+            const PlanScratch::Node& from = scratch.nodes[e.to];
+            if (from.epoch != scratch.epoch || from.state != kFinal) continue;
+            const float ci = from.c * e.c + from.s * e.s, si = from.s * e.c - from.c * e.s;
+            const float hu = ci * e.hop_u - si * e.hop_v, hv = si * e.hop_u + ci * e.hop_v;
+            const float pu = from.u - hu, pv = from.v - hv;
+            const float hh = hu * hu + hv * hv, pp = pu * pu + pv * pv, hp = hu * pu + hv * pv;
+            const float cos2 = hh * pp > 0 ? hp * hp / (hh * pp) : 1.0f;
+            const float w = (cos2 * cos2 + 1e-4f) / std::sqrt(hh + 1e-20f);
+            total += w;
+            u += w * pu;
+            v += w * pv;
+            c += w * ci;
+            s += w * si;
+        }
+        const float length = std::sqrt(c * c + s * s);
+        if (!(total > 0) || !(length > 0)) return;
+        n.u = u / total;
+        n.v = v / total;
+        n.c = c / length;
+        n.s = s / length;
+    }
+
+    bool faces_away(const atlas::Piece& piece) const {
+        const float c = glm::dot(piece.normal, reach.normal);
+        if (c > kFacingAway) return false;
+        return std::acos(std::max(c, -1.0f)) - std::acos(std::min(piece.cone_cos, 1.0f)) >
+               std::acos(static_cast<float>(kFacingAway));
+    }
+
+    /// The piece's disc and the picture have a point in common.
+    bool in_picture(const atlas::Piece& piece, const PlanScratch::Node& n) const {
+        const float r = kSlack * piece.radius;
+        const float du = std::max({reach.lo.x - n.u, n.u - reach.hi.x, 0.0f});
+        const float dv = std::max({reach.lo.y - n.v, n.v - reach.hi.y, 0.0f});
+        return du * du + dv * dv <= r * r;
+    }
+
+    /// Dijkstra over the pieces by distance from the stamp's origin; leaves those that the
+    /// picture reaches in scratch.reached, in order of their numbers.
+    void run(std::uint32_t first) {
+        scratch.reached.clear();
+        while (!scratch.heap.empty()) {
+            std::pop_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
+            const auto [key, i] = scratch.heap.back();
+            scratch.heap.pop_back();
+            PlanScratch::Node& n = scratch.nodes[i];
+            if (n.state != kOpen || key > n.key) continue;
+            if (i != first) place(i, n);
+            const atlas::Piece& piece = graph.pieces[i];
+            const float distance = std::sqrt(n.u * n.u + n.v * n.v);
+            n.state = kOutside;
+            if (distance - kSlack * piece.radius > reach.radius || faces_away(piece)) continue;
+            n.state = kFinal;
+            if (in_picture(piece, n)) scratch.reached.push_back(i);
+            for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
+                const atlas::PieceEdge& e = graph.edges[k];
+                const float u = n.u + n.c * e.hop_u - n.s * e.hop_v;
+                const float v = n.v + n.s * e.hop_u + n.c * e.hop_v;
+                push(e.to, std::sqrt(u * u + v * v));
+            }
+        }
+        std::sort(scratch.reached.begin(), scratch.reached.end());
+    }
+};
+
+void begin_walk(PlanScratch& scratch, std::size_t n_pieces) {
+    if (scratch.nodes.size() != n_pieces || scratch.epoch == kNone) {
+        scratch.nodes.assign(n_pieces, {});
+        scratch.epoch = 0;
+    }
+    ++scratch.epoch;
+    scratch.heap.clear();
+}
+
+std::array<float, 3> to_array(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// Frame of texels whose log map in `frame` lands at `place` + turn · (u, v) in the stamp.
+PieceFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn,
+                         const Footprint& footprint) {
+    PieceFrame f;
+    const double scale = 1 / footprint.cell;
+    f.origin = to_array(frame.origin);
+    f.normal = to_array(frame.n);
+    f.tu = to_array(scale * (turn.x * frame.t - turn.y * frame.b));
+    f.tv = to_array(scale * (turn.y * frame.t + turn.x * frame.b));
+    f.u0 = static_cast<float>((place.x - footprint.lo.x) * scale - 0.5);
+    f.v0 = static_cast<float>((place.y - footprint.lo.y) * scale - 0.5);
+    return f;
+}
+
+void pack_picture(const Footprint& footprint, StampJobs& jobs) {
+    const int w = footprint.width - 1, h = footprint.height - 1;
+    jobs.width = w;
+    jobs.height = h;
+    jobs.corners.resize(static_cast<std::size_t>(w) * h);
+    for (int j = 0; j < h; ++j) {
+        const std::uint8_t* low =
+            footprint.coverage.data() + static_cast<std::size_t>(j) * footprint.width;
+        const std::uint8_t* high = low + footprint.width;
+        std::uint32_t* out = jobs.corners.data() + static_cast<std::size_t>(j) * w;
+        for (int i = 0; i < w; ++i)
+            out[i] = low[i] | std::uint32_t{low[i + 1]} << 8 | std::uint32_t{high[i]} << 16 |
+                     std::uint32_t{high[i + 1]} << 24;
+    }
+}
+
+/// Poses of the picture at the middles of equal parts of the motion. At a part σ before
+/// its end a texel at (u, v) sees the picture's point x = R(σ turn) ((u, v) + σ shift).
+std::vector<SubPose> spread_poses(const Footprint& footprint, const Motion& motion,
+                                  double texel_size, const StampOptions& options) {
+    const double travel = glm::length(motion.shift) + std::abs(motion.turn) * footprint.radius;
+    if (!(travel > 0)) return {SubPose{}};
+    const double step = options.sub_pose * texel_size;
+    const double wanted = step > 0 ? std::ceil(travel / step) : 1;
+    const int n =
+        static_cast<int>(std::clamp(wanted, 1.0, double(std::max(options.max_sub_poses, 1))));
+    std::vector<SubPose> poses(n);
+    const Vec2 zero = footprint.lo / footprint.cell + 0.5;  // cell (0, 0) in cells from the origin
+    for (int k = 0; k < n; ++k) {
+        const double rest = 1 - (k + 0.5) / n;
+        const double c = std::cos(rest * motion.turn), s = std::sin(rest * motion.turn);
+        const Vec2 p = zero + rest * motion.shift / footprint.cell;
+        poses[k] = {static_cast<float>(c), static_cast<float>(s),
+                    static_cast<float>(c * p.x - s * p.y - zero.x),
+                    static_cast<float>(s * p.x + c * p.y - zero.y)};
+    }
+    return poses;
+}
+
+Reach reach_of(const Footprint& footprint, const Motion& motion) {
+    Reach reach;
+    const double swing = std::abs(motion.turn) * footprint.radius;
+    reach.normal = Vec3f(footprint.frame.n);
+    reach.radius = static_cast<float>(footprint.radius + glm::length(motion.shift));
+    const Vec2 hi = footprint.lo + footprint.cell * Vec2(footprint.width, footprint.height);
+    reach.lo = Vec2f(footprint.lo - glm::max(motion.shift, Vec2{0}) - swing);
+    reach.hi = Vec2f(hi - glm::min(motion.shift, Vec2{0}) + swing);
+    return reach;
+}
+
+Frame frame_of(const atlas::Piece& piece) {
+    Frame f;
+    f.origin = Vec3(piece.centre);
+    f.n = Vec3(piece.normal);
+    f.t = Vec3(piece.tangent);
+    f.b = glm::cross(f.n, f.t);
+    return f;
+}
+
+/// Distance between where one stamp frame and the walk put a piece's centre, metres.
+double disagreement(const Frame& frame, const atlas::Piece& piece, const PlanScratch::Node& n) {
+    if (glm::dot(Vec3(piece.normal), frame.n) <= atlas::kLogMapMinCos)
+        return std::numeric_limits<double>::infinity();
+    return glm::length(atlas::log_map(frame, Vec3(piece.centre), Vec3(piece.normal)) -
+                       Vec2(n.u, n.v));
+}
+
+}  // namespace
+
+StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
+                     const StampOptions& options, PlanScratch& scratch) {
+    StampJobs jobs;
+    jobs.mapping = options.mapping;
+    jobs.isa = options.isa;
+    if (footprint.empty() || footprint.width < 2 || footprint.height < 2) return jobs;
+    const atlas::TexelRef contact = atlas::texel_at(surface.mesh, surface.atlas, surface.texels,
+                                                    footprint.triangle, footprint.frame.origin);
+    if (!contact.valid()) return jobs;
+
+    const std::uint32_t first = surface.texels.piece_start[contact.slot] +
+                                surface.texels.tiles[contact.slot].piece[contact.texel];
+    const atlas::Piece& first_piece = surface.pieces.pieces[first];
+    begin_walk(scratch, surface.pieces.n_pieces());
+    Walk walk{surface.pieces, scratch, reach_of(footprint, motion)};
+
+    // The walk starts in the tangent plane of the surface itself: the stamp's normal may be
+    // a mean over a crease.
+    Frame start = footprint.frame;
+    start.n = glm::normalize(Vec3(surface.texels.normal(contact.slot, contact.texel)));
+    start.t = parallel_transport(footprint.frame.t, footprint.frame.n, start.n);
+    start.b = glm::cross(start.n, start.t);
+    const Vec2 place = atlas::log_map(start, Vec3(first_piece.centre), Vec3(first_piece.normal));
+    const Vec2 turn =
+        atlas::carried_direction(start, Vec3(first_piece.tangent), Vec3(first_piece.normal));
+    walk.push(first, 0);
+    PlanScratch::Node& n = walk.node(first);
+    n.u = static_cast<float>(place.x);
+    n.v = static_cast<float>(place.y);
+    n.c = static_cast<float>(turn.x);
+    n.s = static_cast<float>(turn.y);
+    walk.run(first);
+    if (scratch.reached.empty()) return jobs;
+
+    jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
+    jobs.frames.reserve(scratch.reached.size());
+    for (const std::uint32_t i : scratch.reached) {
+        const atlas::Piece& piece = surface.pieces.pieces[i];
+        const PlanScratch::Node& at = scratch.nodes[i];
+        jobs.discrepancy = std::max(jobs.discrepancy, disagreement(footprint.frame, piece, at));
+        if (jobs.tiles.empty() || jobs.tiles.back().slot != piece.slot)
+            jobs.tiles.push_back({piece.slot, static_cast<std::uint32_t>(jobs.frames.size()), 0});
+        ++jobs.tiles.back().count;
+        PieceFrame f =
+            picture_frame(frame_of(piece), Vec2(at.u, at.v), Vec2(at.c, at.s), footprint);
+        f.piece = piece.index;
+        f.first_row = piece.first_row;
+        f.last_row = piece.last_row;
+        jobs.frames.push_back(f);
+    }
+    jobs.discrepancy /= std::max(footprint.radius, 1e-12);
+    jobs.sub_poses = spread_poses(footprint, motion, surface.texels.texel_size, options);
+    pack_picture(footprint, jobs);
+    return jobs;
+}
+
+bool choose_mode(StampJobs& jobs, bool piecewise_before, const StampOptions& options) {
+    jobs.piecewise = jobs.mapping == Mapping::log &&
+                     jobs.discrepancy > (piecewise_before ? options.leave : options.enter);
+    return jobs.piecewise;
+}
+
+}  // namespace tuft::footprint

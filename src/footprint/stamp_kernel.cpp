@@ -1,0 +1,169 @@
+#include <algorithm>
+
+#include "atlas/log_map.h"
+#include "footprint/stamp.h"
+
+// The loops below are compiled once for each instruction set from the same source. They
+// hold neither reductions nor calls, and contraction is off, so all give the same bits.
+
+#if defined(__x86_64__) || defined(__i386__)
+#define TUFT_X86 1
+#endif
+
+namespace tuft::footprint {
+namespace {
+
+using atlas::kTile;
+using atlas::kTileTexels;
+using atlas::TexelTile;
+
+constexpr float kOutside = -1e9f;  // cells; in no picture
+
+/// The part of a tile that one piece covers.
+struct Rows {
+    int begin, end;  ///< texels
+};
+
+/// Texel → picture, in cells; kOutside for texels of other pieces.
+[[gnu::always_inline]] inline void map_texels(const TexelTile& tile, const PieceFrame& f, Rows rows,
+                                              bool plane, float* __restrict fu,
+                                              float* __restrict fv) {
+    const float ox = f.origin[0], oy = f.origin[1], oz = f.origin[2];
+    const float nx = f.normal[0], ny = f.normal[1], nz = f.normal[2];
+    const float ux = f.tu[0], uy = f.tu[1], uz = f.tu[2], u0 = f.u0;
+    const float vx = f.tv[0], vy = f.tv[1], vz = f.tv[2], v0 = f.v0;
+    constexpr auto& q = atlas::kLogMapSeries;
+    constexpr float q0 = float(q[0]), q1 = float(q[1]), q2 = float(q[2]), q3 = float(q[3]);
+    constexpr float q4 = float(q[4]), q5 = float(q[5]), q6 = float(q[6]), q7 = float(q[7]);
+    constexpr float least_cos = float(atlas::kLogMapMinCos);
+    const float on_plane = plane ? 1.0f : 0.0f;
+    const int piece = f.piece;
+    const float *px = tile.px.data(), *py = tile.py.data(), *pz = tile.pz.data();
+    const float *mx = tile.nx.data(), *my = tile.ny.data(), *mz = tile.nz.data();
+    const std::uint8_t* id = tile.piece.data();
+#pragma omp simd
+    for (int t = rows.begin; t < rows.end; ++t) {
+        const float dx = px[t] - ox, dy = py[t] - oy, dz = pz[t] - oz;
+        const float c = mx[t] * nx + my[t] * ny + mz[t] * nz;
+        const float md = mx[t] * dx + my[t] * dy + mz[t] * dz;
+        const float nd = nx * dx + ny * dy + nz * dz;
+        const float inside = c > least_cos ? c : 0.0f;
+        const float x = 1 - inside, inverse = 1 / (1 + inside);
+        const float k =
+            (((((((q7 * x + q6) * x + q5) * x + q4) * x + q3) * x + q2) * x + q1) * x + q0) *
+            inverse;
+        const float far = nd - inside * md;
+        const float a = k * (md - inside * nd);
+        const float g = far * inverse + md + k * far;
+        const float slope = inside > 0.05f ? inside : 0.05f;
+        const float h = on_plane != 0.0f ? -nd / slope : 0.5f * (a - g);
+        const float u =
+            u0 + (dx * ux + dy * uy + dz * uz) + h * (mx[t] * ux + my[t] * uy + mz[t] * uz);
+        const float v =
+            v0 + (dx * vx + dy * vy + dz * vz) + h * (mx[t] * vx + my[t] * vy + mz[t] * vz);
+        const bool mine = (id[t] == piece) & (c > least_cos);
+        fu[t] = mine ? u : kOutside;
+        fv[t] = mine ? v : kOutside;
+    }
+}
+
+/// Adds the picture's value at each texel, 255 for full coverage.
+[[gnu::always_inline]] inline void gather(const StampJobs& jobs, const SubPose& pose, Rows rows,
+                                          const float* __restrict fu, const float* __restrict fv,
+                                          float* __restrict sum) {
+    const std::uint32_t* __restrict corners = jobs.corners.data();
+    const int stride = jobs.width;
+    const float width = static_cast<float>(jobs.width), height = static_cast<float>(jobs.height);
+    const float c = pose.c, s = pose.s, du = pose.du, dv = pose.dv;
+#pragma omp simd
+    for (int t = rows.begin; t < rows.end; ++t) {
+        const float x = c * fu[t] - s * fv[t] + du, y = s * fu[t] + c * fv[t] + dv;
+        const bool inside = (x >= 0.0f) & (y >= 0.0f) & (x < width) & (y < height);
+        const float xi = inside ? x : 0.0f, yi = inside ? y : 0.0f;
+        const int i = static_cast<int>(xi), j = static_cast<int>(yi);
+        const float fx = xi - static_cast<float>(i), fy = yi - static_cast<float>(j);
+        const std::uint32_t q = corners[j * stride + i];
+        const float q00 = static_cast<float>(static_cast<int>(q & 255));
+        const float q10 = static_cast<float>(static_cast<int>((q >> 8) & 255));
+        const float q01 = static_cast<float>(static_cast<int>((q >> 16) & 255));
+        const float q11 = static_cast<float>(static_cast<int>(q >> 24));
+        const float low = q00 + fx * (q10 - q00), high = q01 + fx * (q11 - q01);
+        const float value = low + fy * (high - low);
+        sum[t] += inside ? value : 0.0f;
+    }
+}
+
+[[gnu::always_inline]] inline void evaluate(const TexelTile& tile, const StampJobs& jobs,
+                                            const TileJob& job, float* __restrict sum) {
+    alignas(64) float fu[kTileTexels], fv[kTileTexels];
+    const bool plane = jobs.mapping == Mapping::plane;
+    for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
+        const PieceFrame& own = jobs.frames[k];
+        const Rows rows{own.first_row * kTile, (own.last_row + 1) * kTile};
+        PieceFrame frame = jobs.piecewise ? own : jobs.stamp_frame;
+        frame.piece = own.piece;
+        map_texels(tile, frame, rows, plane, fu, fv);
+        for (const SubPose& pose : jobs.sub_poses) gather(jobs, pose, rows, fu, fv, sum);
+    }
+}
+
+using Evaluate = void (*)(const TexelTile&, const StampJobs&, const TileJob&, float* __restrict);
+
+void evaluate_baseline(const TexelTile& tile, const StampJobs& jobs, const TileJob& job,
+                       float* __restrict sum) {
+    evaluate(tile, jobs, job, sum);
+}
+
+#ifdef TUFT_X86
+[[gnu::target("avx2")]] void evaluate_avx2(const TexelTile& tile, const StampJobs& jobs,
+                                           const TileJob& job, float* __restrict sum) {
+    evaluate(tile, jobs, job, sum);
+}
+
+[[gnu::target("avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512")]] void evaluate_avx512(
+    const TexelTile& tile, const StampJobs& jobs, const TileJob& job, float* __restrict sum) {
+    evaluate(tile, jobs, job, sum);
+}
+#endif
+
+Evaluate kernel(Isa isa) {
+#ifdef TUFT_X86
+    if (isa == Isa::avx512) return evaluate_avx512;
+    if (isa == Isa::avx2) return evaluate_avx2;
+#endif
+    (void)isa;
+    return evaluate_baseline;
+}
+
+}  // namespace
+
+Isa best_isa() {
+#ifdef TUFT_X86
+    static const Isa best = [] {
+        __builtin_cpu_init();
+        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+            __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq"))
+            return Isa::avx512;
+        return __builtin_cpu_supports("avx2") ? Isa::avx2 : Isa::baseline;
+    }();
+    return best;
+#else
+    return Isa::baseline;
+#endif
+}
+
+bool evaluate_tile(const TexelTile& tile, const StampJobs& jobs, const TileJob& job,
+                   std::span<float, kTileTexels> exposure) {
+    std::fill(exposure.begin(), exposure.end(), 0.0f);
+    if (jobs.corners.empty() || jobs.sub_poses.empty()) return false;
+    kernel(std::min(jobs.isa, best_isa()))(tile, jobs, job, exposure.data());
+    const float scale = 1.0f / (255.0f * static_cast<float>(jobs.sub_poses.size()));
+    bool any = false;
+    for (float& e : exposure) {
+        e = std::min(e * scale, 1.0f);
+        any |= e > 0;
+    }
+    return any;
+}
+
+}  // namespace tuft::footprint
