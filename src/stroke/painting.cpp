@@ -220,7 +220,7 @@ std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
         if (is_new) lead->second = drag_lead(preset);
         options.lead = lead->second;
     }
-    return hold(lay(*model_->query, stroke.trace).samples, options);
+    return hand_path(*model_->query, stroke.trace, options).poses;
 }
 
 StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {

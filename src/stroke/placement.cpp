@@ -326,16 +326,19 @@ std::vector<brush::Pose> hold(std::span<const LaidSample> samples, const HoldOpt
     return poses;
 }
 
-HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HoldOptions& options) {
-    HandPath path;
-    if (trace.flat) {
-        path.laid = lay(query, lead_hand(trace, options));
-        path.poses = hold(path.laid.samples, options);
-        return path;
-    }
-    path.poses.reserve(trace.samples.size());
+std::vector<brush::Pose> spatial_poses(const Trace& trace) {
+    std::vector<brush::Pose> poses;
+    poses.reserve(trace.samples.size());
     for (const TraceSample& s : trace.samples)
-        path.poses.push_back({s.position, glm::normalize(s.rotation), s.time});
+        poses.push_back({s.position, glm::normalize(s.rotation), s.time});
+    return poses;
+}
+
+HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HoldOptions& options) {
+    if (!trace.flat) return {{}, spatial_poses(trace)};
+    HandPath path;
+    path.laid = lay(query, lead_hand(trace, options));
+    path.poses = hold(path.laid.samples, options);
     return path;
 }
 

@@ -93,6 +93,9 @@ Trace lead_hand(Trace trace, const HoldOptions& options);
 /// pressure · working depth below the sample (hover above it where the pressure is 0).
 std::vector<brush::Pose> hold(std::span<const LaidSample> samples, const HoldOptions& options);
 
+/// Poses of a trace in space: its samples as they are, rotations of unit length.
+std::vector<brush::Pose> spatial_poses(const Trace& trace);
+
 /// The whole way for any trace: lead, lay, hold; or the poses as they are for one in space
 /// (then `laid` is empty).
 struct HandPath {
