@@ -26,6 +26,7 @@ struct Preset {
     double length = 0.032;        ///< m, free hair from ferrule to tip
     double radius = 0.0035;       ///< m, scale R of the belly; the widest section is about 1.06 R
     double tip_power = 1.4;       ///< exponent q of the taper (1-u^2.4)^q: larger is a finer point
+    double tip_radius = 1e-4;     ///< m, of the few hairs that make the point
     double hardness = 0.5;        ///< [0, 1]; softer means shorter segments at the tip
     int segments = 16;            ///< spine segments, 12–24
 
@@ -35,6 +36,8 @@ struct Preset {
     double beta = -0.8;           ///< β of the height, > -1
     double yield = 0.7;           ///< e = M_e0 L / B0; 0 means it never yields
     double gamma = -1;            ///< γ of the yield stress
+    double plastic_share = 0.3;   ///< part of the stiffness that yields; 1 is the ideally plastic hair
+                                  ///< of the paper, less gives a set that saturates
 
     // Contact.
     double transverse_stiffness = 1.2e4;  ///< k_c, N/m²: force per length per indentation of the tuft's side
@@ -47,8 +50,9 @@ struct Preset {
     double stick = 40;            ///< tangential over normal stiffness of a sticking contact
 
     // Sections.
-    double flatten_moment = 0.8;  ///< κ1 of a = r (1 + κ1 |m|/M_e0 + κ2 k_F)
+    double flatten_moment = 0.8;  ///< κ1 of a = r (1 + κ1 |m|/M_e0 + κ2 k_F + κ3 squash)
     double flatten_force = 0.6;   ///< κ2
+    double flatten_contact = 1;   ///< κ3; squash is 1 where the hair is pressed flat
     double flatten_max = 3;       ///< a <= flatten_max r
 
     // Ink and splitting.

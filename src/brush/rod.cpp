@@ -30,6 +30,7 @@ Rod make_rod(const Profile& profile, int n, double tip_ratio) {
 
 Rod outer_part(const Rod& rod, int first, double share) {
     Rod part;
+    part.plastic_share = rod.plastic_share;
     part.length.assign(rod.length.begin() + first, rod.length.end());
     part.stiffness.assign(rod.stiffness.begin() + first, rod.stiffness.end());
     for (double& k : part.stiffness) k /= share;

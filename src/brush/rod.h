@@ -30,6 +30,7 @@ struct Rod {
     std::vector<double> stiffness;  ///< [n] joint k_j; joint j sits at the root of segment j
     std::vector<double> yield;      ///< [n] joint angle θ_e where yielding starts; infinite: elastic
     std::vector<double> weight;     ///< [n+1] tributary length of each node
+    double plastic_share = 1;       ///< part of k_j in stops that yield; the rest stays elastic
     int segments() const { return static_cast<int>(length.size()); }
 };
 

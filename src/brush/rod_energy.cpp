@@ -40,7 +40,7 @@ struct Fibre {
 
 Fibre fibre(const Rod& rod, int j, int f) {
     const Quadrature& q = fibres();
-    return {3 * rod.stiffness[j] * q.x[f] * q.x[f] * q.w[f], rod.yield[j] / q.x[f]};
+    return {3 * rod.plastic_share * rod.stiffness[j] * q.x[f] * q.x[f] * q.w[f], rod.yield[j] / q.x[f]};
 }
 
 void add_full_bend(double k, const Vec2& w, JointForce& out) {
@@ -72,6 +72,10 @@ JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const V
         out.moment = k * w;
         out.d00 = out.d11 = k;
     } else {
+        const double k_rest = (1 - rod.plastic_share) * k;
+        out.energy = 0.5 * k_rest * glm::dot(w, w);
+        out.moment = k_rest * w;
+        out.d00 = out.d11 = k_rest;
         for (int f = 0; f < kFibres; ++f) {
             const Fibre fb = fibre(rod, j, f);
             const Vec2 s = memory.yielded ? memory.stop[f] + (w - memory.bend) : w;
@@ -121,7 +125,7 @@ double stored_energy(const Rod& rod, int j, const JointMemory& memory, const Vec
     JointForce limit;
     add_full_bend(rod.stiffness[j], w, limit);
     if (!memory.yielded) return limit.energy + 0.5 * rod.stiffness[j] * glm::dot(w, w);
-    double sum = limit.energy;
+    double sum = limit.energy + 0.5 * (1 - rod.plastic_share) * rod.stiffness[j] * glm::dot(w, w);
     for (int f = 0; f < kFibres; ++f) {
         sum += 0.5 * fibre(rod, j, f).stiffness * glm::dot(memory.stop[f], memory.stop[f]);
     }

@@ -79,7 +79,6 @@ Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, 
         spine.rest_radius.push_back(rest_radius(p, s) / std::sqrt(share));
         if (i < rod.segments()) s += rod.length[i];
     }
-    spine.half_height = spine.rest_radius;
     return spine;
 }
 
@@ -92,7 +91,7 @@ std::vector<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine,
     out.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
-        out[i] = {plane.origin / p.length, plane.normal, spine.half_height[i] / p.length};
+        out[i] = {plane.origin / p.length, plane.normal, spine.rest_radius[i] / p.length};
     }
     return out;
 }
@@ -109,7 +108,6 @@ Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const
     out.result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law);
     const SectionInput input{p, spine, out.result, obstacles, turn, share};
     SectionOutput sections = make_sections(input);
-    spine.half_height = std::move(sections.half_height);
     spine.wide = sections.wide;
     out.branch.sections = std::move(sections.sections);
     return out;
@@ -202,7 +200,7 @@ std::size_t expected_planes(const Tuft& tuft) {
 double rest_radius(const Preset& p, double u) {
     u = std::clamp(u, 0.0, 1.0);
     const double taper = std::pow(std::max(0.0, 1 - std::pow(u, 2.4)), p.tip_power);
-    return 1.06 * p.radius * taper * (1 - 0.14 * std::pow(1 - u, 6));
+    return std::hypot(1.06 * p.radius * taper * (1 - 0.14 * std::pow(1 - u, 6)), p.tip_radius);
 }
 
 Tuft make_tuft(const Preset& preset) {
@@ -210,8 +208,8 @@ Tuft make_tuft(const Preset& preset) {
     Tuft tuft;
     tuft.preset = preset;
     const Profile profile{preset.alpha, preset.beta, preset.yield, preset.gamma};
-    const rod::Rod rod =
-        rod::make_rod(profile, preset.segments, 0.25 + 0.75 * preset.hardness);
+    rod::Rod rod = rod::make_rod(profile, preset.segments, 0.25 + 0.75 * preset.hardness);
+    rod.plastic_share = preset.plastic_share;
     tuft.spine = make_spine(preset, rod, clamp_of(preset, {}), 0, 1);
     return tuft;
 }
@@ -285,7 +283,6 @@ void reset(Tuft& tuft) {
 void reshape(Tuft& tuft) {
     const rod::Clamp clamp = tuft.spine.memory.clamp;
     tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
-    tuft.spine.half_height = tuft.spine.rest_radius;
     tuft.split = false;
     tuft.trail = Vec3{0};
 }

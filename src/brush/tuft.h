@@ -19,7 +19,6 @@ struct Spine {
     rod::Rod rod;                   ///< lengths and stiffness, in units of L and B0
     rod::Memory memory;             ///< joints, contacts
     std::vector<double> rest_radius;///< [n+1] m
-    std::vector<double> half_height;///< [n+1] m, semi-axis b of the last step, felt by the contact
     Vec3 wide{1, 0, 0};             ///< unit, ferrule frame: direction e at the root of the last step
 };
 
@@ -62,7 +61,8 @@ void reshape(Tuft& tuft);
 /// What the hand feels, newtons, world: min(G |F|, limit) along the force on the tuft.
 Vec3 hand_force(const Preset& preset, const TuftState& state);
 
-/// Radius of the resting tuft, metres: r(u) = 1.06 R (1-u^2.4)^q (1 - 0.14 (1-u)^6), u from root to tip.
+/// Radius of the resting tuft, metres: 1.06 R (1-u^2.4)^q (1 - 0.14 (1-u)^6), u from root
+/// to tip, and the tip's own radius added by squares.
 double rest_radius(const Preset& preset, double u);
 
 }  // namespace tuft::brush

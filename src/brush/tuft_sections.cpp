@@ -60,6 +60,45 @@ Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
 
 }  // namespace
 
+namespace {
+
+/// How far the contact squashes the hair round each node, 0 to 1, root first: indentation
+/// over radius, spread along the tuft over a few hair-bundle widths as hairs lean on each other.
+std::vector<double> squash(const SectionInput& in) {
+    constexpr double kReach = 0.05;  // of the length
+    const rod::Memory& m = in.spine.memory;
+    const std::size_t count = m.node.size();
+    std::vector<double> raw(count, 0), out(count, 0), at(count, 0);
+    for (std::size_t i = 1; i < count; ++i) {
+        at[i] = at[i - 1] + in.spine.rod.length[i - 1];
+        if (in.obstacles.empty()) continue;
+        const rod::Obstacle& o = in.obstacles[i];
+        const double z = glm::dot(m.node[i] - o.origin, o.normal);
+        if (o.radius > 0) raw[i] = std::clamp((o.radius - z) / o.radius, 0.0, 1.0);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        double sum = 0, weight = 0;
+        for (std::size_t j = 0; j < count; ++j) {
+            const double w = in.spine.rod.weight[j] * std::exp(-std::abs(at[i] - at[j]) / kReach);
+            sum += w * raw[j];
+            weight += w;
+        }
+        out[i] = sum / weight;
+    }
+    return out;
+}
+
+/// A flattened section keeps its lower side where the contact has it: its centre comes down
+/// by r - b, but not below the surface. Fades out for sections more than r off the surface.
+Vec3 lay_down(const rod::Obstacle& o, const Vec3& x, double r, double b, const Vec3& m) {
+    const double z = glm::dot(x - o.origin, o.normal);
+    const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;
+    const double down = near * (r - b) * std::abs(glm::dot(m, o.normal));
+    return x + (std::max(0.0, z - down) - z) * o.normal;
+}
+
+}  // namespace
+
 SectionOutput make_sections(const SectionInput& in) {
     const Preset& p = in.preset;
     const rod::Memory& m = in.spine.memory;
@@ -74,27 +113,32 @@ SectionOutput make_sections(const SectionInput& in) {
     const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
     const double force = glm::length(in.result.force) * p.stiffness / (p.length * p.length);
     const double k_f = std::min(1.0, p.force_gain * force / p.force_limit);
+    const std::vector<double> squashed = squash(in);
     SectionOutput out;
     out.sections.resize(count);
-    out.half_height.resize(count);
     double s = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double r = in.spine.rest_radius[i];
         const double moment = i + 1 < count ? in.result.moment[i] : 0;
         // The ferrule holds the hair round within about one radius of its mouth.
         const double held = in.share > 1 ? 1 : 1 - std::exp(-s * p.length / p.radius);
-        const double widen = 1 + held * (p.flatten_moment * moment / yield + p.flatten_force * k_f);
+        const double widen = 1 + held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
+                                         p.flatten_contact * squashed[i]);
         Section& section = out.sections[count - 1 - i];
         section.a = r * std::min(widen, p.flatten_max);
         section.b = r > 0 ? r * r / section.a : 0;
-        section.centre = m.node[i] * p.length;
         section.tangent = t[i];
         section.e = glm::normalize(e[i] - glm::dot(e[i], t[i]) * t[i]);
         section.m = glm::cross(section.e, t[i]);
+        section.centre = m.node[i] * p.length;
+        if (i > 0 && !in.obstacles.empty()) {
+            rod::Obstacle o = in.obstacles[i];
+            o.origin *= p.length;
+            section.centre = lay_down(o, section.centre, r, section.b, section.m);
+        }
         section.moment = moment * p.stiffness / p.length;
         section.pressure = in.result.normal_force[i] / in.spine.rod.weight[i] * p.stiffness /
                            (p.length * p.length * p.length);
-        out.half_height[i] = section.b;
         if (i + 1 < count) s += in.spine.rod.length[i];
     }
     out.wide = glm::conjugate(in.rotation) * e[0];

@@ -19,12 +19,11 @@ struct SectionInput {
 
 struct SectionOutput {
     std::vector<Section> sections;    ///< tip first
-    std::vector<double> half_height;  ///< [n+1] root first, m
     Vec3 wide{1, 0, 0};               ///< e at the root, ferrule frame
 };
 
-/// a = r (1 + κ1 |m|/M_e0 + κ2 k_F) <= flatten_max r and b = r²/a; held round by the
-/// ferrule at the root. The wide axis e lies in the contact plane where the spine presses
+/// a = r (1 + κ1 |m|/M_e0 + κ2 k_F + κ3 squash) <= flatten_max r and b = r²/a; held round
+/// by the ferrule at the root. The wide axis e lies in the contact plane where the spine presses
 /// most, else along the axis of bending, else where it was; from there it is carried along
 /// the spine without spin.
 SectionOutput make_sections(const SectionInput& input);

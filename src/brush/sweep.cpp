@@ -1,0 +1,161 @@
+#include "brush/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "brush/skin.h"
+#include "brush/tuft.h"
+#include "core/error.h"
+#include "core/files.h"
+#include "core/units.h"
+
+namespace tuft::brush {
+
+namespace {
+
+/// Where the sections meet the sheet z = 0, along x and to both sides.
+struct Patch {
+    double width = 0;
+    double front = std::numeric_limits<double>::infinity();
+    double back = -std::numeric_limits<double>::infinity();
+    bool empty() const { return front > back; }
+};
+
+constexpr int kFineSections = 12;  ///< between two nodes: 0.1 mm along the tuft
+
+void add_section(const Section& s, Patch& patch) {
+    const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = std::hypot(ne, nm), z = s.centre.z;
+    // A section whose plane hardly cuts the sheet would smear its cut along the stroke.
+    if (reach <= 0 || std::abs(z) > reach) return;
+    const double middle = std::atan2(nm, ne), half = std::acos(-z / reach);
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    for (const double w : {middle - half, middle + half}) {
+        const Vec3 q = s.centre + s.a * std::cos(w) * s.e + s.b * std::sin(w) * s.m;
+        lo = std::min(lo, q.y);
+        hi = std::max(hi, q.y);
+        patch.front = std::min(patch.front, q.x);
+        patch.back = std::max(patch.back, q.x);
+    }
+    patch.width = std::max(patch.width, hi - lo);
+}
+
+Patch patch_of(const TuftState& state) {
+    Patch patch;
+    for (const Branch& branch : state.branches) {
+        for (const Section& s : refine_sections(branch.sections, kFineSections)) add_section(s, patch);
+    }
+    return patch;
+}
+
+SweepRow sweep_one(const Preset& preset, double depth) {
+    constexpr double kStep = 0.02;  // of the length
+    constexpr double kDrag = 3;     // lengths
+    const int press = 20 + static_cast<int>(std::ceil(depth / (kStep * preset.length)));
+    Tuft tuft = make_tuft(preset);
+    const ContactPlane sheet;
+    Pose pose{{0, 0, preset.length}, {1, 0, 0, 0}, 0};
+    TuftState state = step(tuft, pose, {&sheet, 1}, 0);
+    const int drag = static_cast<int>(kDrag / kStep);
+    for (int i = 1; i <= press + drag; ++i) {
+        // The hand already moves while it presses, as a stroke begins.
+        pose.position.x += kStep * preset.length;
+        pose.position.z = preset.length - depth * std::min(1.0, static_cast<double>(i) / press);
+        pose.time += 0.01;
+        state = step(tuft, pose, {&sheet, 1}, 0.01);
+    }
+    const Patch patch = patch_of(state);
+    SweepRow row{depth};
+    if (patch.empty()) return row;
+    row.width = patch.width;
+    row.drag = patch.back - patch.front;
+    row.offset = pose.position.x - patch.back;
+    return row;
+}
+
+}  // namespace
+
+std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> depths) {
+    std::vector<SweepRow> rows;
+    rows.reserve(depths.size());
+    for (const double depth : depths) rows.push_back(sweep_one(preset, depth));
+    return rows;
+}
+
+std::string sweep_csv(std::span<const SweepRow> rows) {
+    std::string text = "z_mm,width_mm,drag_mm,offset_mm\n";
+    for (const SweepRow& r : rows) {
+        char line[128];
+        std::snprintf(line, sizeof line, "%.4g,%.4f,%.4f,%.4f\n", r.depth / kMillimetre,
+                      r.width / kMillimetre, r.drag / kMillimetre, r.offset / kMillimetre);
+        text += line;
+    }
+    return text;
+}
+
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells(1);
+    for (const char c : line) {
+        if (c == ',') cells.emplace_back();
+        else if (c != '\r' && c != ' ' && c != '\t') cells.back() += c;
+    }
+    return cells;
+}
+
+}  // namespace
+
+std::vector<SweepRow> read_sweep(const std::string& path) {
+    const std::vector<char> bytes = read_file(path, 16 << 20);
+    const char* const names[] = {"z_mm", "width_mm", "drag_mm", "offset_mm"};
+    double SweepRow::* const members[] = {&SweepRow::depth, &SweepRow::width, &SweepRow::drag,
+                                          &SweepRow::offset};
+    int column[4] = {-1, -1, -1, -1}, excluded = -1;
+    bool header = true;
+    std::vector<SweepRow> rows;
+    long number = 0;
+    for (std::size_t at = 0; at < bytes.size();) {
+        std::size_t end = at;
+        while (end < bytes.size() && bytes[end] != '\n') ++end;
+        const std::string line(bytes.data() + at, end - at);
+        at = end + 1;
+        ++number;
+        const std::vector<std::string> cells = cells_of(line);
+        if (cells.front().empty() ? cells.size() == 1 : cells.front()[0] == '#') continue;
+        if (header) {
+            header = false;
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                for (int k = 0; k < 4; ++k) {
+                    if (cells[i] == names[k]) column[k] = static_cast<int>(i);
+                }
+                if (cells[i] == "excluded_by_authors") excluded = static_cast<int>(i);
+            }
+            for (int k = 0; k < 4; ++k) {
+                if (column[k] < 0) {
+                    throw Error(path, number, std::string("no column '") + names[k] +
+                                                  "'; needed are z_mm,width_mm,drag_mm,offset_mm");
+                }
+            }
+            continue;
+        }
+        const auto value = [&](int i) {
+            char* rest = nullptr;
+            const std::string text = i < static_cast<int>(cells.size()) ? cells[i] : "";
+            const double v = std::strtod(text.c_str(), &rest);
+            if (text.empty() || *rest != 0 || !std::isfinite(v) || v < -1e4 || v > 1e4) {
+                throw Error(path, number, "'" + text + "' is not a length in millimetres");
+            }
+            return v;
+        };
+        if (excluded >= 0 && value(excluded) != 0) continue;
+        SweepRow row;
+        for (int k = 0; k < 4; ++k) row.*members[k] = value(column[k]) * kMillimetre;
+        rows.push_back(row);
+    }
+    if (rows.empty()) throw Error(path, "has no measured rows");
+    return rows;
+}
+
+}  // namespace tuft::brush
