@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "atlas/texel_map.h"
+#include "core/progress.h"
+#include "ink/composite.h"
+#include "mesh/triangle_mesh.h"
+
+/// Decorated models for other programs.
+namespace tuft::io {
+
+/// The maps of a decoration, all of one size.
+struct ModelMaps {
+    ink::AtlasMap<std::uint8_t> base_colour;  ///< sRGB, 3 channels
+    ink::AtlasMap<std::uint8_t> orm;          ///< occlusion, roughness, metallic; may be empty
+    ink::AtlasMap<float> height;              ///< micrometres; may be empty
+};
+
+/// All maps of a canvas.
+ModelMaps make_maps(const ink::Canvas& canvas, const atlas::TexelMap& texels,
+                    const ink::Substrate& substrate, const ink::ComposeOptions& options = {});
+
+/// Tangent-space normals of a height map (micrometres over texels of `texel_size` metres):
+/// n ∝ (−∂h/∂u, −∂h/∂v, 1), v up, encoded as 8 bit (n + 1)/2; slopes are cut at 1.
+ink::AtlasMap<std::uint8_t> normal_map(const ink::AtlasMap<float>& height, double texel_size);
+
+struct ExportOptions {
+    std::string unit = "mm";    ///< of OBJ coordinates; glTF is always in metres
+    bool z_up = true;           ///< the model's up axis is z: glTF gets (x, z, −y), y up
+    bool normals_from_height = true;  ///< a normal map when there is a height map with any height
+    ProgressFn progress = {};
+};
+
+/// Writes a model with its maps; the extension chooses the format:
+///
+/// - `.glb`: one binary file; metres, y up, indexed triangles with POSITION, NORMAL,
+///   TEXCOORD_0 and (with a normal map) TANGENT; PNG maps in buffer views. A vertex is
+///   repeated for each distinct normal or UV, triangles keep their order.
+/// - `.gltf`: the same as NAME.gltf, NAME.bin and NAME_*.png.
+/// - `.obj`: NAME.obj, NAME.mtl and NAME_*.png; coordinates in `unit`, axes as in the model;
+///   vertices and triangles in their order.
+///
+/// UVs are written so that the picture's top row is v = 1 in OBJ and v = 0 in glTF, as
+/// those formats say. Nothing is left behind when anything fails; existing files are
+/// replaced only when all new ones are complete. Throws `Error` for an unknown
+/// extension or unit, a folder that does not exist or is full, more than 4 GiB in GLB.
+void export_model(const std::filesystem::path& path, const mesh::TriangleMesh& mesh,
+                  const atlas::Atlas& atlas, const ModelMaps& maps,
+                  const ExportOptions& options = {});
+
+/// Names of the files `export_model` writes for `path` with these maps.
+std::vector<std::filesystem::path> exported_files(const std::filesystem::path& path,
+                                                  const ModelMaps& maps,
+                                                  const ExportOptions& options = {});
+
+/// Runs `write(folder)` with a fresh folder beside `path`, then moves the files made in it
+/// beside `path`. On any error nothing has changed and `Error` is thrown.
+void write_together(const std::filesystem::path& path,
+                    const std::function<void(const std::filesystem::path& folder)>& write);
+
+}  // namespace tuft::io

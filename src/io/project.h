@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "ink/canvas.h"
+#include "mesh/triangle_mesh.h"
+#include "stroke/journal.h"
+
+/// The `.tuft` project: one SQLite database (application id "TUFT") that holds the model,
+/// its atlas, the presets used, the journal and a picture of the texels.
+namespace tuft::io {
+
+inline constexpr int kProjectFormat = 1;  ///< highest format version this program reads
+
+/// A preset's name and TOML text.
+using PresetText = std::pair<std::string, std::string>;
+
+struct ProjectModel {
+    std::string source;      ///< file the model came from, for people
+    std::string unit = "mm"; ///< unit of that file
+    mesh::TriangleMesh mesh; ///< metres
+    atlas::Atlas atlas;
+    std::string substrate;   ///< TOML text
+};
+
+/// Texels as they were after stroke `stroke_id`, to be shown without a replay.
+struct SavedCanvas {
+    ink::Canvas canvas;
+    std::uint64_t stroke_id = 0;
+};
+
+/// An open project. Every change is one committed transaction: a kill at any moment loses
+/// at most the change in hand, and after any end the project is the one file (a file
+/// NAME-journal beside it after a kill is needed by the next opening). Methods throw
+/// `Error` naming the file when it is damaged or the disk is full. One thread at a time.
+class Project {
+  public:
+    /// Makes a new project in place of any file of that name, complete or not at all.
+    static Project create(const std::filesystem::path& path, const ProjectModel& model);
+    /// Opens a project. Throws `Error` for a file that is not a tuft project, is from a
+    /// newer version, or is damaged (all pages are checked).
+    static Project open(const std::filesystem::path& path);
+    ~Project();
+    Project(Project&&) noexcept;
+    Project& operator=(Project&&) noexcept;
+
+    const std::filesystem::path& path() const;
+    int format() const;
+    std::string written_by() const;      ///< program and version that made it
+
+    ProjectModel model() const;          ///< checked: sizes agree, indices in range, numbers finite
+    std::uint64_t model_hash() const;    ///< of positions and triangles
+
+    void put_brush(const PresetText& preset);
+    void put_ink(const PresetText& preset);
+    void put_substrate(const std::string& toml);
+    std::vector<PresetText> brushes() const;  ///< by name
+    std::vector<PresetText> inks() const;
+
+    /// Adds finished strokes after the last one, in one transaction. Their ids must be new.
+    void append(std::span<const stroke::Stroke> strokes);
+    void append(const stroke::Stroke& stroke) { append(std::span(&stroke, 1)); }
+    void set_hidden(std::uint64_t stroke_id, bool hidden);
+    void remove(std::uint64_t stroke_id);
+    /// All strokes in order, every number as it was put in, to the bit.
+    std::vector<stroke::Stroke> strokes() const;
+    std::size_t n_strokes() const;
+
+    /// Stores all painted tiles in place of those stored before.
+    void save_canvas(const ink::Canvas& canvas, std::uint64_t stroke_id);
+    /// The stored tiles for a texel map of `n_slots` slots; nothing when none were stored
+    /// or they were made for another map.
+    std::optional<SavedCanvas> load_canvas(std::size_t n_slots) const;
+
+  private:
+    struct State;
+    explicit Project(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+/// Whether the file starts like a SQLite database with our application id.
+bool is_project(const std::filesystem::path& path);
+
+}  // namespace tuft::io
