@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/steps.h"
+#include "core/files.h"
+#include "core/units.h"
+
+namespace tuft::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
+    std::string csv = "stroke,time_s,x_m,y_m,z_m,qw,qx,qy,qz,force_x_N,force_y_N,force_z_N,moment_Nm\n";
+    for (const stroke::StrokeReport& report : reports)
+        for (const stroke::ForceRecord& f : report.forces) {
+            const brush::Pose& p = f.pose;
+            csv += fmt::format("{},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{:.6g}\n",
+                               report.stroke_id, p.time, p.position.x, p.position.y, p.position.z,
+                               p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z, f.force.x,
+                               f.force.y, f.force.z, f.moment);
+        }
+    return csv;
+}
+
+// Warnings for strokes that never met the model.
+void note_misses(const std::vector<stroke::StrokeReport>& reports,
+                 const std::vector<stroke::Stroke>& strokes, Console& console) {
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        if (reports[i].touched()) continue;
+        const std::string& label = strokes[i].trace.label;
+        console.note(fmt::format("warning: stroke {}{} never touches the model; it stays {:.2f} mm away",
+                                 reports[i].stroke_id, label.empty() ? "" : " (" + label + ")",
+                                 reports[i].nearest / kMillimetre));
+    }
+}
+
+}  // namespace
+
+int run(const Paint& a) {
+    const Outputs outputs{a.project, a.exported, a.preview, a.view, a.surface.unit};
+    check_outputs(outputs);
+    check_output(a.forces);
+    Console console(a.common.quiet);
+    const auto start = Clock::now();
+
+    const std::vector<stroke::Stroke> strokes = load_strokes(a, console);
+    const stroke::Model model = load_model(a.model, a.surface, console);
+    const double prepared = seconds_since(start);
+
+    stroke::Painting painting(model, {.substrate = a.surface.substrate,
+                                      .record_forces = !a.forces.empty()});
+    // Unknown names are found before any paint flows.
+    for (const stroke::Stroke& s : strokes) {
+        painting.brush(s.trace.brush);
+        painting.ink(s.trace.ink);
+    }
+    const auto painting_start = Clock::now();
+    double first_stamp = 0;
+    std::vector<stroke::StrokeReport> reports;
+    const ProgressFn progress = console.progress();
+    for (std::size_t i = 0; i < strokes.size(); ++i) {
+        reports.push_back(painting.paint(strokes[i], [&](std::string_view phase, double fraction) {
+            if (first_stamp == 0) first_stamp = seconds_since(start);
+            return progress(phase, (static_cast<double>(i) + fraction) / static_cast<double>(strokes.size()));
+        }));
+    }
+    const double painted = seconds_since(painting_start);
+    console.clear();
+    note_misses(reports, strokes, console);
+
+    write_outputs(outputs, painting, console);
+    if (!a.forces.empty()) {
+        const std::string csv = forces_csv(reports);
+        write_file(a.forces, csv.data(), csv.size());
+    }
+    console.clear();
+
+    std::size_t stamps = 0;
+    double given = 0;
+    for (const auto& r : reports) stamps += r.stamps, given += r.ink_given;
+    if (a.common.json) {
+        nlohmann::json j;
+        j["model"] = a.model.string();
+        j["triangles"] = model.mesh->n_triangles();
+        j["mesh"] = to_json(model.repairs);
+        j["atlas"] = to_json(model.atlas, model.atlas_report);
+        j["strokes"] = nlohmann::json::array();
+        for (std::size_t i = 0; i < reports.size(); ++i)
+            j["strokes"].push_back(to_json(reports[i], painting.journal().strokes()[i]));
+        j["stamps"] = stamps;
+        j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
+        j["canvas_hash"] = fmt::format("{:016x}", painting.canvas().hash());
+        j["seconds"] = {{"to_first_stamp", first_stamp}, {"preparing", prepared},
+                        {"painting", painted}, {"total", seconds_since(start)}};
+        j["peak_mb"] = peak_megabytes();
+        std::cout << j.dump(2) << '\n';
+    } else {
+        fmt::print("painted {} strokes ({} stamps, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {} charts, texel {:.3f} mm\n",
+                   reports.size(), stamps, given * ink::kFilmUnit * 1e9, painted, model.atlas.size,
+                   model.atlas.size, model.atlas.n_charts, model.atlas.texel_size / kMillimetre);
+        for (const auto& path : {a.project, a.exported, a.preview, a.forces})
+            if (!path.empty()) fmt::print("wrote {}\n", path.string());
+        std::fflush(stdout);
+    }
+    return 0;
+}
+
+}  // namespace tuft::cli

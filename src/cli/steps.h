@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "cli/console.h"
+#include "render/picture.h"
+#include "stroke/painting.h"
+
+/// Steps that several commands share.
+namespace tuft::cli {
+
+/// Unit, atlas and UV options in the terms of `stroke`.
+stroke::ModelOptions model_options(const Surface& surface, Console& console);
+
+/// Reads, repairs and unwraps a model file.
+stroke::Model load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
+
+/// Throws `Error` when a file could not be written there: its folder is missing or not
+/// writable. Called before long work. Empty paths are fine.
+void check_output(const std::filesystem::path& path);
+/// Throws `UsageError` when the extension is none of `allowed` (".glb", ...).
+void check_extension(const std::filesystem::path& path, const std::vector<std::string>& allowed);
+
+/// Strokes of InkML files in order, with brush, ink and placement filled in where the
+/// file names none.
+std::vector<stroke::Stroke> load_strokes(const Paint& arguments, Console& console);
+
+/// What every painting command can leave behind; empty paths are skipped.
+struct Outputs {
+    std::filesystem::path project, exported, preview;
+    View view;
+    std::string unit = "mm";
+};
+void check_outputs(const Outputs& outputs);
+void write_outputs(const Outputs& outputs, const stroke::Painting& painting, Console& console);
+
+/// Picture of a painted model, or of a bare one (canvas == nullptr).
+render::Image draw_picture(const stroke::Model& model, const stroke::Painting* painting,
+                           const std::string& material, const View& view, int turntable_frame,
+                           int turntable_count, Console& console);
+
+nlohmann::json to_json(const mesh::RepairReport& report);
+nlohmann::json to_json(const atlas::Atlas& atlas, const atlas::AtlasReport& report);
+nlohmann::json to_json(const stroke::StrokeReport& report, const stroke::Stroke& stroke);
+
+/// Greatest resident memory of this process so far, MiB.
+double peak_megabytes();
+
+}  // namespace tuft::cli
