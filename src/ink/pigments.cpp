@@ -184,7 +184,7 @@ Ink parse_ink(std::string_view text, const std::string& source) {
     ink.title = in.text("title", ink.name);
     ink.film = in.number("film", 0.01, 8, ink.film);
     ink.supply = in.number("supply", 1e-6, 1, ink.supply);
-    ink.transfer_length = in.number("transfer_length_mm", 0.001, 100, 0.5) * 1e-3;
+    ink.transfer_length = in.number("transfer_length_mm", 0.001, 100, 0.08) * 1e-3;
     const toml::array* parts = table["pigment"].as_array();
     if (!parts || parts->empty()) in.fail(in.line(), "an ink needs at least one [[pigment]]");
     if (parts->size() > 8) in.fail(in.line(), "an ink has at most 8 pigments");

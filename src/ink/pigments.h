@@ -44,8 +44,10 @@ struct Ink {
     std::string title;               ///< for people
     std::vector<InkPart> parts;      ///< fractions sum to at most 1
     double film = 1.8;               ///< film units a full brush leaves
-    double supply = 0.004;           ///< η: part of the tuft's ink offered per transfer length
-    double transfer_length = 0.5e-3; ///< s0, metres of travel in which a texel takes up its film
+    double supply = 0.004;           ///< η: part of the tuft's ink offered per supply length
+    double supply_length = 0.5e-3;   ///< metres of travel
+    double transfer_length = 0.08e-3; ///< s0, metres of travel in which a texel takes up its film:
+                                      ///< short beside the thinnest hairline, which must be black too
 
     /// Sum of the fractions: 1 for undiluted ink.
     double strength() const;

@@ -75,7 +75,7 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
         return out;
     }
     const double k = std::clamp(contact.moment_factor, 0.0, 1.0);
-    const double offered = ink.supply * k * left / ink.transfer_length;  // film·m² per metre
+    const double offered = ink.supply * k * left / ink.supply_length;  // film·m² per metre
     const double asked = ink.film * contact.width;
     double target = ink.film * std::min(1.0, 0.85 + 0.3 * k);
     if (asked > 0) target *= -std::expm1(-offered / asked);
