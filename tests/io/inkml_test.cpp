@@ -1,0 +1,321 @@
+#include "io/inkml.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "core/random.h"
+#include "core/units.h"
+
+namespace tuft::io {
+namespace {
+
+using stroke::Trace;
+using ::testing::HasSubstr;
+
+std::string ink(const std::string& body) {
+    return "<ink xmlns=\"http://www.w3.org/2003/InkML\">\n" + body + "\n</ink>\n";
+}
+
+std::vector<Trace> parse(const std::string& body, const InkmlOptions& options = {}) {
+    return parse_inkml(ink(body), "test.inkml", options);
+}
+
+std::string message(const std::string& text, const InkmlOptions& options = {}) {
+    try {
+        parse_inkml(text, "test.inkml", options);
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "no error";
+}
+
+std::vector<std::pair<double, double>> millimetres(const Trace& trace) {
+    std::vector<std::pair<double, double>> out;
+    for (const auto& s : trace.samples)
+        out.emplace_back(std::round(s.position.x * 1e9) / 1e6, std::round(s.position.y * 1e9) / 1e6);
+    return out;
+}
+
+using Points = std::vector<std::pair<double, double>>;
+
+TEST(Inkml, DecodesDifferencesAsTheRecommendationDoes) {
+    // Example of the recommendation, section 3.2: an absolute point, velocities, accelerations
+    // (the prefix stays in force), with two intermittent booleans; numbers may touch.
+    const auto traces = parse(R"(
+      <traceFormat>
+        <channel name="X" type="decimal" units="mm"/><channel name="Y" type="decimal" units="mm"/>
+        <intermittentChannels>
+          <channel name="B1" type="boolean" default="F"/><channel name="B2" type="boolean" default="F"/>
+        </intermittentChannels>
+      </traceFormat>
+      <trace>1125 18432,'23'43,"7"-8,3-5,7 -3,6 2,6 8,3 6 T,2 4*T,3 6,3-6 F F</trace>)");
+    ASSERT_EQ(traces.size(), 1u);
+    // velocity: 23 43, 30 35, 33 30, 40 27, 46 29, 52 37, 55 43, 57 47, 60 53, 63 47
+    const Points want{{1125, 18432}, {1148, 18475}, {1178, 18510}, {1211, 18540}, {1251, 18567}, {1297, 18596},
+                      {1349, 18633}, {1404, 18676}, {1461, 18723}, {1521, 18776}, {1584, 18823}};
+    EXPECT_EQ(millimetres(traces[0]), want);
+}
+
+TEST(Inkml, WildcardsGoOnAsBeforeAndExplicitPrefixEndsDifferences) {
+    const auto traces = parse("<trace>10 5,'2'1,* *,!0 *,* !7,\"* ?</trace>");
+    // After !0 the X channel is explicit, so * holds it; Y runs on by 1 until !7.
+    const Points want{{10, 5}, {12, 6}, {14, 7}, {0, 8}, {0, 7}, {2, 7}};
+    EXPECT_EQ(millimetres(traces[0]), want);
+}
+
+TEST(Inkml, ReadsHexadecimalAndExponents) {
+    const auto traces = parse("<trace>#FF 1.5e1,-#10 -2.5E-1 , 1 2 ,\n</trace>");
+    const Points want{{255, 15}, {-16, -0.25}, {1, 2}};
+    EXPECT_EQ(millimetres(traces[0]), want);
+}
+
+TEST(Inkml, UnitsAndResolutionsBringLengthsToMetres) {
+    const std::pair<const char*, double> units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}, {"in", 0.0254},
+                                                    {"pt", 0.0254 / 72}, {"himetric", 1e-5}, {"dev", 1e-3}};
+    for (const auto& [unit, metres] : units) {
+        const std::string u = unit;
+        const auto t = parse("<traceFormat><channel name='X' units='" + u + "'/><channel name='Y' units='" + u +
+                             "'/></traceFormat><trace>2 3</trace>");
+        EXPECT_NEAR(t[0].samples[0].position.x, 2 * metres, 1e-12) << unit;
+        EXPECT_NEAR(t[0].samples[0].position.y, 3 * metres, 1e-12) << unit;
+    }
+    // As note-taking programs write it: integers, and so many of them in a centimetre.
+    const auto t = parse(R"(
+      <definitions><context xml:id="ctx0"><inkSource xml:id="src0">
+        <traceFormat>
+          <channel name="X" type="integer" max="1024" units="cm"/><channel name="Y" type="integer" max="768" units="cm"/>
+          <channel name="F" type="integer" max="32767" units="dev"/>
+        </traceFormat>
+        <channelProperties>
+          <channelProperty channel="X" name="resolution" value="1000" units="1/cm"/>
+          <channelProperty channel="Y" name="resolution" value="500" units="1/cm"/>
+          <channelProperty channel="F" name="resolution" value="1" units="1/dev"/>
+        </channelProperties></inkSource></context></definitions>
+      <trace contextRef="#ctx0">1000 1000 16383.5</trace>)");
+    EXPECT_NEAR(t[0].samples[0].position.x, 0.01, 1e-12);
+    EXPECT_NEAR(t[0].samples[0].position.y, 0.02, 1e-12);
+    EXPECT_NEAR(t[0].samples[0].pressure, 0.5, 1e-12);
+}
+
+TEST(Inkml, TimesAreRebasedAndNeverFall) {
+    const std::string format = "<traceFormat><channel name='X'/><channel name='Y'/><channel name='T'%/></traceFormat>";
+    for (const auto& [unit, scale] : {std::pair{"", 1e-3}, {" units='s'", 1.0}, {" units='us'", 1e-6}}) {
+        std::string f = format;
+        f.replace(f.find('%'), 1, unit);
+        const auto t = parse(f + "<trace>0 0 1000,1 0 1010,2 0 1005,3 0 1030</trace>");
+        EXPECT_EQ(t[0].samples[0].time, 0);
+        EXPECT_NEAR(t[0].samples[1].time, 10 * scale, 1e-12);
+        EXPECT_NEAR(t[0].samples[2].time, 10 * scale, 1e-12);
+        EXPECT_NEAR(t[0].samples[3].time, 30 * scale, 1e-12);
+    }
+    const auto rated = parse("<inkSource><sampleRate value='50'/></inkSource><trace>0 0,1 0,2 0</trace>");
+    EXPECT_NEAR(rated[0].samples[2].time, 0.04, 1e-12);
+    const auto lasting = parse("<trace duration='300'>0 0,1 0,2 0,2 0</trace>");
+    EXPECT_NEAR(lasting[0].samples[2].time, 0.2, 1e-12);
+    const auto plain = parse("<trace>0 0,6 0</trace>", {.pen_speed = 0.06});
+    EXPECT_NEAR(plain[0].samples[1].time, 0.1, 1e-12);
+}
+
+TEST(Inkml, PlanarHandwritingGetsPressureThatSwellsAndTapers) {
+    std::string points;
+    for (int i = 0; i <= 100; ++i) points += (i ? "," : "") + std::to_string(0.2 * i) + " 0";
+    const auto t = parse("<trace>" + points + "</trace><trace>3 3</trace>");
+    ASSERT_EQ(t.size(), 2u);
+    EXPECT_TRUE(t[0].flat);
+    const auto& s = t[0].samples;
+    EXPECT_NEAR(s[50].pressure, 0.5, 1e-9);  // even speed in the middle
+    EXPECT_LT(s[0].pressure, s[10].pressure);
+    EXPECT_LT(s[100].pressure, 0.3 * s[50].pressure);
+    for (const auto& x : s) EXPECT_TRUE(x.pressure > 0 && x.pressure <= 1);
+    EXPECT_NEAR(t[1].samples[0].pressure, 0.5, 1e-12);
+}
+
+TEST(Inkml, FlatTracesScaleTogether) {
+    const auto t = parse("<trace>0 0,1000 0</trace><trace>3000 500,4000 0</trace>", {.flat_width = 0.1});
+    EXPECT_NEAR(t[1].samples[1].position.x - t[0].samples[0].position.x, 0.1, 1e-12);
+    EXPECT_NEAR(t[1].samples[0].position.y - t[0].samples[0].position.y, 0.0125, 1e-12);
+}
+
+TEST(Inkml, PressureWithoutARangeIsScaledByTheLargest) {
+    const std::string f = "<traceFormat><channel name='X'/><channel name='Y'/><channel name='P'/></traceFormat>";
+    EXPECT_NEAR(parse(f + "<trace>0 0 0.25</trace>")[0].samples[0].pressure, 0.25, 1e-12);
+    const auto t = parse(f + "<trace>0 0 256</trace><trace>0 0 1024</trace>");
+    EXPECT_NEAR(t[0].samples[0].pressure, 0.25, 1e-12);
+    EXPECT_NEAR(t[1].samples[0].pressure, 1, 1e-12);
+    const auto force = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='F' units='N'/></traceFormat>"
+                             "<trace>0 0 0.6,0 0 9</trace>", {.full_force = 2});
+    EXPECT_NEAR(force[0].samples[0].pressure, 0.3, 1e-12);
+    EXPECT_NEAR(force[0].samples[1].pressure, 1, 1e-12);
+}
+
+TEST(Inkml, TiltAzimuthAndQuaternionsAgree) {
+    const auto tilted = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='OTx' units='deg'/>"
+                              "<channel name='OTy' units='deg'/></traceFormat><trace>0 0 20 -10</trace>");
+    EXPECT_NEAR(tilted[0].samples[0].tilt.x, 20 * kDegree, 1e-12);
+    EXPECT_NEAR(tilted[0].samples[0].tilt.y, -10 * kDegree, 1e-12);
+    const auto polar = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='OA' units='deg'/>"
+                             "<channel name='OE' units='deg'/></traceFormat><trace>0 0 90 60</trace>");
+    EXPECT_NEAR(polar[0].samples[0].tilt.x, 0, 1e-12);
+    EXPECT_NEAR(polar[0].samples[0].tilt.y, 30 * kDegree, 1e-12);
+    // In space the holder leans by the same angles from +z.
+    const auto space = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='Z'/><channel name='OTx'/>"
+                             "<channel name='OTy'/></traceFormat><trace>1 2 3 20 -10</trace>");
+    EXPECT_FALSE(space[0].flat);
+    EXPECT_NEAR(space[0].samples[0].position.z, 0.003, 1e-12);
+    const Vec3 up = space[0].samples[0].rotation * Vec3(0, 0, 1);
+    EXPECT_NEAR(up.x / up.z, std::tan(20 * kDegree), 1e-12);
+    EXPECT_NEAR(up.y / up.z, std::tan(-10 * kDegree), 1e-12);
+    const auto turned = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='Z'/><channel name='QW'/>"
+                              "<channel name='QX'/><channel name='QY'/><channel name='QZ'/></traceFormat><trace>1 2 3 2 0 0 2</trace>");
+    EXPECT_NEAR(glm::length(turned[0].samples[0].rotation * Vec3(1, 0, 0) - Vec3(0, 1, 0)), 0, 1e-12);
+}
+
+TEST(Inkml, AnnotationsInheritThroughGroupsAndBrushes) {
+    const auto t = parse(R"(
+      <annotation type="tuft:ink">carbon</annotation>
+      <definitions><brush xml:id="b"><annotation type="tuft:brush">wolf-small</annotation></brush>
+        <context xml:id="c" brushRef="#b"/></definitions>
+      <traceGroup contextRef="#c">
+        <annotation type="tuft:origin">1 2.5 -3 mm</annotation>
+        <annotation type="tuft:right">0 2 0</annotation><annotation type="tuft:down">0 0 -1</annotation>
+        <annotation type="tuft:laying">project</annotation>
+        <trace><annotation type="tuft:label">永 &lt;1&gt;</annotation><annotation type="tuft:seed">77</annotation>1 2</trace>
+        <traceGroup><annotation type="tuft:ink">cobalt</annotation><trace>3 4</trace></traceGroup>
+      </traceGroup>
+      <trace>5 6</trace>)");
+    ASSERT_EQ(t.size(), 3u);
+    EXPECT_EQ(t[0].brush, "wolf-small");
+    EXPECT_EQ(t[0].ink, "carbon");
+    EXPECT_EQ(t[0].label, "永 <1>");
+    EXPECT_EQ(t[0].seed, 77u);
+    EXPECT_NEAR(glm::length(t[0].placement.origin - Vec3(0.001, 0.0025, -0.003)), 0, 1e-15);
+    EXPECT_EQ(t[0].placement.right, Vec3(0, 1, 0));
+    EXPECT_EQ(t[0].placement.laying, stroke::Laying::project);
+    EXPECT_EQ(t[1].ink, "cobalt");
+    EXPECT_EQ(t[1].label, "");
+    EXPECT_EQ(t[2].brush, "");
+    EXPECT_EQ(t[2].placement.laying, stroke::Laying::wrap);
+}
+
+TEST(Inkml, PenUpTracesAreSkippedAndContinuationsJoined) {
+    const auto t = parse("<trace type='penUp'>0 0</trace><trace xml:id='a' continuation='begin'>1 1,2 2</trace>"
+                         "<trace>9 9</trace><trace xml:id='b' continuation='end' priorRef='#a'>3 3</trace>");
+    ASSERT_EQ(t.size(), 2u);
+    EXPECT_EQ(millimetres(t[0]), (Points{{1, 1}, {2, 2}, {3, 3}}));
+}
+
+TEST(Inkml, WritesWhatItReads) {
+    std::vector<Trace> traces(5);
+    for (std::size_t k = 0; k < traces.size(); ++k) {
+        Trace& t = traces[k];
+        auto random = [&, n = std::uint64_t{0}](double lo, double hi) mutable {
+            return lo + (hi - lo) * uniform(k + 1, n++);
+        };
+        t.flat = k != 4;
+        t.brush = "wolf-small";
+        t.ink = k < 2 ? "carbon" : "cobalt & <gold>";
+        t.label = "横 " + std::to_string(k);
+        t.seed = k * 0x123456789abcdefULL;
+        if (t.flat)
+            t.placement = {{0.1, -0.02 * double(k / 2), 1e-4 / 3}, glm::normalize(Vec3(1, 2, 3)),
+                           glm::normalize(Vec3(2, -1, 0)), k == 3 ? stroke::Laying::project : stroke::Laying::wrap};
+        for (int i = 0; i < 50; ++i) {
+            stroke::TraceSample s;
+            s.time = 0.005 * i + (i ? 1e-3 * random(0, 1) : 0);
+            s.position = {random(-0.2, 0.2), random(-0.2, 0.2), t.flat ? 0 : random(-1, 1)};
+            s.pressure = random(0, 1);
+            if (t.flat && k % 2) s.tilt = {random(-1, 1), random(-1, 1)};
+            if (!t.flat) s.rotation = glm::normalize(Quat(random(-1, 1), random(-1, 1), random(-1, 1), 1));
+            t.samples.push_back(s);
+        }
+    }
+    const auto path = std::filesystem::temp_directory_path() / "tuft_inkml_test.inkml";
+    write_inkml(path, traces, "Five <strokes>");
+    const auto back = read_inkml(path);
+    std::filesystem::remove(path);
+    ASSERT_EQ(back.size(), traces.size());
+    for (std::size_t k = 0; k < traces.size(); ++k) {
+        const Trace &a = traces[k], &b = back[k];
+        EXPECT_EQ(a.flat, b.flat);
+        EXPECT_EQ(a.brush, b.brush);
+        EXPECT_EQ(a.ink, b.ink);
+        EXPECT_EQ(a.label, b.label);
+        EXPECT_EQ(a.seed, b.seed);
+        EXPECT_EQ(a.placement.laying, b.placement.laying);
+        EXPECT_LT(glm::length(a.placement.origin - b.placement.origin), 1e-9);
+        EXPECT_LT(glm::length(a.placement.right - b.placement.right), 1e-9);
+        ASSERT_EQ(a.samples.size(), b.samples.size());
+        for (std::size_t i = 0; i < a.samples.size(); ++i) {  // tolerances as the header states
+            const auto &s = a.samples[i], &r = b.samples[i];
+            EXPECT_LT(glm::length(s.position - r.position), a.flat ? 7.2e-7 : 1e-9);
+            EXPECT_NEAR(s.time, r.time, 1e-6);
+            EXPECT_NEAR(s.pressure, r.pressure, 1e-5);
+            EXPECT_LT(glm::length(s.tilt - r.tilt), 1e-4);
+            EXPECT_NEAR(std::abs(glm::dot(s.rotation, r.rotation)), 1, 1e-9);
+        }
+    }
+    // Written again, the text is the same: rounding is idempotent.
+    EXPECT_EQ(inkml_text(back), inkml_text(parse_inkml(inkml_text(back), "again")));
+}
+
+TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
+    EXPECT_THAT(message("<ink>\n<trace>1 2</trace>\n<oops></ink>"), HasSubstr("test.inkml:3: not well-formed XML"));
+    EXPECT_THAT(message("hello"), HasSubstr("test.inkml:1: not well-formed XML"));
+    EXPECT_THAT(message(""), HasSubstr("not well-formed XML"));
+    EXPECT_THAT(message("<svg/>"), HasSubstr("not InkML"));
+    EXPECT_THAT(message(ink("")), HasSubstr("no pen-down traces"));
+    EXPECT_THAT(message(ink("<trace></trace>")), HasSubstr("no pen-down traces"));
+    EXPECT_THAT(message(ink("<trace>1 2,\n3 4,\n5 x</trace>")), HasSubstr("test.inkml:4: 'x' is not a number"));
+    EXPECT_THAT(message(ink("<trace>1 2,\n3</trace>")), HasSubstr("test.inkml:3: a point has 1 values"));
+    EXPECT_THAT(message(ink("<trace>1 2 3</trace>")), HasSubstr("test.inkml:2: a point has more than the 2"));
+    EXPECT_THAT(message(ink("<trace>1 2,,3 4</trace>")), HasSubstr("a point has 0 values"));
+    EXPECT_THAT(message(ink("<trace>1 nan</trace>")), HasSubstr("not finite"));
+    EXPECT_THAT(message(ink("<trace>1 inf</trace>")), HasSubstr("not finite"));
+    EXPECT_THAT(message(ink("<trace>1 1e999</trace>")), HasSubstr("out of range"));
+    EXPECT_THAT(message(ink("<trace>1 --2</trace>")), HasSubstr("is not a number"));
+    EXPECT_THAT(message(ink("<trace>1 9e30</trace>")), HasSubstr("declare the unit"));
+    EXPECT_THAT(message(ink("<trace>'1 2</trace>")), HasSubstr("before any explicit value"));
+    EXPECT_THAT(message(ink("<trace>1 2,\"1 2</trace>")), HasSubstr("before any first difference"));
+    EXPECT_THAT(message(ink("<trace contextRef='#nowhere'>1 2</trace>")), HasSubstr("'nowhere', which is not in the file"));
+    EXPECT_THAT(message(ink("<traceFormat><channel name='Y'/></traceFormat><trace>1</trace>")), HasSubstr("no X and Y"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:origin'>1 2</annotation><trace>1 2</trace>")), HasSubstr("three numbers"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:right'>0 0 0</annotation><trace>1 2</trace>")), HasSubstr("direction is zero"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:laying'>flat</annotation><trace>1 2</trace>")), HasSubstr("neither wrap nor project"));
+    EXPECT_THAT(message(ink("<context xml:id='a' contextRef='#b'/><context xml:id='b' contextRef='#a'/><trace>1 2</trace>")), HasSubstr("in a circle"));
+    EXPECT_THAT(message(ink("<trace>1 2,3 4,5 6</trace>"), {.max_samples = 2}), HasSubstr("more samples than 2"));
+    std::string deep;
+    for (int i = 0; i < 5000; ++i) deep += "<traceGroup>";
+    for (int i = 0; i < 5000; ++i) deep += "</traceGroup>";
+    EXPECT_THAT(message(ink(deep)), HasSubstr("nested too deeply"));
+    EXPECT_THROW(read_inkml("/nonexistent/file.inkml"), Error);
+}
+
+TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
+    Trace t;
+    for (int i = 0; i < 20; ++i) t.samples.push_back({.time = 0.005 * i, .position = {0.001 * i, 0, 0}, .pressure = 0.5});
+    const std::string whole = inkml_text(std::vector{t, t});
+    const auto survives = [](const std::string& text) {
+        try {
+            for (const Trace& trace : parse_inkml(text, "garbled"))
+                for (const auto& s : trace.samples)
+                    ASSERT_TRUE(std::isfinite(s.position.x) && std::isfinite(s.time) && s.pressure >= 0 && s.pressure <= 1);
+        } catch (const Error&) {
+        }
+    };
+    for (std::size_t n = 0; n < whole.size(); n += 7) survives(whole.substr(0, n));
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+        std::string garbled = whole;
+        for (int k = 0; k < 3; ++k)
+            garbled[hash_bits(i, 2 * k) % garbled.size()] = static_cast<char>(hash_bits(i, 2 * k + 1) % 128);
+        survives(garbled);
+    }
+}
+
+}  // namespace
+}  // namespace tuft::io
