@@ -19,10 +19,15 @@ struct Entry {
 };
 
 constexpr Entry kModels[] = {
-    {"bowl.ply", models::make_bowl},     {"plate.ply", models::make_plate},
-    {"vase.ply", models::make_vase},     {"sheet.ply", models::make_sheet},
-    {"sphere.ply", models::make_sphere}, {"cylinder.ply", models::make_cylinder},
-    {"torus.ply", models::make_torus},   {"thin_plate.ply", models::make_thin_plate},
+    {"bowl.ply", models::make_bowl},
+    {"plate.ply", models::make_plate},
+    {"vase.ply", models::make_vase},
+    {"car.ply", models::make_car},
+    {"sheet.ply", models::make_sheet},
+    {"sphere.ply", models::make_sphere},
+    {"cylinder.ply", models::make_cylinder},
+    {"torus.ply", models::make_torus},
+    {"thin_plate.ply", models::make_thin_plate},
 };
 
 template <class T>
