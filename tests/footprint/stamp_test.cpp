@@ -1,0 +1,457 @@
+#include "footprint/stamp.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "../atlas/analytic_surfaces.h"
+#include "atlas/log_map.h"
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "core/random.h"
+
+namespace tuft::footprint {
+namespace {
+
+using testing::Unwrapped;
+constexpr double kPi = std::numbers::pi;
+
+/// A surface with its maps, and stamps on it.
+struct Stage {
+    Unwrapped u;
+    atlas::TexelMap map;
+    atlas::PieceGraph graph;
+    PlanScratch scratch;
+
+    explicit Stage(Unwrapped unwrapped) : u(std::move(unwrapped)) {
+        map = atlas::build_texel_map(u.mesh, u.atlas);
+        graph = atlas::build_piece_graph(u.mesh, u.atlas, map);
+    }
+    Surface surface() const { return {u.mesh, u.atlas, map, graph}; }
+
+    /// Triangle whose middle is nearest to p, among those that do not face away from `n`.
+    std::uint32_t triangle_at(const Vec3& p, const Vec3& n = Vec3{0}) const {
+        std::uint32_t best = 0;
+        double distance = 1e9;
+        for (std::uint32_t t = 0; t < u.mesh.n_triangles(); ++t) {
+            const Vec3 c =
+                (u.mesh.position(t, 0) + u.mesh.position(t, 1) + u.mesh.position(t, 2)) / 3.0;
+            if (glm::dot(Vec3(u.mesh.corner_normals[3 * t]), n) < 0) continue;
+            if (glm::length(c - p) < distance) {
+                distance = glm::length(c - p);
+                best = t;
+            }
+        }
+        return best;
+    }
+
+    StampJobs plan(const Footprint& f, const Motion& motion = {},
+                   const StampOptions& options = {}) {
+        StampJobs jobs = plan_stamp(surface(), f, motion, options, scratch);
+        choose_mode(jobs, false, options);
+        return jobs;
+    }
+};
+
+/// Calls visit(slot, texel, exposure) for all texels with any.
+template <class Visit>
+void for_exposed(const Stage& stage, const StampJobs& jobs, Visit&& visit) {
+    std::array<float, atlas::kTileTexels> exposure;
+    for (const TileJob& job : jobs.tiles) {
+        evaluate_tile(stage.map.tiles[job.slot], jobs, job, exposure);
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            if (exposure[t] > 0) visit(job.slot, t, exposure[t]);
+        }
+    }
+}
+
+double deposit_area(const Stage& stage, const StampJobs& jobs) {
+    double sum = 0;
+    for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
+        sum += double(e) * stage.map.tiles[slot].area[t];
+    });
+    return sum;
+}
+
+/// Where the stamp's frames put a texel, metres in the tangent plane.
+Vec2 place_of(const Stage& stage, const StampJobs& jobs, const Footprint& f, std::uint32_t slot,
+              int t) {
+    for (const TileJob& job : jobs.tiles) {
+        if (job.slot != slot) continue;
+        for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
+            if (jobs.frames[k].piece != stage.map.tiles[slot].piece[t]) continue;
+            const PieceFrame& p = jobs.piecewise ? jobs.frames[k] : jobs.stamp_frame;
+            const auto vec = [](const std::array<float, 3>& a) { return Vec3{a[0], a[1], a[2]}; };
+            // log_map is linear in t and b: the picture's axes take their place.
+            const Frame frame{vec(p.origin), f.cell * vec(p.tu), f.cell * vec(p.tv), vec(p.normal)};
+            const Vec3 m = glm::normalize(Vec3(stage.map.normal(slot, t)));
+            return atlas::log_map(frame, Vec3(stage.map.position(slot, t)), m) +
+                   (Vec2(p.u0, p.v0) + 0.5) * f.cell + f.lo;
+        }
+    }
+    return Vec2{NAN};
+}
+
+/// A disc of radius r, antialiased.
+Footprint disc(const Frame& frame, std::uint32_t triangle, double r, double cell) {
+    Footprint f;
+    f.frame = frame;
+    f.triangle = triangle;
+    f.cell = cell;
+    const int half = static_cast<int>(std::ceil(r / cell)) + 2;
+    f.width = f.height = 2 * half;
+    f.lo = Vec2{-half * cell};
+    f.radius = r + cell;
+    for (int j = 0; j < f.height; ++j) {
+        for (int i = 0; i < f.width; ++i) {
+            const double d = glm::length(f.lo / cell + Vec2(i, j) + 0.5) - r / cell;
+            f.coverage.push_back(
+                static_cast<std::uint8_t>(std::clamp(0.5 - d, 0.0, 1.0) * 255 + 0.5));
+        }
+    }
+    return f;
+}
+
+double disc_area(const Footprint& f) {
+    double sum = 0;
+    for (const std::uint8_t c : f.coverage) sum += c / 255.0;
+    return sum * f.cell * f.cell;
+}
+
+TEST(Stamp, ExposesOnTheSheetWhatTheFootprintShows) {
+    for (const int charts : {1, 3}) {
+        Stage stage(testing::sheet(0.06, charts, 360.0 / charts));
+        const double texel = 0.06 / 360, r = 40 * texel;
+        const Vec3 at{0.0021, -0.0013, 0};
+        const Footprint f =
+            disc(make_frame(at, {0, 0, 1}, {0.8, 0.6, 0}), stage.triangle_at(at), r, texel);
+        const StampJobs jobs = stage.plan(f);
+        EXPECT_FALSE(jobs.piecewise);
+        EXPECT_LT(jobs.discrepancy, 1e-5);  // float rounding on a flat sheet, seams or not
+        double worst = 0;
+        for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
+            const double d = glm::length(Vec3(stage.map.position(slot, t)) - at) / texel;
+            worst = std::max(worst, std::abs(e - std::clamp(0.5 - (d - 40), 0.0, 1.0)));
+        });
+        // Bilinear interpolation of a clamped ramp one cell wide: up to a quarter at its ends.
+        EXPECT_LT(worst, 0.26);
+        // Sampling a disc of 40 texels at its texels, 1/255 steps: few parts in 10 000.
+        EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f), 1, 1e-3) << charts;
+    }
+}
+
+TEST(Stamp, CoversOnTheSphereTheAreaOfTheCap) {
+    // A geodesic disc of radius r = q R has 2 (1 − cos q) / q² of πr².
+    const double R = 0.02;
+    Stage stage(testing::sphere(R, 500, 80));
+    const Vec3 n = glm::normalize(Vec3{1, 0.93, 0.2});  // near a seam
+    for (const double q : {0.25, 0.5, 1.0}) {
+        const Footprint f = disc(make_frame(R * n, n), stage.triangle_at(R * n), q * R, q * R / 64);
+        StampJobs jobs = stage.plan(f);
+        jobs.piecewise = false;
+        const double exact = 2 * (1 - std::cos(q)) / (q * q);
+        // Where charts meet, texels are counted by their centres: up to half a texel too much or
+        // too little along a diameter of 160 … 640 texels.
+        EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f) / exact, 1, q < 0.3 ? 4e-3 : 2e-3)
+            << q;
+    }
+}
+
+struct Errors {
+    double mean = 0, max = 0;
+    std::size_t n = 0;
+};
+
+/// Error of (u, v) over the radius against the exact log map, over all exposed texels.
+template <class Exact>
+Errors errors(const Stage& stage, const StampJobs& jobs, const Footprint& f, double r,
+              Exact&& exact) {
+    Errors e;
+    for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float) {
+        const Vec2 truth = exact(Vec3(stage.map.position(slot, t)));
+        const double error = glm::length(place_of(stage, jobs, f, slot, t) - truth) / r;
+        e.mean += error;
+        e.max = std::max(e.max, error);
+        ++e.n;
+    });
+    e.mean /= std::max<double>(e.n, 1);
+    return e;
+}
+
+TEST(Stamp, FollowsTheSphereAndTheCylinder) {
+    const double R = 0.02;
+    Stage ball(testing::sphere(R, 500, 80));
+    for (const double q : {0.25, 0.5, 1.0}) {
+        const Vec3 n = glm::normalize(Vec3{1, 0.93, 0.2});
+        const Footprint f = disc(make_frame(R * n, n), ball.triangle_at(R * n), q * R, q * R / 64);
+        const StampJobs jobs = ball.plan(f);
+        const Errors e = errors(ball, jobs, f, q * R, [&](const Vec3& p) {
+            const Vec3 m = glm::normalize(p);
+            const Vec3 d = m - glm::dot(m, n) * n;
+            const double angle = std::acos(std::clamp(glm::dot(m, n), -1.0, 1.0));
+            const double s = glm::length(d) > 0 ? R * angle / glm::length(d) : 0;
+            return s * Vec2{glm::dot(d, f.frame.t), glm::dot(d, f.frame.b)};
+        });
+        // Targets: 0.1 % mean, 0.5 % max up to ratio 0.5; 1 % and 6 % at 1.
+        EXPECT_LT(e.mean, q <= 0.5 ? 1e-3 : 1e-2) << q;
+        EXPECT_LT(e.max, q <= 0.5 ? 5e-3 : 6e-2) << q;
+    }
+    Stage tube(testing::cylinder(R, 0.06, 5, 10000, 48));
+    for (const double q : {0.5, 1.0}) {
+        const Vec3 n{std::cos(1.2), std::sin(1.2), 0};
+        const Footprint f =
+            disc(make_frame(R * n, n, {0, 0, 1}), tube.triangle_at(R * n), q * R, q * R / 64);
+        const StampJobs jobs = tube.plan(f);
+        const Errors e = errors(tube, jobs, f, q * R, [&](const Vec3& p) {
+            const double angle = std::remainder(std::atan2(p.y, p.x) - 1.2, 2 * kPi);
+            return Vec2{p.z, -R * angle};  // t = z, b = n × t = −∂/∂φ
+        });
+        // A fifth of the circumference in 48 facets: chords and interpolated normals.
+        EXPECT_LT(e.mean, 1e-3) << q;
+        EXPECT_LT(e.max, 5e-3) << q;
+        // A developable surface keeps the area.
+        EXPECT_NEAR(deposit_area(tube, jobs) / disc_area(f), 1, 2e-3) << q;
+    }
+}
+
+TEST(Stamp, UnfoldsARightAngle) {
+    for (const bool one_chart : {true, false}) {
+        Stage stage(testing::right_angle(0.04, 300, one_chart));
+        const double r = 0.01, a = 0.3 * r;
+        const Vec3 at{-a, 0.0007, 0};
+        const Footprint f = disc(make_frame(at, {0, 0, 1}), stage.triangle_at(at), r, r / 64);
+        const StampJobs jobs = stage.plan(f);
+        EXPECT_TRUE(jobs.piecewise);
+        const Errors e = errors(stage, jobs, f, r, [&](const Vec3& p) {
+            return Vec2{p.z < -1e-7 ? a - p.z : p.x + a, p.y - at.y};  // u = a + b beyond the edge
+        });
+        // Target for creases is 0.5 % at most; flat pieces meet in points of both planes.
+        EXPECT_LT(e.max, 1e-3) << one_chart;
+        EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f), 1, 3e-3) << one_chart;
+    }
+}
+
+TEST(Stamp, DoesNotBleedThroughAPlate) {
+    const double thickness = 0.0002;
+    Stage stage(testing::plate(0.04, thickness, 300));
+    const double r = 0.01;
+    for (const double x : {0.0, 0.008, 0.013, 0.0199}) {
+        const Vec3 at{x, 0.0012, 0};
+        const Footprint f =
+            disc(make_frame(at, {0, 0, 1}), stage.triangle_at(at, {0, 0, 1}), r, r / 64);
+        const StampJobs jobs = stage.plan(f);
+        double front = 0, back = 0, rim = 0;
+        for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
+            const double nz = stage.map.tiles[slot].nz[t], area = stage.map.tiles[slot].area[t];
+            (nz > 0.5 ? front : nz < -0.5 ? back : rim) += e * area;
+        });
+        EXPECT_GT(front, 0) << x;
+        EXPECT_EQ(back, 0) << x;
+        EXPECT_LT(rim, 0.02 * kPi * r * r) << x;
+    }
+}
+
+TEST(Stamp, StaysOnItsOwnOfTwoStackedSheets) {
+    // Two faces 0.05 r apart that nothing joins.
+    Unwrapped u = testing::plate(0.04, 0.0005, 300);
+    const std::size_t n = 2 * 2 * 16 * 16;
+    u.mesh.triangles.resize(n);
+    u.mesh.corner_normals.resize(3 * n);
+    u.mesh.neighbours.resize(3 * n);
+    for (std::uint32_t& x : u.mesh.neighbours) x = x < n ? x : kNone;
+    for (std::size_t t = n / 2; t < n; ++t) {  // both face up
+        std::swap(u.mesh.triangles[t][1], u.mesh.triangles[t][2]);
+        std::swap(u.atlas.corner_uvs[3 * t + 1], u.atlas.corner_uvs[3 * t + 2]);
+        for (int k = 0; k < 3; ++k) u.mesh.corner_normals[3 * t + k] = {0, 0, 1};
+        std::swap(u.mesh.neighbours[3 * t], u.mesh.neighbours[3 * t + 2]);
+    }
+    u.atlas.corner_uvs.resize(3 * n);
+    u.atlas.triangle_chart.resize(n);
+    Stage stage(std::move(u));
+    const Vec3 at{0.001, 0.0012, 0};
+    const Footprint f = disc(make_frame(at, {0, 0, 1}), stage.triangle_at(at), 0.01, 0.01 / 64);
+    std::size_t exposed = 0, wrong = 0;
+    for_exposed(stage, stage.plan(f), [&](std::uint32_t slot, int t, float) {
+        ++exposed;
+        wrong += stage.map.tiles[slot].pz[t] < -1e-4;
+    });
+    EXPECT_GT(exposed, 10000u);
+    EXPECT_EQ(wrong, 0u);
+}
+
+/// Sum of exposure × way over a stroke of stamps `step` texels apart.
+std::vector<std::array<double, atlas::kTileTexels>> stroke(Stage& stage, double texel,
+                                                           double step) {
+    std::vector<std::array<double, atlas::kTileTexels>> sum(stage.map.n_slots());
+    for (auto& s : sum) s.fill(0);
+    const double length = 64;
+    for (double way = step; way <= length + 1e-9; way += step) {
+        const Vec3 at = Vec3{-0.006, -0.0031, 0} + way * texel * Vec3{0.8, 0.6, 0};
+        const Footprint f = disc(make_frame(at, {0, 0, 1}, {1, 0, 0}), stage.triangle_at(at),
+                                 16 * texel, 0.5 * texel);
+        const Motion motion{step * texel * Vec2{0.8, 0.6}, 0};
+        for_exposed(stage, stage.plan(f, motion),
+                    [&](std::uint32_t slot, int t, float e) { sum[slot][t] += e * step; });
+    }
+    return sum;
+}
+
+TEST(Stamp, AStrokeIsTheSameAtAnySampling) {
+    Stage stage(testing::sheet(0.03, 2, 120));
+    const double texel = 0.03 / 240;
+    const auto dense = stroke(stage, texel, 0.5);
+    double total = 0, peak = 0;
+    for (const auto& tile : dense) {
+        for (const double w : tile) {
+            total += w;
+            peak = std::max(peak, w);
+        }
+    }
+    for (const double step : {1.0, 2.0, 4.0}) {
+        const auto sparse = stroke(stage, texel, step);
+        double sum = 0, error2 = 0;
+        std::size_t n = 0;
+        for (std::size_t s = 0; s < dense.size(); ++s) {
+            for (int t = 0; t < atlas::kTileTexels; ++t) {
+                sum += sparse[s][t];
+                error2 += (sparse[s][t] - dense[s][t]) * (sparse[s][t] - dense[s][t]);
+                n += dense[s][t] > 0;
+            }
+        }
+        EXPECT_LT(std::sqrt(error2 / double(n)) / peak, 0.01) << step;
+        EXPECT_NEAR(sum / total, 1, 1e-3) << step;
+    }
+}
+
+TEST(Stamp, ATurnAboutTheOriginSweepsTheAngle) {
+    // A bar turned by 60° exposes a texel at radius ρ for (bar's angular width) / 60° of the
+    // motion.
+    Stage stage(testing::sheet(0.03, 1, 240));
+    const double texel = 0.03 / 240;
+    Footprint f;
+    f.frame = make_frame({0.0001, 0.0002, 0}, {0, 0, 1}, {1, 0, 0});
+    f.triangle = stage.triangle_at(f.frame.origin);
+    f.cell = texel;
+    f.width = f.height = 84;
+    f.lo = Vec2{-42 * texel};
+    f.radius = 42 * texel;
+    f.coverage.assign(84 * 84, 0);
+    for (int i = 44; i < 82; ++i) {
+        for (int j = 40; j < 44; ++j) f.coverage[84 * j + i] = 255;  // 4 texels wide along +u
+    }
+    StampJobs jobs = stage.plan(f, {Vec2{0}, kPi / 3});
+    double at_30 = 0;
+    std::size_t n = 0, outside = 0;
+    for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
+        const Vec3 d = Vec3(stage.map.position(slot, t)) - f.frame.origin;
+        const double angle = std::atan2(d.y, d.x), rho = glm::length(d) / texel;
+        outside += rho > 15 && (angle < -kPi / 3 - 3 / rho || angle > 3 / rho);
+        if (rho < 20 || rho > 36 || std::abs(angle + kPi / 6) > 0.25) return;
+        at_30 += e * rho;
+        ++n;
+    });
+    EXPECT_EQ(outside, 0u);  // it came from −60°
+    // Width 4 texels over a way of ρ π/3; 44 sub-poses.
+    EXPECT_NEAR(at_30 / double(n) / (4 / (kPi / 3)), 1, 0.02);
+}
+
+TEST(Stamp, SameBitsForAllInstructionSetsAndThreadCounts) {
+    Stage stage(testing::sphere(0.02, 200));
+    std::vector<Footprint> prints;
+    Random random(7);
+    for (int i = 0; i < 24; ++i) {
+        const Vec3 n = glm::normalize(
+            Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        prints.push_back(disc(make_frame(0.02 * n, n), stage.triangle_at(0.02 * n),
+                              random.uniform(0.001, 0.02), 1e-4));
+    }
+    std::set<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 8}) {
+        set_thread_count(threads);
+        for (const Isa isa : {Isa::baseline, Isa::avx2, Isa::avx512}) {
+            std::vector<std::uint64_t> parts(prints.size());
+            parallel_for(prints.size(), 1, [&](std::size_t begin, std::size_t end) {
+                PlanScratch scratch;
+                for (std::size_t i = begin; i < end; ++i) {
+                    const StampOptions options{.isa = isa};
+                    const Motion motion{Vec2{2e-4, -1e-4}, 0.05};
+                    StampJobs jobs =
+                        plan_stamp(stage.surface(), prints[i], motion, options, scratch);
+                    choose_mode(jobs, i % 2 == 0, options);
+                    std::array<float, atlas::kTileTexels> exposure;
+                    for (const TileJob& job : jobs.tiles) {
+                        evaluate_tile(stage.map.tiles[job.slot], jobs, job, exposure);
+                        parts[i] = hash_span(std::span<const float>(exposure), parts[i]);
+                    }
+                }
+            });
+            hashes.insert(hash_span(std::span<const std::uint64_t>(parts)));
+        }
+    }
+    set_thread_count(0);
+    EXPECT_EQ(hashes.size(), 1u);
+}
+
+TEST(Stamp, PlaneMappingProjectsAlongTheNormals) {
+    // On a sphere the paper's mapping puts a point at angle θ at R tan θ instead of R θ: the
+    // stamp of radius q R reaches θ = atan q and covers 2 (1 − cos θ) / q² of πr².
+    const double R = 0.02, q = 0.5;
+    Stage stage(testing::sphere(R, 500, 80));
+    const Vec3 n = glm::normalize(Vec3{1, 0.4, 0.2});
+    const Footprint f = disc(make_frame(R * n, n), stage.triangle_at(R * n), q * R, q * R / 64);
+    const StampJobs jobs = stage.plan(f, {}, {.mapping = Mapping::plane});
+    EXPECT_FALSE(jobs.piecewise);
+    const double exact = 2 * (1 - std::cos(std::atan(q))) / (q * q);
+    EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f) / exact, 1, 3e-3);
+}
+
+TEST(Stamp, ChangesNothingWhenTheModelIsMoved) {
+    const Quat turn = glm::angleAxis(0.9, glm::normalize(Vec3{1, 2, -0.5}));
+    const Vec3 shift{0.3, -0.2, 0.1};
+    Stage here(testing::sphere(0.02, 200));
+    Unwrapped moved = here.u;
+    for (Vec3f& p : moved.mesh.positions) p = Vec3f(turn * Vec3(p) + shift);
+    for (Vec3f& m : moved.mesh.corner_normals) m = Vec3f(turn * Vec3(m));
+    Stage there(std::move(moved));
+    const Vec3 n = glm::normalize(Vec3{1, 0.9, 0.7});
+    const Footprint f = disc(make_frame(0.02 * n, n), here.triangle_at(0.02 * n), 0.006, 1e-4);
+    Footprint g = f;
+    g.frame = {turn * f.frame.origin + shift, turn * f.frame.t, turn * f.frame.b, turn * f.frame.n};
+    const StampJobs a = here.plan(f), b = there.plan(g);
+    // Float positions 0.4 m from the origin: 3e-8 m, 3e-4 cells, on a ramp of one cell.
+    EXPECT_NEAR(deposit_area(there, b) / deposit_area(here, a), 1, 1e-4);
+    ASSERT_EQ(a.tiles.size(), b.tiles.size());
+    std::array<float, atlas::kTileTexels> ea, eb;
+    for (std::size_t k = 0; k < a.tiles.size(); ++k) {
+        evaluate_tile(here.map.tiles[a.tiles[k].slot], a, a.tiles[k], ea);
+        evaluate_tile(there.map.tiles[b.tiles[k].slot], b, b.tiles[k], eb);
+        for (int t = 0; t < atlas::kTileTexels; ++t) EXPECT_NEAR(ea[t], eb[t], 2e-3);
+    }
+}
+
+TEST(Stamp, EmptyAndStrayFootprintsExposeNothing) {
+    Stage stage(testing::sheet(0.03, 1, 60));
+    EXPECT_TRUE(stage.plan(Footprint{}).empty());
+    Footprint f = disc(make_frame({0, 0, 0}, {0, 0, 1}), kNone, 0.002, 1e-4);
+    EXPECT_TRUE(stage.plan(f).empty());
+    f.triangle = 1000000;
+    EXPECT_TRUE(stage.plan(f).empty());
+}
+
+TEST(Stamp, ModeHasHysteresis) {
+    StampJobs jobs;
+    const StampOptions options;
+    jobs.discrepancy = 0.012;
+    EXPECT_FALSE(choose_mode(jobs, false, options));
+    EXPECT_TRUE(choose_mode(jobs, true, options));
+    jobs.discrepancy = 0.016;
+    EXPECT_TRUE(choose_mode(jobs, false, options));
+    jobs.discrepancy = 0.009;
+    EXPECT_FALSE(choose_mode(jobs, true, options));
+}
+
+}  // namespace
+}  // namespace tuft::footprint
