@@ -28,11 +28,11 @@ enum class Finish {
 /// Empty spans mean "no such map".
 struct TextureMaps {
     std::uint32_t size = 0;
-    std::span<const Vec2f> corner_uvs;         ///< [3 n_triangles], v up
-    std::span<const Vec3f> base_colour;        ///< linear RGB reflectance, or
-    std::span<const std::array<std::uint8_t, 4>> base_colour_srgb;  ///< sRGB, alpha over the body
-    std::span<const float> roughness;          ///< of the coat, 0 mirror … 1 matt
-    std::span<const float> height;             ///< metres of ink above the surface
+    std::span<const Vec2f> corner_uvs{};       ///< [3 n_triangles], v up
+    std::span<const Vec3f> base_colour{};      ///< linear RGB reflectance, or
+    std::span<const std::array<std::uint8_t, 4>> base_colour_srgb{};  ///< sRGB, alpha over the body
+    std::span<const float> roughness{};        ///< of the coat, 0 mirror … 1 matt
+    std::span<const float> height{};           ///< metres of ink above the surface
 };
 
 struct Appearance {

@@ -1,0 +1,240 @@
+#include "render/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "render/light_buffer.h"
+#include "render/sampling.h"
+
+namespace tuft::render {
+namespace {
+
+/// Sphere of radius 50 mm that stands on z = 0, smooth normals, UVs by longitude and height.
+mesh::TriangleMesh make_sphere(int rings = 32) {
+    mesh::TriangleMesh m;
+    const int around = 2 * rings;
+    const double r = 0.05;
+    const auto point = [&](int i, int j) {
+        const double theta = std::numbers::pi * j / rings, phi = 2 * std::numbers::pi * i / around;
+        return Vec3{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    };
+    for (int j = 0; j <= rings; ++j)
+        for (int i = 0; i < around; ++i) m.positions.emplace_back(r * point(i, j) + Vec3{0, 0, r});
+    for (int j = 0; j < rings; ++j)
+        for (int i = 0; i < around; ++i) {
+            const std::uint32_t a = j * around + i, b = j * around + (i + 1) % around;
+            const std::uint32_t c = a + around, d = b + around;
+            const auto add = [&](std::uint32_t p, std::uint32_t q, std::uint32_t s, std::array<Vec2, 3> uv) {
+                m.triangles.push_back({p, q, s});
+                for (const std::uint32_t v : {p, q, s})
+                    m.corner_normals.emplace_back(glm::normalize(Vec3(m.positions[v]) - Vec3{0, 0, r}));
+                for (const Vec2& at : uv) m.corner_uvs.emplace_back(at);
+            };
+            const double u0 = double(i) / around, u1 = double(i + 1) / around, v0 = 1 - double(j) / rings,
+                         v1 = 1 - double(j + 1) / rings;
+            if (j + 1 < rings) add(a, c, d, {Vec2{u0, v0}, Vec2{u0, v1}, Vec2{u1, v1}});
+            if (j > 0) add(a, d, b, {Vec2{u0, v0}, Vec2{u1, v1}, Vec2{u1, v0}});
+        }
+    m.neighbours.assign(3 * m.n_triangles(), 0);
+    for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
+    return m;
+}
+
+double grey(const Image& image, int x, int y) {
+    return image.rgb[3 * (static_cast<std::size_t>(y) * image.width + x) + 1];
+}
+
+TEST(Sampling, CosineDirectionsHaveTheirMoments) {
+    // With density cos θ/π the mean of cos θ is 2/3 and that of the sideways parts 0.
+    const Vec3f n = glm::normalize(Vec3f{0.3f, -0.5f, -0.8f});
+    Vec3f sum{0};
+    for (std::uint32_t i = 0; i < 1024; ++i) sum += cosine_direction(n, sobol_point(i));
+    EXPECT_NEAR(glm::length(sum / 1024.0f - n * (2.0f / 3)), 0, 2e-3);  // stratified: about 1/N
+}
+
+TEST(Sampling, SobolPointsFillEveryElementaryInterval) {
+    for (int split = 0; split <= 8; ++split) {
+        std::vector<int> count(256, 0);
+        for (std::uint32_t i = 0; i < 256; ++i) {
+            const Vec2f p = sobol_point(i);
+            ++count[static_cast<int>(p.x * (1 << split)) * (256 >> split) + static_cast<int>(p.y * (256 >> split))];
+        }
+        for (const int c : count) EXPECT_EQ(c, 1);
+    }
+}
+
+TEST(Material, BilinearLookupIsExactOnLinearMaps) {
+    const mesh::TriangleMesh m = make_sphere(8);
+    constexpr std::uint32_t kSize = 64;
+    std::vector<Vec3f> map(kSize * kSize);
+    for (std::uint32_t y = 0; y < kSize; ++y)
+        for (std::uint32_t x = 0; x < kSize; ++x)
+            map[y * kSize + x] = {(x + 0.5f) / kSize, (y + 0.5f) / kSize, 0.25f};
+    Appearance a;
+    a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .base_colour = map};
+    const MaterialReader reader(m, a);
+    for (std::uint32_t t = 20; t < 60; ++t) {
+        const float b1 = 0.3f, b2 = 0.4f;
+        const Vec2f uv = 0.3f * m.corner_uvs[3 * t] + b1 * m.corner_uvs[3 * t + 1] + b2 * m.corner_uvs[3 * t + 2];
+        const Vec3f c = reader.albedo(t, b1, b2);
+        if (uv.x < 0.02f || uv.x > 0.98f) continue;  // the border texels are constant
+        EXPECT_NEAR(c.x, uv.x, 1e-5);
+        EXPECT_NEAR(c.y, uv.y, 1e-5);
+        EXPECT_NEAR(c.z, 0.25, 1e-6);
+    }
+}
+
+TEST(Material, ReliefGivesTheSlopeOfARamp) {
+    // One 10 mm × 10 mm right triangle that spans half the texture; height rises 0.2 m per metre in x.
+    mesh::TriangleMesh m;
+    m.positions = {{0, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0}};
+    m.triangles = {{0, 1, 2}};
+    m.corner_normals.assign(3, Vec3f{0, 0, 1});
+    m.corner_uvs = {{0, 0}, {0, 1}, {1, 0}};  // turned: u runs along y
+    constexpr std::uint32_t kSize = 32;
+    std::vector<float> height(kSize * kSize);
+    for (std::uint32_t y = 0; y < kSize; ++y)
+        for (std::uint32_t x = 0; x < kSize; ++x) height[y * kSize + x] = 0.2f * 0.01f * (y + 0.5f) / kSize;
+    Appearance a;
+    a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .height = height};
+    const Vec3f slope = MaterialReader(m, a).read(0, 0.3f, 0.3f).slope;
+    EXPECT_NEAR(slope.x, 0.2, 1e-5);
+    EXPECT_NEAR(slope.y, 0, 1e-5);
+    EXPECT_NEAR(slope.z, 0, 1e-5);
+}
+
+TEST(Material, SrgbRoundTripAndKnownValues) {
+    for (int i = 0; i <= 255; ++i) EXPECT_NEAR(encode_srgb(decode_srgb(i / 255.0f)) * 255, i, 1e-3);
+    EXPECT_NEAR(decode_srgb(0.5f), 0.2140411, 1e-6);  // IEC 61966-2-1
+}
+
+TEST(Material, RefusesMapsThatDoNotFit) {
+    const mesh::TriangleMesh m = make_sphere(8);
+    const std::vector<Vec3f> map(10);
+    Appearance a;
+    a.maps = {.size = 4, .corner_uvs = m.corner_uvs, .base_colour = map};
+    EXPECT_THROW(MaterialReader(m, a), Error);
+    const std::vector<Vec3f> fits(16);
+    a.maps = {.size = 4, .base_colour = fits};
+    EXPECT_THROW(MaterialReader(m, a), Error);
+}
+
+TEST(Light, NothingShadesAConvexBody) {
+    // Without a floor a sphere cannot see itself: each point gets the light of the open studio.
+    const mesh::TriangleMesh m = make_sphere(96);
+    const mesh::SurfaceQuery query(m);
+    const Appearance a;
+    const MaterialReader material(m, a);
+    Scene scene{m, query, material, make_studio(m.bounds, 0.3, 0, false, 1), 2e-6f};
+    const LightCache cache(scene);
+    for (std::uint32_t t = 500; t < m.n_triangles(); t += 1111) {
+        Sight s;
+        s.seen = Seen::object;
+        s.triangle = t;
+        s.face = face_normal(m, t);
+        s.normal = s.face;
+        s.position = Vec3f(mesh::surface_point(m, t, 1.0 / 3, 1.0 / 3).position);
+        Light sum;
+        for (int i = 0; i < 16; ++i) {
+            const Light l = sample_light(scene, cache, s, share_samples(400), i, 3 * i, 5);
+            sum.direct += l.direct / 16.0f;
+            sum.around += l.around / 16.0f;
+        }
+        const Vec3f expected = open_light(scene.studio, s.position, s.face);
+        // 64 against 6400 points of a low-discrepancy sum; the triangle's neighbours hide at most 1e-3.
+        EXPECT_NEAR(sum.direct.y + sum.around.y, expected.y, 0.015);
+        EXPECT_NEAR(cache.object_light(s.position, s.face).y, expected.y, 0.06);  // patches of 1/64 of the size
+    }
+}
+
+TEST(Light, ClosedHollowIsDark) {
+    mesh::TriangleMesh m = make_sphere(24);
+    for (auto& t : m.triangles) std::swap(t[1], t[2]);  // seen from inside
+    for (Vec3f& n : m.corner_normals) n = -n;
+    const mesh::SurfaceQuery query(m);
+    const Appearance a;
+    const MaterialReader material(m, a);
+    Scene scene{m, query, material, make_studio(m.bounds, 0, 0, true, 1), 2e-6f};
+    const LightCache cache(scene);
+    const Vec3f light = cache.object_light({0, 0, 0}, {0, 0, 1});
+    EXPECT_NEAR(light.x + light.y + light.z, 0, 1e-6);
+}
+
+TEST(Picture, SameBitsForAnyThreadCount) {
+    const mesh::TriangleMesh m = make_sphere(20);
+    const mesh::SurfaceQuery query(m);
+    PictureOptions o;
+    o.width = 120;
+    o.height = 80;
+    std::uint64_t first = 0;
+    for (const int threads : {1, 2, 8}) {
+        set_thread_count(threads);
+        const Image image = render_picture(m, query, {}, o);
+        const std::uint64_t hash = hash_span<std::uint8_t>(image.rgb);
+        if (threads == 1) first = hash;
+        EXPECT_EQ(hash, first);
+    }
+    set_thread_count(0);
+}
+
+TEST(Picture, NoVisibleNoise) {
+    const mesh::TriangleMesh m = make_sphere(48);
+    const mesh::SurfaceQuery query(m);
+    PictureOptions o;
+    o.width = 240;
+    o.height = 160;
+    const Image one = render_picture(m, query, {}, o);
+    o.seed = 99;
+    const Image two = render_picture(m, query, {}, o);
+    double sum2 = 0;
+    int worst = 0;
+    for (std::size_t i = 0; i < one.rgb.size(); ++i) {
+        const int d = std::abs(one.rgb[i] - two.rgb[i]);
+        sum2 += d * d;
+        worst = std::max(worst, d);
+    }
+    // Rounding with dither alone gives 0.4; a difference of 1.2 codes rms cannot be seen. The worst
+    // pixels lie on the silhouette, where 16 rays decide.
+    EXPECT_LT(std::sqrt(sum2 / static_cast<double>(one.rgb.size())), 1.2);
+    EXPECT_LT(worst, 40);
+}
+
+TEST(Picture, TextureIsWhereItsUvsSayAndTheFloorIsDarkUnderTheObject) {
+    const mesh::TriangleMesh m = make_sphere(48);
+    const mesh::SurfaceQuery query(m);
+    constexpr std::uint32_t kSize = 64;
+    std::vector<Vec3f> map(kSize * kSize, Vec3f{0.8f});
+    for (std::uint32_t y = 0; y < kSize; ++y)
+        for (std::uint32_t x = 0; x < kSize; ++x)
+            if (y >= kSize / 2) map[y * kSize + x] = Vec3f{0.02f};  // upper half of the sphere is black
+    Appearance a;
+    a.finish = Finish::clay;
+    a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .base_colour = map};
+    PictureOptions o;
+    o.width = 240;
+    o.height = 180;
+    o.view.elevation = 0.2;
+    const Image image = render_picture(m, query, a, o);
+    const Camera camera = make_camera(o.view, o.width, o.height, m.positions);
+    const auto at = [&](const Vec3& p) {
+        const auto q = project(camera, p);
+        return grey(image, static_cast<int>(q->x), static_cast<int>(q->y));
+    };
+    const Vec3 towards = -camera.forward;
+    const Vec3 side = glm::normalize(Vec3{towards.x, towards.y, 0});
+    const Vec3 centre{0, 0, 0.05};
+    EXPECT_LT(at(centre + 0.05 * glm::normalize(side + Vec3{0, 0, 0.5})), 80);
+    EXPECT_GT(at(centre + 0.05 * glm::normalize(side - Vec3{0, 0, 0.1})), 110);
+    // The open floor shows the backdrop itself; at the foot of the sphere it is darker.
+    const Vec3f open = backdrop(0.02f, 0.97f);
+    EXPECT_NEAR(grey(image, static_cast<int>(0.02 * 240), static_cast<int>(0.97 * 180)), 255 * encode_srgb(open.y), 6);
+    EXPECT_LT(at(0.012 * side), 0.75 * at(0.3 * side + 0.2 * camera.right));
+}
+
+}  // namespace
+}  // namespace tuft::render
