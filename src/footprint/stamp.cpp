@@ -36,9 +36,9 @@ struct Walk {
         return n;
     }
 
-    void push(std::uint32_t piece, float key) {
-        PlanScratch::Node& n = node(piece);
-        if (n.state != kOpen || key >= n.key) return;
+    /// `key`: squared distance from the stamp's origin.
+    void push(PlanScratch::Node& n, std::uint32_t piece, float key) {
+        if (key >= n.key) return;
         n.key = key;
         scratch.heap.emplace_back(key, piece);
         std::push_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
@@ -106,9 +106,11 @@ struct Walk {
             if (in_picture(piece, n)) scratch.reached.push_back(i);
             for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
                 const atlas::PieceEdge& e = graph.edges[k];
+                PlanScratch::Node& other = node(e.to);
+                if (other.state != kOpen) continue;
                 const float u = n.u + n.c * e.hop_u - n.s * e.hop_v;
                 const float v = n.v + n.s * e.hop_u + n.c * e.hop_v;
-                push(e.to, std::sqrt(u * u + v * v));
+                push(other, e.to, u * u + v * v);
             }
         }
         std::sort(scratch.reached.begin(), scratch.reached.end());
@@ -212,8 +214,13 @@ double disagreement(const Frame& frame, const atlas::Piece& piece, const PlanScr
 }  // namespace
 
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
-                     const StampOptions& options, PlanScratch& scratch) {
-    StampJobs jobs;
+                     const StampOptions& options, PlanScratch& scratch, StampJobs recycled) {
+    StampJobs jobs = std::move(recycled);
+    jobs.frames.clear();
+    jobs.tiles.clear();
+    jobs.sub_poses.clear();
+    jobs.discrepancy = 0;
+    jobs.piecewise = false;
     jobs.mapping = options.mapping;
     jobs.isa = options.isa;
     if (footprint.empty() || footprint.width < 2 || footprint.height < 2) return jobs;
@@ -236,8 +243,8 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     const Vec2 place = atlas::log_map(start, Vec3(first_piece.centre), Vec3(first_piece.normal));
     const Vec2 turn =
         atlas::carried_direction(start, Vec3(first_piece.tangent), Vec3(first_piece.normal));
-    walk.push(first, 0);
     PlanScratch::Node& n = walk.node(first);
+    walk.push(n, first, 0);
     n.u = static_cast<float>(place.x);
     n.v = static_cast<float>(place.y);
     n.c = static_cast<float>(turn.x);

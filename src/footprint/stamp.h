@@ -97,9 +97,10 @@ struct PlanScratch {
 
 /// Finds the pieces that hang together with the contact point within the footprint and
 /// do not face away from it, and their places in its picture. Cost grows with the
-/// footprint's area in texels, not with the mesh.
+/// footprint's area in texels, not with the mesh. `recycled` lends the memory of an earlier
+/// stamp; its contents do not matter.
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
-                     const StampOptions& options, PlanScratch& scratch);
+                     const StampOptions& options, PlanScratch& scratch, StampJobs recycled = {});
 
 /// One frame for all pieces or one for each, with hysteresis: `piecewise_before` is the
 /// mode of the stamp before in the stroke (false for the first). Returns the mode.

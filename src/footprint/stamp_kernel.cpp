@@ -40,7 +40,11 @@ struct Rows {
     const int piece = f.piece;
     const float *px = tile.px.data(), *py = tile.py.data(), *pz = tile.pz.data();
     const float *mx = tile.nx.data(), *my = tile.ny.data(), *mz = tile.nz.data();
+    // On its own: bytes among the floats would make the vectors of the next loop too long.
+    alignas(64) std::int32_t mine[kTileTexels];
     const std::uint8_t* id = tile.piece.data();
+#pragma omp simd
+    for (int t = rows.begin; t < rows.end; ++t) mine[t] = id[t] == piece ? 1 : 0;
 #pragma omp simd
     for (int t = rows.begin; t < rows.end; ++t) {
         const float dx = px[t] - ox, dy = py[t] - oy, dz = pz[t] - oz;
@@ -61,9 +65,9 @@ struct Rows {
             u0 + (dx * ux + dy * uy + dz * uz) + h * (mx[t] * ux + my[t] * uy + mz[t] * uz);
         const float v =
             v0 + (dx * vx + dy * vy + dz * vz) + h * (mx[t] * vx + my[t] * vy + mz[t] * vz);
-        const bool mine = (id[t] == piece) & (c > least_cos);
-        fu[t] = mine ? u : kOutside;
-        fv[t] = mine ? v : kOutside;
+        const bool seen = (mine[t] != 0) & (c > least_cos);
+        fu[t] = seen ? u : kOutside;
+        fv[t] = seen ? v : kOutside;
     }
 }
 
@@ -73,13 +77,17 @@ struct Rows {
                                           float* __restrict sum) {
     const std::uint32_t* __restrict corners = jobs.corners.data();
     const int stride = jobs.width;
-    const float width = static_cast<float>(jobs.width), height = static_cast<float>(jobs.height);
+    // The last coordinates inside: below the number of cells.
+    const float last_x = static_cast<float>(jobs.width) * (1 - 1e-6f);
+    const float last_y = static_cast<float>(jobs.height) * (1 - 1e-6f);
     const float c = pose.c, s = pose.s, du = pose.du, dv = pose.dv;
 #pragma omp simd
     for (int t = rows.begin; t < rows.end; ++t) {
         const float x = c * fu[t] - s * fv[t] + du, y = s * fu[t] + c * fv[t] + dv;
-        const bool inside = (x >= 0.0f) & (y >= 0.0f) & (x < width) & (y < height);
-        const float xi = inside ? x : 0.0f, yi = inside ? y : 0.0f;
+        const float xp = x > 0.0f ? x : 0.0f, yp = y > 0.0f ? y : 0.0f;
+        const float xi = xp < last_x ? xp : last_x, yi = yp < last_y ? yp : last_y;
+        // A factor, not a selection: that would become a branch around the gather.
+        const float inside = (xi == x) & (yi == y) ? 1.0f : 0.0f;
         const int i = static_cast<int>(xi), j = static_cast<int>(yi);
         const float fx = xi - static_cast<float>(i), fy = yi - static_cast<float>(j);
         const std::uint32_t q = corners[j * stride + i];
@@ -89,13 +97,13 @@ struct Rows {
         const float q11 = static_cast<float>(static_cast<int>(q >> 24));
         const float low = q00 + fx * (q10 - q00), high = q01 + fx * (q11 - q01);
         const float value = low + fy * (high - low);
-        sum[t] += inside ? value : 0.0f;
+        sum[t] += inside * value;
     }
 }
 
-[[gnu::always_inline]] inline void evaluate(const TexelTile& tile, const StampJobs& jobs,
-                                            const TileJob& job, float* __restrict sum) {
-    alignas(64) float fu[kTileTexels], fv[kTileTexels];
+[[gnu::always_inline]] inline bool evaluate(const TexelTile& tile, const StampJobs& jobs,
+                                            const TileJob& job, float* __restrict exposure) {
+    alignas(64) float fu[kTileTexels], fv[kTileTexels], sum[kTileTexels] = {};
     const bool plane = jobs.mapping == Mapping::plane;
     for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
         const PieceFrame& own = jobs.frames[k];
@@ -105,24 +113,34 @@ struct Rows {
         map_texels(tile, frame, rows, plane, fu, fv);
         for (const SubPose& pose : jobs.sub_poses) gather(jobs, pose, rows, fu, fv, sum);
     }
+    const float scale = 1.0f / (255.0f * static_cast<float>(jobs.sub_poses.size()));
+    int any = 0;
+#pragma omp simd reduction(| : any)
+    for (int t = 0; t < kTileTexels; ++t) {
+        const float e = sum[t] * scale;
+        exposure[t] = e < 1.0f ? e : 1.0f;
+        any |= e > 0.0f ? 1 : 0;
+    }
+    return any != 0;
 }
 
-using Evaluate = void (*)(const TexelTile&, const StampJobs&, const TileJob&, float* __restrict);
+using Evaluate = bool (*)(const TexelTile&, const StampJobs&, const TileJob&, float* __restrict);
 
-void evaluate_baseline(const TexelTile& tile, const StampJobs& jobs, const TileJob& job,
+bool evaluate_baseline(const TexelTile& tile, const StampJobs& jobs, const TileJob& job,
                        float* __restrict sum) {
-    evaluate(tile, jobs, job, sum);
+    return evaluate(tile, jobs, job, sum);
 }
 
 #ifdef TUFT_X86
-[[gnu::target("avx2")]] void evaluate_avx2(const TexelTile& tile, const StampJobs& jobs,
-                                           const TileJob& job, float* __restrict sum) {
-    evaluate(tile, jobs, job, sum);
+[[gnu::target("avx2,tune=haswell")]] bool evaluate_avx2(const TexelTile& tile,
+                                                        const StampJobs& jobs, const TileJob& job,
+                                                        float* __restrict sum) {
+    return evaluate(tile, jobs, job, sum);
 }
 
-[[gnu::target("avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512")]] void evaluate_avx512(
+[[gnu::target("avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512")]] bool evaluate_avx512(
     const TexelTile& tile, const StampJobs& jobs, const TileJob& job, float* __restrict sum) {
-    evaluate(tile, jobs, job, sum);
+    return evaluate(tile, jobs, job, sum);
 }
 #endif
 
@@ -154,16 +172,11 @@ Isa best_isa() {
 
 bool evaluate_tile(const TexelTile& tile, const StampJobs& jobs, const TileJob& job,
                    std::span<float, kTileTexels> exposure) {
-    std::fill(exposure.begin(), exposure.end(), 0.0f);
-    if (jobs.corners.empty() || jobs.sub_poses.empty()) return false;
-    kernel(std::min(jobs.isa, best_isa()))(tile, jobs, job, exposure.data());
-    const float scale = 1.0f / (255.0f * static_cast<float>(jobs.sub_poses.size()));
-    bool any = false;
-    for (float& e : exposure) {
-        e = std::min(e * scale, 1.0f);
-        any |= e > 0;
+    if (jobs.corners.empty() || jobs.sub_poses.empty()) {
+        std::fill(exposure.begin(), exposure.end(), 0.0f);
+        return false;
     }
-    return any;
+    return kernel(std::min(jobs.isa, best_isa()))(tile, jobs, job, exposure.data());
 }
 
 }  // namespace tuft::footprint
