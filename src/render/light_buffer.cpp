@@ -36,7 +36,7 @@ Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, cons
 
 LightSamples share_samples(int total) {
     total = std::clamp(total, 4, 4096);
-    const int key = std::max(1, total * 5 / 20), other = std::max(1, total * 2 / 20);
+    const int key = std::max(1, total / 4), other = std::max(1, total / 7);
     return {{key, other, other}, std::max(1, total - key - 2 * other)};
 }
 

@@ -49,7 +49,7 @@ struct PictureOptions {
     double light_azimuth = 0;     ///< radians the lights are turned about z; they follow the camera
     double exposure = 1;          ///< factor on the light
     int edge_samples = 16;        ///< rays per pixel on edges and ink (a quarter of it elsewhere)
-    int light_samples = 20;       ///< rays per pixel towards lights and surroundings
+    int light_samples = 28;       ///< rays per pixel towards lights and surroundings
     std::uint64_t seed = 1;
     ProgressFn progress;
 };

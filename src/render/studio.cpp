@@ -62,7 +62,7 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
 Vec3f dome_radiance(const Studio& studio, const Vec3f& d) {
     // Grey walls that grow lighter towards a white ceiling, a little darker behind the object.
     const float h = smooth(0.5f + 0.5f * d.z);
-    const Vec3f low{0.30f, 0.305f, 0.31f}, high{0.78f, 0.785f, 0.80f};
+    const Vec3f low{0.19f, 0.194f, 0.20f}, high{0.52f, 0.53f, 0.545f};
     return studio.scale * glm::mix(low, high, h);
 }
 
