@@ -73,15 +73,15 @@ class Skin {
   public:
     Skin(const brush::Branch& branch, const Frame& frame, const NodePlanes* planes, double film) {
         const auto& sections = branch.sections;
+        const auto plane = [&](std::size_t i) {
+            return planes && i < planes->size() ? &(*planes)[i] : nullptr;
+        };
+        add_cap(sections.front(), frame, plane(0), film);
         for (std::size_t i = 0; i < sections.size(); ++i) {
-            const brush::ContactPlane* plane =
-                planes && i < planes->size() ? &(*planes)[i] : nullptr;
-            nodes_.push_back(cut_of(sections[i], frame, plane, film));
-            if (i > 0) {
-                const double h = glm::length(sections[i].centre - sections[i - 1].centre);
-                steps_.push_back(std::max(h, 1e-9));
-            }
+            if (i > 0) steps_.push_back(glm::length(sections[i].centre - sections[i - 1].centre));
+            nodes_.push_back(cut_of(sections[i], frame, plane(i), film));
         }
+        for (double& h : steps_) h = std::max(h, 1e-9);
         set_slopes();
     }
 
@@ -110,6 +110,23 @@ class Skin {
         Vec2 centre{0};
         double z = 0, a = 0, b = 0;
     };
+
+    /// Closes a blunt tip by half an ellipsoid.
+    void add_cap(const brush::Section& tip, const Frame& frame, const brush::ContactPlane* plane,
+                 double film) {
+        const double r = std::sqrt((tip.a + film) * (tip.b + film));
+        if (!(r > 1e-7)) return;
+        static constexpr std::array<double, 5> kAhead{1, 0.98, 0.9, 0.7, 0.4};
+        for (std::size_t k = 0; k < kAhead.size(); ++k) {
+            brush::Section ring = tip;
+            const double shrink = std::sqrt(1 - kAhead[k] * kAhead[k]);
+            ring.centre += kAhead[k] * r * tip.tangent;
+            nodes_.push_back(cut_of(ring, frame, plane, film));
+            nodes_.back().a *= shrink;
+            nodes_.back().b *= shrink;
+            steps_.push_back((kAhead[k] - (k + 1 < kAhead.size() ? kAhead[k + 1] : 0)) * r);
+        }
+    }
 
     static Vec3 between(const Vec3& p, const Vec3& q, double f) {
         const Vec3 v = (1 - f) * p + f * q;
@@ -339,6 +356,27 @@ Outline stretch_outline(const Skin& skin, const Stretch& stretch, int points) {
 }
 
 }  // namespace
+
+std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
+                                    std::span<const brush::ContactPlane> planes) {
+    const auto& branches = tuft.branches;
+    if (branches.size() == 1 && planes.size() >= branches[0].sections.size())
+        return {NodePlanes(planes.begin(), planes.begin() + branches[0].sections.size())};
+    if (branches.size() < 2) return {};
+    // The middle branch ends in the whole spine's root; its outer nodes are the twig's.
+    const std::size_t trunk = branches[branches.size() / 2].sections.size();
+    const std::size_t twig = branches[0].sections.size();
+    if (trunk < twig || planes.size() != trunk + branches.size() * twig) return {};
+    std::vector<NodePlanes> dealt;
+    for (std::size_t k = 0; k < branches.size(); ++k) {
+        const auto own = planes.subspan(trunk + k * twig, twig);
+        dealt.emplace_back(own.begin(), own.end());
+        if (k != branches.size() / 2) continue;
+        dealt.back().pop_back();
+        dealt.back().insert(dealt.back().end(), planes.begin() + twig - 1, planes.begin() + trunk);
+    }
+    return dealt;
+}
 
 std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame,
                              std::span<const NodePlanes> planes, const OutlineOptions& options) {

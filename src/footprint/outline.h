@@ -30,6 +30,11 @@ struct OutlineOptions {
 /// Local contact planes of the nodes of one branch, tip first; see brush::ContactPlane.
 using NodePlanes = std::vector<brush::ContactPlane>;
 
+/// Deals the planes of `brush::predicted_nodes` (whole spine, then sub-spines) out to the
+/// branches of the tuft. Empty when their number fits no such tuft.
+std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
+                                    std::span<const brush::ContactPlane> planes);
+
 /// One outline for each stretch of each branch that touches. Section i at height z with
 /// semi-axes a along e, b along m is cut where |z| ≤ A = √(a² (e·n)² + b² (m·n)²), at
 /// ω± = atan2(b m·n, a e·n) ± acos(−z/A); upright, the half-width is a √(1 − z²/(b m·n)²).
