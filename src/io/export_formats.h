@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mesh/triangle_mesh.h"
+
+/// What the writers of the single formats share; inside `io` only.
+namespace tuft::io {
+
+/// Vertices with one UV and one normal each: file formats that index all attributes
+/// together need them. In the order of first use by the triangles.
+struct Wedges {
+    std::vector<std::uint32_t> vertex;          ///< [n_wedges] of the mesh
+    std::vector<std::uint32_t> corner;          ///< [n_wedges] a corner that has its UV and normal
+    std::vector<std::uint32_t> corner_wedge;    ///< [3 n_triangles]
+};
+
+/// Corners of a vertex with equal UV and normal, to the bit, share a wedge.
+Wedges split_wedges(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs);
+
+struct EncodedMap {
+    std::string kind;  ///< base_colour, orm, normal
+    std::string file;  ///< name in the folder
+    std::vector<unsigned char> png;
+};
+
+struct ExportScene {
+    const mesh::TriangleMesh& mesh;
+    Wedges wedges;
+    std::span<const Vec2f> corner_uvs;
+    std::string name;
+    bool z_up = true;
+    double metres_per_unit = 1e-3;
+};
+
+/// GLB, or glTF with its files, by the extension; `path` lies in a staging folder.
+void write_gltf(const std::filesystem::path& path, const ExportScene& scene,
+                std::span<const EncodedMap> maps);
+/// OBJ, MTL and pictures.
+void write_obj(const std::filesystem::path& path, const ExportScene& scene,
+               std::span<const EncodedMap> maps);
+
+/// The stem of `path` with bytes that a URI or a line of an MTL file cannot hold replaced
+/// by '_': the files that a model refers to are named after it.
+std::string safe_stem(const std::filesystem::path& path);
+
+/// A whole file in the staging folder.
+void write_staged(const std::filesystem::path& path, const void* data, std::size_t size);
+
+}  // namespace tuft::io

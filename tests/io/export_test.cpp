@@ -1,0 +1,114 @@
+#include "io/export.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "io/image.h"
+#include "io/read_gltf.h"
+#include "sample_model.h"
+
+namespace tuft::io {
+namespace {
+
+using namespace testing;
+
+/// The JSON chunk of a GLB file.
+nlohmann::json glb_json(const std::filesystem::path& path) {
+    const std::vector<char> bytes = read_file(path);
+    std::uint32_t size = 0;
+    std::memcpy(&size, &bytes[12], 4);
+    return nlohmann::json::parse(bytes.begin() + 20, bytes.begin() + 20 + size);
+}
+
+TEST(Export, GlbReadBackIsTheSameMesh) {
+    const Folder folder("glb");
+    const mesh::TriangleMesh mesh = cylinder();
+    export_model(folder / "m.glb", mesh, cylinder_atlas(mesh), pattern_maps(64));
+    const mesh::PolygonSoup soup = read_gltf(read_file(folder / "m.glb"), folder / "m.glb");
+    // 1 − (1 − v) in float loses at most half a unit in the last place of 1.
+    expect_same(soup, mesh, 1, 6e-8);
+    // The seam repeats one column of vertices; everything else is shared.
+    EXPECT_EQ(soup.points.size(), mesh.n_vertices() + kUp + 1);
+}
+
+TEST(Export, GlbHoldsThePicturesRightWayUp) {
+    const Folder folder("glb_maps");
+    const mesh::TriangleMesh mesh = cylinder();
+    const ModelMaps maps = pattern_maps(64);
+    export_model(folder / "m.glb", mesh, cylinder_atlas(mesh), maps);
+    const nlohmann::json json = glb_json(folder / "m.glb");
+    ASSERT_EQ(json["images"].size(), 3u);
+    EXPECT_EQ(json["asset"]["version"], "2.0");
+    const auto& primitive = json["meshes"][0]["primitives"][0];
+    for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0", "TANGENT"})
+        EXPECT_TRUE(primitive["attributes"].contains(attribute)) << attribute;
+    const auto& view = json["bufferViews"][json["images"][0]["bufferView"].get<int>()];
+    const std::vector<char> bytes = read_file(folder / "m.glb");
+    std::uint32_t json_size = 0;
+    std::memcpy(&json_size, &bytes[12], 4);
+    const std::size_t at = 20 + json_size + 8 + view.value("byteOffset", 0u);
+    write_file(folder / "base.png", &bytes[at], view["byteLength"].get<std::size_t>());
+    const Image8 base = read_image8(folder / "base.png");
+    ASSERT_EQ(base.pixels.size(), maps.base_colour.texels.size());
+    for (int y = 0; y < 64; ++y)
+        for (int i = 0; i < 64 * 3; ++i)
+            ASSERT_EQ(base.pixels[(63 - y) * 64 * 3 + i], maps.base_colour.texels[y * 64 * 3 + i]);
+}
+
+TEST(Export, WithoutHeightThereIsNoNormalMap) {
+    const Folder folder("flat");
+    const mesh::TriangleMesh mesh = cylinder();
+    export_model(folder / "m.glb", mesh, cylinder_atlas(mesh), pattern_maps(64, true));
+    const nlohmann::json json = glb_json(folder / "m.glb");
+    EXPECT_EQ(json["images"].size(), 2u);
+    EXPECT_FALSE(json["meshes"][0]["primitives"][0]["attributes"].contains("TANGENT"));
+    EXPECT_FALSE(json["materials"][0].contains("normalTexture"));
+}
+
+TEST(Export, GltfWithFilesReadBackIsTheSameMesh) {
+    const Folder folder("gltf");
+    const mesh::TriangleMesh mesh = cylinder();
+    const ModelMaps maps = pattern_maps(64);
+    export_model(folder / "blue bowl.gltf", mesh, cylinder_atlas(mesh), maps);
+    expect_same(read_gltf(read_file(folder / "blue bowl.gltf"), folder / "blue bowl.gltf"), mesh, 1, 6e-8);
+    const auto files = exported_files(folder / "blue bowl.gltf", maps);
+    EXPECT_EQ(files.size(), 5u);
+    EXPECT_EQ(folder.n_files(), files.size());
+    for (const auto& file : files) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+    EXPECT_EQ(read_image8(folder / "blue_bowl_base_colour.png").width, 64);
+}
+
+TEST(Export, FailuresLeaveNothingBehind) {
+    const Folder folder("fail");
+    const mesh::TriangleMesh mesh = cylinder();
+    const atlas::Atlas atlas = cylinder_atlas(mesh);
+    const ModelMaps maps = pattern_maps(16);
+    EXPECT_THROW(export_model(folder / "m.fbx", mesh, atlas, maps), Error);
+    EXPECT_THROW(export_model(folder / "m.obj", mesh, atlas, maps, {.unit = "furlong"}), Error);
+    EXPECT_THROW(export_model(folder / "none/m.glb", mesh, atlas, maps), Error);
+    EXPECT_THROW(write_together(folder / "m.glb",
+                                [](const std::filesystem::path& staging) {
+                                    std::ofstream(staging / "half") << "half";
+                                    throw Error("disk full");
+                                }),
+                 Error);
+    EXPECT_EQ(folder.n_files(), 0u);
+}
+
+TEST(Export, NormalsFollowTheSlopeOfTheHeight) {
+    // A ramp of 0.1 µm per texel of 1 µm in u and −0.2 in v.
+    ink::AtlasMap<float> height{.size = 16, .channels = 1, .texels = {}};
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) height.texels.push_back(0.1f * x - 0.2f * y);
+    const auto normals = normal_map(height, 1e-6);
+    const Vec3 expected = glm::normalize(Vec3(-0.1, 0.2, 1));
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(normals.texels[(8 * 16 + 8) * 3 + k] / 127.5 - 1, expected[k], 0.5 / 127);
+}
+
+}  // namespace
+}  // namespace tuft::io
