@@ -1,0 +1,193 @@
+#include "atlas/charts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atlas/flatten.h"
+#include "atlas/seam_graph.h"
+#include "core/parallel.h"
+
+namespace tuft::atlas {
+namespace {
+
+using Triangles = std::vector<std::uint32_t>;
+
+/// Triangles still to be flattened, and how often they were cut before.
+struct Piece {
+    Triangles triangles;
+    int depth = 0;
+};
+
+bool good(const FlatCheck& check, const ChartOptions& options) {
+    return check.sound() && check.l2 <= options.l2 && check.stretch_999 <= options.largest;
+}
+
+void cut_edge(CutMesh& cut, std::uint32_t h) {
+    if (cut.glued[h] == kNone) return;
+    cut.glued[cut.glued[h]] = kNone;
+    cut.glued[h] = kNone;
+}
+
+/// Seams of a patch carried over to the mesh.
+void cut_along(CutMesh& cut, const Patch& patch, std::span<const std::uint8_t> seam) {
+    for (std::uint32_t h = 0; h < seam.size(); ++h)
+        if (seam[h]) cut_edge(cut, 3 * patch.triangles[h / 3] + h % 3);
+}
+
+/// Connected parts of `triangles` under the seams of `cut`.
+std::vector<Triangles> parts_of(const CutMesh& cut, const Triangles& triangles) {
+    std::vector<std::uint32_t> local(3 * triangles.size());
+    for (std::uint32_t h = 0; h < local.size(); ++h)
+        local[h] = local_half(triangles, cut.glued[3 * triangles[h / 3] + h % 3]);
+    std::vector<Triangles> parts = connected_charts(local);
+    for (Triangles& part : parts)
+        for (std::uint32_t& t : part) t = triangles[t];
+    return parts;
+}
+
+/// Cuts a piece that would not lie flat: by developability with limits that tighten with
+/// every cut, then by size, at last into single triangles.
+std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& piece) {
+    constexpr int kSingles = 14;
+    const Patch patch = make_patch(mesh, cut.glued, piece.triangles, cut.unit);
+    std::vector<Triangles> parts;
+    int depth = piece.depth;
+    for (; parts.size() < 2 && depth <= kSingles; ++depth) {
+        if (depth == kSingles) {
+            cut_along(cut, patch, std::vector<std::uint8_t>(patch.twin.size(), 1));
+            parts = parts_of(cut, piece.triangles);
+            continue;
+        }
+        NormalMoments all;
+        for (std::uint32_t t = 0; t < patch.triangles.size(); ++t) {
+            const Vec3 n(patch.normal[t]);
+            const double a = patch.area[t];
+            all.add({a, a * n, {a * n.x * n.x, a * n.x * n.y, a * n.x * n.z, a * n.y * n.y,
+                                a * n.y * n.z, a * n.z * n.z}});
+        }
+        SeamGraph graph(patch, {}, 0);
+        GluingLimits limits;
+        limits.crease = 4;
+        limits.error = 0.4 * all.error() / std::max(all.area, 1e-300);
+        if (depth % 2 == 1 || limits.error < 1e-7) {
+            limits.error = 1;
+            limits.mean_normal = 0;
+            limits.area = 0.6 * all.area;
+        }
+        graph.glue_developable(limits);
+        const std::vector<std::uint8_t> seam = graph.seams();
+        std::vector<std::uint32_t> local(patch.twin);
+        for (std::uint32_t h = 0; h < seam.size(); ++h)
+            if (seam[h]) local[h] = kNone;
+        if (connected_charts(local).size() < 2) continue;
+        cut_along(cut, patch, seam);
+        parts = parts_of(cut, piece.triangles);
+    }
+    std::vector<Piece> pieces;
+    for (Triangles& part : parts) pieces.push_back({std::move(part), depth});
+    return pieces;
+}
+
+/// Flattens all pieces, cutting those that do not lie flat, and adds them to the charts.
+void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Piece> pieces,
+                    const ChartOptions& options, const ProgressFn& progress) {
+    std::size_t done = 0;
+    const std::size_t all = std::max<std::size_t>(mesh.n_triangles(), 1);
+    while (!pieces.empty()) {
+        std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
+            return a.triangles.size() > b.triangles.size();
+        });
+        // Batches keep the progress honest and the memory of finished charts small.
+        std::vector<Piece> again;
+        for (std::size_t first = 0; first < pieces.size();) {
+            std::size_t last = first, triangles = 0;
+            while (last < pieces.size() && triangles < 200000)
+                triangles += pieces[last++].triangles.size();
+            std::vector<FlatChart> flat(last - first);
+            std::vector<std::uint8_t> accepted(last - first);
+            parallel_for(flat.size(), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    flat[i].mesh =
+                        make_chart(mesh, cut.glued, pieces[first + i].triangles, cut.unit);
+                    flat[i].uv = flatten(flat[i].mesh);
+                    accepted[i] = flat[i].mesh.faces.size() == 1 ||
+                                  (!flat[i].uv.empty() &&
+                                   good(check_flat(flat[i].mesh, flat[i].uv), options));
+                }
+            });
+            for (std::size_t i = 0; i < flat.size(); ++i) {
+                if (accepted[i]) {
+                    done += flat[i].mesh.faces.size();
+                    cut.charts.push_back(std::move(flat[i]));
+                } else {
+                    for (Piece& p : cut_piece(mesh, cut, pieces[first + i]))
+                        again.push_back(std::move(p));
+                }
+            }
+            report(progress, "flatten", std::min(1.0, static_cast<double>(done) / static_cast<double>(all)));
+            first = last;
+        }
+        pieces = std::move(again);
+    }
+}
+
+}  // namespace
+
+CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options,
+                        const ProgressFn& progress) {
+    CutMesh cut;
+    cut.twin = twin_half_edges(mesh);
+    cut.glued = cut.twin;
+    cut.unit = std::max(std::sqrt(mesh::surface_area(mesh)), 1e-30);
+    Triangles all(mesh.n_triangles());
+    for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
+    {
+        const Patch patch = make_patch(mesh, cut.twin, all, cut.unit);
+        SeamGraph graph(patch, {}, 0);
+        graph.glue_developable({}, progress);
+        cut_along(cut, patch, graph.seams());
+    }
+    std::vector<Piece> pieces;
+    for (Triangles& t : connected_charts(cut.glued)) pieces.push_back({std::move(t), 0});
+    flatten_pieces(mesh, cut, std::move(pieces), options, progress);
+    return cut;
+}
+
+void cut_again(const mesh::TriangleMesh& mesh, CutMesh& cut, std::span<const std::uint32_t> charts,
+               const ChartOptions& options, const ProgressFn& progress) {
+    std::vector<Piece> pieces;
+    std::vector<FlatChart> kept;
+    for (std::uint32_t c = 0; c < cut.charts.size(); ++c) {
+        if (!std::binary_search(charts.begin(), charts.end(), c)) {
+            kept.push_back(std::move(cut.charts[c]));
+            continue;
+        }
+        for (Piece& p : cut_piece(mesh, cut, {std::move(cut.charts[c].mesh.triangles), 1}))
+            pieces.push_back(std::move(p));
+    }
+    cut.charts = std::move(kept);
+    flatten_pieces(mesh, cut, std::move(pieces), options, progress);
+}
+
+void cut_out(const mesh::TriangleMesh& mesh, CutMesh& cut, std::span<const std::uint32_t> triangles,
+             const ChartOptions& options, const ProgressFn& progress) {
+    for (const std::uint32_t t : triangles)
+        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) cut_edge(cut, h);
+    std::vector<Piece> pieces;
+    std::vector<FlatChart> kept;
+    for (FlatChart& chart : cut.charts) {
+        const Triangles& own = chart.mesh.triangles;
+        const bool hit = std::any_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
+            return std::binary_search(own.begin(), own.end(), t);
+        });
+        if (!hit) {
+            kept.push_back(std::move(chart));
+            continue;
+        }
+        for (Triangles& part : parts_of(cut, own)) pieces.push_back({std::move(part), 0});
+    }
+    cut.charts = std::move(kept);
+    flatten_pieces(mesh, cut, std::move(pieces), options, progress);
+}
+
+}  // namespace tuft::atlas

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "atlas/chart_mesh.h"
+#include "core/progress.h"
+
+/// The mesh cut into charts that lie flat.
+namespace tuft::atlas {
+
+struct ChartOptions {
+    double l2 = 1.006;       ///< stretch that a chart may have on average
+    double largest = 1.35;   ///< and at 99.9 % of its area
+};
+
+/// A chart and its UVs, over the same unit; every triangle has positive area and the
+/// border does not cross itself.
+struct FlatChart {
+    ChartMesh mesh;
+    std::vector<Vec2> uv;
+};
+
+struct CutMesh {
+    double unit = 1;                    ///< metres: square root of the surface's area
+    std::vector<std::uint32_t> twin;    ///< [3n] opposite half-edges of the mesh
+    std::vector<std::uint32_t> glued;   ///< the same, kNone at seams
+    std::vector<FlatChart> charts;
+};
+
+/// Cuts and flattens the whole mesh. Every triangle lies in one chart.
+CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options,
+                        const ProgressFn& progress);
+
+/// Cuts each of `charts` (ascending indices) into two or more and flattens those. `singles`
+/// cuts along every edge of the named triangles of the mesh instead.
+void cut_again(const mesh::TriangleMesh& mesh, CutMesh& cut, std::span<const std::uint32_t> charts,
+               const ChartOptions& options, const ProgressFn& progress);
+void cut_out(const mesh::TriangleMesh& mesh, CutMesh& cut, std::span<const std::uint32_t> triangles,
+             const ChartOptions& options, const ProgressFn& progress);
+
+}  // namespace tuft::atlas

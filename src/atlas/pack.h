@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/types.h"
+
+/// Lays chart shapes side by side in a square page, as large as they fit.
+namespace tuft::atlas {
+
+struct PackOptions {
+    std::uint32_t size = 0;      ///< texels per side; 0: as many as `texels_per_unit` needs
+    double texels_per_unit = 0;  ///< scale; 0: the largest that fits `size`
+    std::uint32_t gutter = 4;    ///< texels free between charts; half of it along the page's edge
+    ProgressFn progress;
+};
+
+/// A point p of chart i lies at texel offset + scale (c p.x − s p.y, s p.x + c p.y).
+struct Placement {
+    double scale = 1, c = 1, s = 0;
+    Vec2 offset{0};
+};
+
+struct Packing {
+    bool fits = false;           ///< with at least 1 % of the page covered
+    std::uint32_t size = 0;      ///< of the page; when it does not fit, one that would
+    double texels_per_unit = 0;
+    std::vector<Placement> placements;  ///< [n_charts]
+};
+
+/// `borders`: one closed simple polygon per chart. Charts smaller than a quarter of
+/// a texel are enlarged to that. Bit masks of all cells a chart touches, largest
+/// chart first, up to eight rotations each, at the lowest free place of a strip as
+/// wide as the page; the scale is searched until the strip is a square. Distances
+/// between charts are at least `gutter` texels, exactly.
+Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options);
+
+}  // namespace tuft::atlas

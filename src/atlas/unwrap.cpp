@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "atlas/atlas.h"
+#include "atlas/charts.h"
+#include "atlas/coverage.h"
+#include "atlas/file_uvs.h"
+#include "atlas/pack.h"
+#include "atlas/snap.h"
+
+namespace tuft::atlas {
+namespace {
+
+class Stopwatch {
+  public:
+    void lap(AtlasReport& report, const std::string& phase) {
+        const auto now = std::chrono::steady_clock::now();
+        report.seconds.emplace_back(phase, std::chrono::duration<double>(now - last_).count());
+        last_ = now;
+    }
+
+  private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+double mean_texel_size(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
+    double area_uv = 0;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
+        const Vec2 a = Vec2(atlas.corner_uvs[3 * t + 1]) - Vec2(atlas.corner_uvs[3 * t]);
+        const Vec2 b = Vec2(atlas.corner_uvs[3 * t + 2]) - Vec2(atlas.corner_uvs[3 * t]);
+        area_uv += 0.5 * std::abs(a.x * b.y - a.y * b.x);
+    }
+    return std::sqrt(mesh::surface_area(mesh) / area_uv) / atlas.size;
+}
+
+Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options) {
+    std::vector<std::vector<Vec2>> borders;
+    borders.reserve(cut.charts.size());
+    for (const FlatChart& chart : cut.charts) {
+        std::vector<Vec2>& border = borders.emplace_back();
+        for (const std::uint32_t v : chart.mesh.loop) border.push_back(chart.uv[v]);
+    }
+    PackOptions pack_options;
+    pack_options.gutter = options.gutter;
+    pack_options.progress = options.progress;
+    if (options.size > 0)
+        pack_options.size = options.size;
+    else
+        pack_options.texels_per_unit = cut.unit / options.texel_size;
+    Packing packing = pack(borders, pack_options);
+    if (!packing.fits)
+        throw Error("an atlas of " + std::to_string(options.size) + " texels cannot hold " +
+                    std::to_string(cut.charts.size()) + " charts with gutters of " +
+                    std::to_string(options.gutter) + "; it needs at least " +
+                    std::to_string(packing.size));
+    if (packing.size > options.max_size)
+        throw Error("a texel of " + std::to_string(options.texel_size * 1e3) +
+                    " mm needs an atlas of " + std::to_string(packing.size) +
+                    " texels, more than the " + std::to_string(options.max_size) +
+                    " allowed; use larger texels");
+    return packing;
+}
+
+/// Rounds the placed charts into the atlas; the triangles that found no room.
+std::vector<std::uint32_t> place_charts(const CutMesh& cut, const Packing& packing, Atlas& atlas) {
+    std::vector<std::uint32_t> roomless;
+    atlas.size = packing.size;
+    atlas.n_charts = static_cast<std::uint32_t>(cut.charts.size());
+    for (std::uint32_t c = 0; c < atlas.n_charts; ++c) {
+        const FlatChart& chart = cut.charts[c];
+        const Placement& p = packing.placements[c];
+        std::vector<Vec2> uv(chart.uv.size());
+        for (std::size_t v = 0; v < uv.size(); ++v) {
+            const Vec2& q = chart.uv[v];
+            uv[v] = (p.offset + p.scale * Vec2(p.c * q.x - p.s * q.y, p.s * q.x + p.c * q.y)) /
+                    double(packing.size);
+        }
+        for (const std::uint32_t t : snap_to_floats(chart.mesh.faces, uv, packing.size))
+            roomless.push_back(chart.mesh.triangles[t]);
+        for (std::size_t t = 0; t < chart.mesh.faces.size(); ++t) {
+            const std::uint32_t triangle = chart.mesh.triangles[t];
+            atlas.triangle_chart[triangle] = c;
+            for (int k = 0; k < 3; ++k)
+                atlas.corner_uvs[3 * std::size_t{triangle} + k] = Vec2f(uv[chart.mesh.faces[t][k]]);
+        }
+    }
+    return roomless;
+}
+
+Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
+    Unwrapped out;
+    Stopwatch watch;
+    const ChartOptions chart_options;
+    CutMesh cut = cut_into_charts(mesh, chart_options, options.progress);
+    watch.lap(out.report, "charts");
+    Atlas& atlas = out.atlas;
+    atlas.gutter = options.gutter;
+    atlas.corner_uvs.resize(3 * mesh.n_triangles());
+    atlas.triangle_chart.resize(mesh.n_triangles());
+    // Slivers that vanish in rounding become charts of their own; charts that overlap
+    // after all are cut. Both end, at single triangles at the latest.
+    for (int round = 0;; ++round) {
+        const Packing packing = pack_charts(cut, options);
+        watch.lap(out.report, "pack");
+        std::vector<std::uint32_t> roomless = place_charts(cut, packing, atlas);
+        const Coverage coverage = cover(atlas.corner_uvs, atlas.triangle_chart, atlas.size);
+        report(options.progress, "check", 1);
+        watch.lap(out.report, "check");
+        if (round == 16 || (roomless.empty() && coverage.twice == 0)) break;
+        if (!roomless.empty()) {
+            std::sort(roomless.begin(), roomless.end());
+            cut_out(mesh, cut, roomless, chart_options, options.progress);
+        } else {
+            cut_again(mesh, cut, coverage.charts_twice, chart_options, options.progress);
+        }
+        watch.lap(out.report, "repair");
+    }
+    atlas.texel_size = mean_texel_size(mesh, atlas);
+    return out;
+}
+
+void check_options(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
+    if (mesh.n_triangles() == 0) throw Error("the mesh has no triangles to unwrap");
+    if (options.size > options.max_size)
+        throw Error("an atlas of " + std::to_string(options.size) + " texels is larger than the " +
+                    std::to_string(options.max_size) + " allowed");
+    if (options.size > 0) return;
+    if (!(options.texel_size > 0) || !std::isfinite(options.texel_size))
+        throw Error("the texel size must be above 0");
+    const double least = std::sqrt(mesh::surface_area(mesh)) / options.texel_size;
+    if (least > options.max_size)
+        throw Error("a texel of " + std::to_string(options.texel_size * 1e3) +
+                    " mm needs an atlas of at least " +
+                    std::to_string(static_cast<long long>(std::min(least / 0.8, 1e15))) +
+                    " texels, more than the " + std::to_string(options.max_size) +
+                    " allowed; use larger texels");
+}
+
+}  // namespace
+
+Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& given) {
+    UnwrapOptions options = given;
+    if (options.size == 0 && options.texel_size == 0) options.size = 2048;
+    check_options(mesh, options);
+    if (options.uvs != UvPolicy::renew) {
+        const FileUvs found = read_file_uvs(mesh, options);
+        if (found.fault.empty()) return {found.atlas, measure(mesh, found.atlas)};
+        if (options.uvs == UvPolicy::keep)
+            throw Error("the model's UVs cannot be kept: " + found.fault +
+                        "; leave out --keep-uv to make new ones");
+    }
+    Unwrapped out = make_atlas(mesh, options);
+    auto seconds = std::move(out.report.seconds);
+    out.report = measure(mesh, out.atlas);
+    out.report.seconds = std::move(seconds);
+    return out;
+}
+
+}  // namespace tuft::atlas

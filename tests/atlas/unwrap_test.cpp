@@ -1,0 +1,232 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "atlas/atlas.h"
+#include "atlas/atlas_picture.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "test_mesh.h"
+
+namespace tuft::atlas {
+namespace {
+
+using mesh::TriangleMesh;
+constexpr double kPi = std::numbers::pi;
+
+TriangleMesh sheet() {
+    return test::grid_mesh(40, 30, false, false,
+                           [](double u, double v) { return Vec3(0.2 * u, 0.15 * v, 0); });
+}
+
+TriangleMesh cylinder() {
+    return test::grid_mesh(96, 40, true, false, [](double u, double v) {
+        return Vec3(0.05 * std::cos(2 * kPi * u), 0.05 * std::sin(2 * kPi * u), 0.2 * v);
+    });
+}
+
+TriangleMesh cone() {
+    return test::grid_mesh(96, 40, true, false, [](double u, double v) {
+        const double r = 0.02 + 0.06 * v;
+        return Vec3(r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u), 0.1 * v);
+    });
+}
+
+TriangleMesh torus() {
+    return test::grid_mesh(96, 48, true, true, [](double u, double v) {
+        const double r = 0.05 + 0.02 * std::cos(2 * kPi * v);
+        return Vec3(r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u), 0.02 * std::sin(2 * kPi * v));
+    });
+}
+
+TriangleMesh sphere() {
+    return test::grid_mesh(96, 48, true, false, [](double u, double v) {
+        const double polar = kPi * (0.001 + 0.998 * v);
+        return Vec3(0.05 * std::sin(polar) * std::cos(2 * kPi * u),
+                    0.05 * std::sin(polar) * std::sin(2 * kPi * u), -0.05 * std::cos(polar));
+    });
+}
+
+TriangleMesh scaled(TriangleMesh m, float factor) {
+    for (Vec3f& p : m.positions) p *= factor;
+    m.bounds = {};
+    for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
+    return m;
+}
+
+/// What every atlas must keep, whatever the mesh.
+void expect_sound(const TriangleMesh& m, const Unwrapped& u) {
+    EXPECT_EQ(u.report.flips, 0u);
+    EXPECT_EQ(u.report.overlapping_texels, 0u);
+    EXPECT_EQ(u.report.roomless_triangles, 0u);
+    EXPECT_GE(u.report.smallest_gap, static_cast<int>(u.atlas.gutter));
+    ASSERT_EQ(u.atlas.corner_uvs.size(), 3 * m.n_triangles());
+    ASSERT_EQ(u.atlas.triangle_chart.size(), m.n_triangles());
+    for (const Vec2f& uv : u.atlas.corner_uvs) {
+        ASSERT_TRUE(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1);
+    }
+    for (const std::uint32_t c : u.atlas.triangle_chart) ASSERT_LT(c, u.atlas.n_charts);
+}
+
+TEST(Unwrap, ShapesKeepTheInvariants) {
+    const std::pair<const char*, TriangleMesh> shapes[] = {
+        {"sheet", sheet()}, {"cylinder", cylinder()}, {"cone", cone()},
+        {"torus", torus()}, {"sphere", sphere()}};
+    for (const auto& [name, m] : shapes) {
+        SCOPED_TRACE(name);
+        UnwrapOptions options;
+        options.size = 512;
+        const Unwrapped u = unwrap(m, options);
+        expect_sound(m, u);
+        EXPECT_EQ(u.atlas.size, 512u);
+        EXPECT_LE(u.report.l2_stretch, 1.006);  // each chart is cut until it stays below that
+        EXPECT_GE(u.report.utilisation, 0.4);
+    }
+}
+
+// A cylinder and a cone unroll without stretch; what is left is that of facets, which are
+// flat, so the floats of the UVs: 2^-24 over a triangle's size of about 1/100.
+TEST(Unwrap, DevelopableSurfacesUnrollIsometrically) {
+    for (const TriangleMesh& m : {sheet(), cylinder(), cone()}) {
+        const Unwrapped u = unwrap(m, {});
+        EXPECT_NEAR(u.report.l2_stretch, 1, 1e-5);
+        EXPECT_NEAR(u.report.angle_distortion, 1, 1e-3);
+    }
+}
+
+TEST(Unwrap, IsTheSameForAnyNumberOfThreads) {
+    const TriangleMesh m = torus();
+    std::vector<Vec2f> first;
+    for (const int threads : {1, 2, 8}) {
+        set_thread_count(threads);
+        const Unwrapped u = unwrap(m, {});
+        if (first.empty()) first = u.atlas.corner_uvs;
+        EXPECT_EQ(first, u.atlas.corner_uvs) << threads;
+    }
+    set_thread_count(0);
+}
+
+TEST(Unwrap, ChartsDoNotDependOnTheUnit) {
+    for (const TriangleMesh& m : {torus(), sphere(), cone()}) {
+        const auto charts = static_cast<double>(unwrap(m, {}).report.charts);
+        for (const float factor : {0.001f, 1000.f})
+            EXPECT_NEAR(static_cast<double>(unwrap(scaled(m, factor), {}).report.charts), charts,
+                        0.05 * charts);
+    }
+}
+
+TEST(Unwrap, TexelSizeIsKept) {
+    const TriangleMesh m = torus();
+    UnwrapOptions options;
+    options.texel_size = 0.0005;
+    const Unwrapped u = unwrap(m, options);
+    expect_sound(m, u);
+    EXPECT_NEAR(u.atlas.texel_size, 0.0005, 1e-3 * 0.0005);  // charts keep their area
+    EXPECT_EQ(u.atlas.size % 16, 0u);
+    const double covered = u.report.utilisation * u.atlas.size * u.atlas.size * 0.0005 * 0.0005;
+    EXPECT_NEAR(covered, mesh::surface_area(m), 0.01 * covered);  // texels on borders
+}
+
+TEST(Unwrap, WiderGuttersAreKept) {
+    UnwrapOptions options;
+    options.size = 512;
+    for (const std::uint32_t gutter : {0u, 1u, 3u, 8u, 16u}) {
+        options.gutter = gutter;
+        expect_sound(torus(), unwrap(torus(), options));
+    }
+}
+
+TEST(Unwrap, RefusesSizesThatCannotBeWithTheSizeNeeded) {
+    const auto message = [](const UnwrapOptions& options) -> std::string {
+        try {
+            unwrap(torus(), options);
+        } catch (const Error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    UnwrapOptions options;
+    options.size = 20000;
+    EXPECT_NE(message(options).find("16384"), std::string::npos);
+    options.size = 0;
+    options.texel_size = 1e-7;  // 30 mm of tube at 0.1 µm
+    EXPECT_NE(message(options).find("texels"), std::string::npos);
+    options.texel_size = 0;
+    options.size = 8;
+    EXPECT_NE(message(options).find("needs at least"), std::string::npos);
+    options.size = 0;
+    options.texel_size = -1;
+    EXPECT_NE(message(options).find("above 0"), std::string::npos);
+}
+
+TEST(Unwrap, CanBeCancelled) {
+    UnwrapOptions options;
+    options.progress = [](std::string_view, double) { return false; };
+    EXPECT_THROW(unwrap(torus(), options), Cancelled);
+}
+
+TEST(Unwrap, KeepsItsOwnUvsWhenTheyComeFromAFile) {
+    TriangleMesh m = torus();
+    UnwrapOptions options;
+    options.size = 512;
+    const Unwrapped first = unwrap(m, options);
+    m.corner_uvs = first.atlas.corner_uvs;
+    const Unwrapped again = unwrap(m, options);
+    EXPECT_TRUE(again.atlas.from_file);
+    EXPECT_EQ(again.atlas.corner_uvs, first.atlas.corner_uvs);
+    EXPECT_EQ(again.report.charts, first.report.charts);
+    EXPECT_NEAR(again.atlas.texel_size, first.atlas.texel_size, 1e-9);
+    options.uvs = UvPolicy::renew;
+    EXPECT_FALSE(unwrap(m, options).atlas.from_file);
+}
+
+TEST(Unwrap, TurnsMirroredFileUvsOver) {
+    TriangleMesh m = sheet();
+    for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
+        const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];
+        m.corner_uvs.push_back({0.9f - 4 * p.x, 4 * p.y});
+    }
+    const Unwrapped u = unwrap(m, {});
+    EXPECT_TRUE(u.atlas.from_file);
+    EXPECT_EQ(u.report.flips, 0u);
+    EXPECT_EQ(u.report.overlapping_texels, 0u);
+}
+
+TEST(Unwrap, RenewsFileUvsThatCannotServe) {
+    TriangleMesh m = cylinder();
+    const std::function<Vec2f(const Vec3f&)> bad[] = {
+        [](const Vec3f& p) { return Vec2f(5 * p.x + 0.5f, 4 * p.z); },  // front over back
+        [](const Vec3f& p) { return Vec2f(20 * p.x + 0.5f, 40 * p.z); },  // outside
+        [](const Vec3f&) { return Vec2f(0.5f); },                         // no room
+        [](const Vec3f& p) { return Vec2f(p.x, NAN); }};
+    for (const auto& uv : bad) {
+        m.corner_uvs.clear();
+        for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c)
+            m.corner_uvs.push_back(uv(m.positions[m.triangles[c / 3][c % 3]]));
+        const Unwrapped u = unwrap(m, {});
+        EXPECT_FALSE(u.atlas.from_file);
+        EXPECT_EQ(u.report.flips, 0u);
+        UnwrapOptions options;
+        options.uvs = UvPolicy::keep;
+        EXPECT_THROW(unwrap(m, options), Error);
+    }
+}
+
+TEST(AtlasPicture, ShowsChartsAndTheirStretch) {
+    const TriangleMesh m = torus();
+    UnwrapOptions options;
+    options.size = 256;
+    const Unwrapped u = unwrap(m, options);
+    const AtlasPicture picture = draw_atlas(m, u.atlas, {.side = 256});
+    EXPECT_EQ(picture.width, 512u);
+    EXPECT_EQ(picture.height, 256u);
+    // At the atlas's own size the stretch side draws exactly the covered texels.
+    std::size_t drawn = 0;
+    for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
+        drawn += (i / 3) % 512 >= 256 && picture.rgb[i] > 30;
+    EXPECT_EQ(drawn, static_cast<std::size_t>(std::lround(u.report.utilisation * 256 * 256)));
+}
+
+}  // namespace
+}  // namespace tuft::atlas
