@@ -35,8 +35,14 @@ PolygonSoup read_ply(const std::vector<char>& bytes, const std::filesystem::path
 PolygonSoup read_stl(const std::vector<char>& bytes, const std::filesystem::path& path);
 PolygonSoup read_off(const std::vector<char>& bytes, const std::filesystem::path& path);
 
-/// Binary little-endian PLY of a soup (positions, colours, per-vertex UV where
-/// corners of a point agree). Written atomically.
+/// Whether `read_polygon_file` knows the extension of `path` (in any case).
+bool is_polygon_file(const std::filesystem::path& path);
+
+/// Reads an .obj, .ply, .stl or .off file by its extension.
+PolygonSoup read_polygon_file(const std::filesystem::path& path);
+
+/// Binary little-endian PLY of a soup: positions as float, colours, and UVs per vertex where all
+/// corners of a point agree, else per face (the `texcoord` list). Written atomically.
 void write_ply(const std::filesystem::path& path, const PolygonSoup& soup);
 
 }  // namespace tuft::mesh

@@ -24,6 +24,7 @@ struct RepairReport {
     std::size_t vertices_welded = 0;           ///< removed because they coincide with another
     std::size_t unused_vertices_dropped = 0;
     std::size_t degenerate_faces_dropped = 0;  ///< repeated corner or zero area
+    std::size_t degenerate_faces_repaired = 0; ///< a corner on the opposite side: that side flipped
     std::size_t duplicate_faces_dropped = 0;
     std::size_t non_manifold_edges_split = 0;
     std::size_t non_manifold_vertices_split = 0;

@@ -1,0 +1,295 @@
+#include "mesh/repair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "mesh/half_edges.h"
+#include "mesh/surface_topology.h"
+#include "mesh/triangulate.h"
+#include "mesh/weld.h"
+
+namespace tuft::mesh {
+namespace {
+
+/// Points further apart than this part of the model's diagonal stay apart.
+constexpr double kWeldTolerance = 1e-6;
+
+void check_soup(const PolygonSoup& soup) {
+    const bool sound =
+        (soup.polygon_start.empty() ? soup.corners.empty()
+                                    : soup.polygon_start.front() == 0 &&
+                                          soup.polygon_start.back() == soup.corners.size()) &&
+        std::is_sorted(soup.polygon_start.begin(), soup.polygon_start.end()) &&
+        (soup.corner_uvs.empty() || soup.corner_uvs.size() == soup.corners.size()) &&
+        (soup.point_colours.empty() || soup.point_colours.size() == soup.points.size()) &&
+        (soup.polygon_groups.empty() || soup.polygon_groups.size() == soup.n_polygons());
+    if (!sound) throw Error("the mesh's polygon arrays do not fit each other");
+    for (const std::uint32_t c : soup.corners)
+        if (c >= soup.points.size())
+            throw Error("a polygon uses point " + std::to_string(c) + " of " +
+                        std::to_string(soup.points.size()));
+}
+
+class Repair {
+  public:
+    Repair(PolygonSoup soup, const RepairOptions& options)
+        : soup_(std::move(soup)), options_(options) {}
+
+    Surface run();
+
+  private:
+    void take_points();
+    void weld();
+    void cut_polygons();
+    void cut_polygon(std::size_t p, EarBudget& budget);
+    void add_triangle(std::size_t p, std::size_t c0, std::size_t c1, std::size_t c2);
+    void match();
+    bool close_cracks();
+    void make_manifold();
+    bool drop_flat();
+    void compact();
+    Surface hand_out(const SurfaceTopology& topology);
+
+    PolygonSoup soup_;
+    RepairOptions options_;
+    RepairReport report_;
+    RawMesh mesh_;
+    std::size_t edges_split_ = 0;  ///< in the last pairing
+    bool was_loose_ = false;  ///< every corner had a point of its own, as in STL
+    std::vector<std::uint32_t> ring_;  ///< scratch: corners of one polygon
+    std::vector<Vec3> ring_points_;
+    std::vector<std::array<std::uint32_t, 3>> cuts_;
+};
+
+/// Scales to metres in float, the precision everything after works with.
+void Repair::take_points() {
+    report_.points_in_file = soup_.points.size();
+    report_.polygons_in_file = soup_.n_polygons();
+    report_.warnings = std::move(soup_.warnings);
+    was_loose_ = soup_.points.size() == soup_.corners.size() && soup_.n_polygons() > 1;
+    Box bounds;
+    double largest = 0;
+    mesh_.positions.reserve(soup_.points.size());
+    for (const Vec3& p : soup_.points) {
+        const Vec3 q = p * options_.metres_per_unit;
+        mesh_.positions.emplace_back(q);
+        bounds.add(q);
+        largest = std::max({largest, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+    }
+    if (!(largest < 1e30)) throw Error("the mesh has points that are not finite numbers");
+    soup_.points = {};
+    mesh_.colours = std::move(soup_.point_colours);
+    // Float coordinates keep 1e-5 of the size out to this distance from the origin.
+    if (largest > 150 * bounds.diagonal())
+        report_.warnings.push_back(
+            "the model lies far from the origin compared with its size; move it there to keep "
+            "its detail");
+}
+
+void Repair::weld() {
+    std::vector<bool> used(mesh_.positions.size(), false);
+    for (const std::uint32_t c : soup_.corners) used[c] = true;
+    const std::vector<std::uint32_t> target = weld_exact(mesh_.positions);
+    for (std::size_t i = 0; i < target.size(); ++i) {
+        if (!used[i]) ++report_.unused_vertices_dropped;
+        if (used[i] && target[i] != i) ++report_.vertices_welded;
+    }
+    if (report_.vertices_welded)
+        for (std::uint32_t& c : soup_.corners) c = target[c];
+}
+
+void Repair::add_triangle(std::size_t p, std::size_t c0, std::size_t c1, std::size_t c2) {
+    const std::array<std::uint32_t, 3> v{soup_.corners[c0], soup_.corners[c1], soup_.corners[c2]};
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
+        ++report_.degenerate_faces_dropped;
+        return;
+    }
+    mesh_.triangles.push_back(v);
+    if (!soup_.polygon_groups.empty()) mesh_.groups.push_back(soup_.polygon_groups[p]);
+    if (!soup_.corner_uvs.empty())
+        for (const std::size_t c : {c0, c1, c2}) mesh_.uvs.push_back(soup_.corner_uvs[c]);
+}
+
+void Repair::cut_polygon(std::size_t p, EarBudget& budget) {
+    const std::uint32_t begin = soup_.polygon_start[p], end = soup_.polygon_start[p + 1];
+    ring_.clear();
+    for (std::uint32_t c = begin; c < end; ++c)
+        if (ring_.empty() || soup_.corners[ring_.back()] != soup_.corners[c]) ring_.push_back(c);
+    while (ring_.size() > 1 && soup_.corners[ring_.front()] == soup_.corners[ring_.back()])
+        ring_.pop_back();
+    if (ring_.size() < 3) {
+        ++report_.degenerate_faces_dropped;
+        return;
+    }
+    ++report_.polygons_triangulated;
+    ring_points_.clear();
+    for (const std::uint32_t c : ring_)
+        ring_points_.push_back(Vec3(mesh_.positions[soup_.corners[c]]));
+    cuts_.clear();
+    triangulate(ring_points_, budget, cuts_);
+    for (const auto& [a, b, c] : cuts_) add_triangle(p, ring_[a], ring_[b], ring_[c]);
+}
+
+void Repair::cut_polygons() {
+    EarBudget budget;
+    mesh_.triangles.reserve(soup_.corners.size() - 2 * soup_.n_polygons());
+    for (std::size_t p = 0; p < soup_.n_polygons(); ++p) {
+        const std::size_t begin = soup_.polygon_start[p], end = soup_.polygon_start[p + 1];
+        if (end - begin == 3)
+            add_triangle(p, begin, begin + 1, begin + 2);
+        else if (end - begin > 3)
+            cut_polygon(p, budget);
+        else
+            ++report_.degenerate_faces_dropped;
+    }
+    if (budget.ran_out)
+        report_.warnings.push_back("a polygon is too intricate to be cut well; it became a fan");
+    soup_.corners = {};
+    soup_.polygon_start = {};
+    soup_.corner_uvs = {};
+    soup_.polygon_groups = {};
+}
+
+void Repair::match() {
+    mesh_.at_split_edge.clear();
+    const PairingReport pairs = pair_half_edges(mesh_);
+    report_.duplicate_faces_dropped += pairs.duplicates_dropped;
+    edges_split_ = pairs.edges_split;
+}
+
+/// Triangles that came without shared points may miss each other by a rounding: points on the
+/// border that lie within the tolerance of each other become one. Inner points never move.
+bool Repair::close_cracks() {
+    std::vector<bool> on_border(mesh_.positions.size(), false);
+    std::vector<float> lengths;
+    Box bounds;
+    for (std::uint32_t h = 0; h < mesh_.opposite.size(); ++h) {
+        const Vec3f &a = mesh_.positions[mesh_.start(h)], &b = mesh_.positions[mesh_.end(h)];
+        bounds.add(Vec3(a));
+        if (mesh_.opposite[h] != kNone) continue;
+        on_border[mesh_.start(h)] = on_border[mesh_.end(h)] = true;
+        lengths.push_back(glm::distance(a, b));
+    }
+    if (lengths.empty()) return false;
+    std::vector<std::uint32_t> border, target(mesh_.positions.size());
+    for (std::uint32_t v = 0; v < target.size(); ++v) {
+        target[v] = v;
+        if (on_border[v]) border.push_back(v);
+    }
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    // A stray point far away must not make the tolerance larger than the details.
+    const double tolerance = std::min(kWeldTolerance * bounds.diagonal(), 0.01 * double{*middle});
+    weld_near(mesh_.positions, border, tolerance, target);
+    std::size_t welded = 0;
+    for (std::size_t v = 0; v < target.size(); ++v)
+        if (target[v] != v) ++welded;
+    if (welded == 0) return false;
+    report_.vertices_welded += welded;
+    std::vector<bool> keep(mesh_.triangles.size(), true);
+    for (std::size_t t = 0; t < keep.size(); ++t) {
+        auto& v = mesh_.triangles[t];
+        for (std::uint32_t& corner : v) corner = target[corner];
+        keep[t] = v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+        if (!keep[t]) ++report_.degenerate_faces_dropped;
+    }
+    keep_triangles(mesh_, keep);
+    return true;
+}
+
+/// From paired triangles to a manifold whose numbering says so.
+void Repair::make_manifold() {
+    const OrientationReport sides = orient(mesh_);
+    report_.faces_flipped += sides.faces_flipped;
+    if (sides.edges_cut)
+        report_.warnings.push_back("a part has only one side (like a Möbius strip); it was cut "
+                                   "open along " + std::to_string(sides.edges_cut) + " edges");
+    report_.non_manifold_vertices_split += split_vertices(mesh_);
+    if (edges_split_ || sides.edges_cut) settle(mesh_);
+}
+
+/// Drops what no flip could give an area.
+bool Repair::drop_flat() {
+    std::vector<bool> keep(mesh_.triangles.size(), true);
+    std::size_t dropped = 0;
+    for (std::size_t t = 0; t < keep.size(); ++t) {
+        keep[t] = !is_flat(mesh_, t);
+        if (!keep[t]) ++dropped;
+    }
+    if (!dropped) return false;
+    report_.degenerate_faces_dropped += dropped;
+    keep_triangles(mesh_, keep);
+    return true;
+}
+
+/// Drops vertices that no triangle uses; the others keep their order.
+void Repair::compact() {
+    std::vector<std::uint32_t> new_index(mesh_.positions.size(), kNone);
+    for (const auto& t : mesh_.triangles)
+        for (const std::uint32_t v : t) new_index[v] = 0;
+    std::uint32_t n = 0;
+    for (std::size_t v = 0; v < new_index.size(); ++v) {
+        if (new_index[v] == kNone) continue;
+        mesh_.positions[n] = mesh_.positions[v];
+        if (!mesh_.colours.empty()) mesh_.colours[n] = mesh_.colours[v];
+        new_index[v] = n++;
+    }
+    mesh_.positions.resize(n);
+    if (!mesh_.colours.empty()) mesh_.colours.resize(n);
+    for (auto& t : mesh_.triangles)
+        for (std::uint32_t& v : t) v = new_index[v];
+}
+
+Surface Repair::hand_out(const SurfaceTopology& topology) {
+    Surface surface;
+    TriangleMesh& out = surface.mesh;
+    tuft::report(options_.progress, "normals", 0);
+    out.corner_normals = topology.corner_normals(options_.crease_angle);
+    out.neighbours = topology.neighbours();
+    report_.components = topology.n_components();
+    report_.border_edges = topology.n_border_edges();
+    report_.holes = topology.n_border_loops();
+    report_.closed = report_.border_edges == 0;
+    for (const Vec3f& p : mesh_.positions) out.bounds.add(Vec3(p));
+    out.positions = std::move(mesh_.positions);
+    out.triangles = std::move(mesh_.triangles);
+    out.corner_uvs = std::move(mesh_.uvs);
+    out.vertex_colours = std::move(mesh_.colours);
+    out.triangle_groups = std::move(mesh_.groups);
+    if (!out.triangle_groups.empty()) out.group_names = std::move(soup_.group_names);
+    surface.report = std::move(report_);
+    return surface;
+}
+
+Surface Repair::run() {
+    tuft::report(options_.progress, "welding", 0);
+    take_points();
+    weld();
+    cut_polygons();
+    tuft::report(options_.progress, "matching edges", 0);
+    match();
+    if (was_loose_ && close_cracks()) match();
+    report_.non_manifold_edges_split = edges_split_;
+    for (;;) {
+        make_manifold();
+        compact();
+        if (mesh_.triangles.empty()) throw Error("the mesh has no triangle with an area");
+        tuft::report(options_.progress, "building the surface", 0);
+        SurfaceTopology topology(mesh_);
+        report_.degenerate_faces_repaired += topology.turn_flat_triangles(mesh_);
+        if (!drop_flat()) return hand_out(topology);
+        match();
+    }
+}
+
+}  // namespace
+
+Surface build_surface(PolygonSoup soup, const RepairOptions& options) {
+    if (!(options.metres_per_unit > 0 && options.metres_per_unit <= 1e6))
+        throw Error("metres per unit must be above 0 and at most a million");
+    check_soup(soup);
+    return Repair(std::move(soup), options).run();
+}
+
+}  // namespace tuft::mesh
