@@ -44,6 +44,8 @@ constexpr std::array kFields = {
     Field{"contact", "transverse_stiffness_n_m2", &Preset::transverse_stiffness, 1, 10, 1e7},
     Field{"contact", "core_stiffness", &Preset::core_stiffness, 1, 0, 1000},
     Field{"contact", "core_start", &Preset::core_start, 1, 0, 1},
+    Field{"contact", "adhesion_n_m", &Preset::adhesion, 1, 0, 10},
+    Field{"contact", "adhesion_range_mm", &Preset::adhesion_range, kMillimetre, 0.01, 5},
     Field{"contact", "friction_wet", &Preset::friction_wet, 1, 0, 2},
     Field{"contact", "friction_dry", &Preset::friction_dry, 1, 0, 2},
     Field{"contact", "grain", &Preset::grain, 1, 0.1, 0.9},
@@ -141,7 +143,8 @@ fs::path preset_folder() { return data_folder() / "models" / "brushes"; }
 void check_preset(const Preset& p, const std::string& source) {
     for (const Field& f : kFields) {
         const double v = p.*f.member / f.unit;
-        if (!(v >= f.lo * (1 - 1e-9) - 1e-12 && v <= f.hi * (1 + 1e-9) + 1e-12)) {
+        const double slack = 1e-9 * (std::abs(f.lo) + std::abs(f.hi));
+        if (!(v >= f.lo - slack && v <= f.hi + slack)) {
             throw Error(source, "'" + std::string(f.table) + "." + f.key + "' is " + number(v) +
                                     ", outside " + number(f.lo) + " to " + number(f.hi));
         }

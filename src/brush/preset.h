@@ -43,6 +43,8 @@ struct Preset {
     double transverse_stiffness = 1.2e4;  ///< k_c, N/m²: force per length per indentation of the tuft's side
     double core_stiffness = 150;  ///< times k_c once the hair is packed
     double core_start = 0.65;     ///< indentation over radius at which it is packed
+    double adhesion = 0.5;        ///< N/m, pull of the wet film per length of hair; none when dry
+    double adhesion_range = 1e-3; ///< m, gap at which the film breaks
     double friction_wet = 0.30, friction_dry = 0.45;  ///< Coulomb μ
     double grain = 0.4;           ///< κ_f: share of friction along the hair; 0.5 is isotropic
     double with_hair = 0.3;       ///< C_η: part of friction lost when dragged tip last

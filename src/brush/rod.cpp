@@ -10,13 +10,18 @@
 namespace tuft::brush::rod {
 
 Rod make_rod(const Profile& profile, int n, double tip_ratio) {
+    return make_rod(profile, spine_segments(n, tip_ratio));
+}
+
+Rod make_rod(const Profile& profile, std::span<const double> lengths) {
+    const std::size_t n = lengths.size();
     Rod rod;
-    rod.length = spine_segments(n, tip_ratio);
+    rod.length.assign(lengths.begin(), lengths.end());
     rod.stiffness.resize(n);
     rod.yield.resize(n);
     rod.weight.assign(n + 1, 0);
     double node = 0, from = 0;
-    for (int j = 0; j < n; ++j) {
+    for (std::size_t j = 0; j < n; ++j) {
         const double to = node + 0.5 * rod.length[j];
         rod.stiffness[j] = 1 / compliance(profile, from, to);
         rod.yield[j] = yield_moment(profile, node) / rod.stiffness[j];

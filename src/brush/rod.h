@@ -37,6 +37,8 @@ struct Rod {
 /// The beam cut into segments (see `spine_segments`): k_j = 1 / ∫ ds/B over the joint's
 /// share, half a segment to each side.
 Rod make_rod(const Profile& profile, int n, double tip_ratio);
+/// The same for any segment lengths, root to tip, of sum 1.
+Rod make_rod(const Profile& profile, std::span<const double> lengths);
 
 /// Segments from `first` to the tip as a rod of their own, with 1/share of the stiffness;
 /// still in units of the whole. Its clamp is the segment inboard of `first`.
@@ -62,6 +64,8 @@ struct Law {
     double stiffness = 1e4;     ///< k_c, force per length per indentation; penalty when hard
     double core_stiffness = 0;  ///< further k beyond core_start · radius
     double core_start = 0.65;
+    double adhesion = 0;        ///< pull per length of a wet node that all but touches, fading
+    double adhesion_range = 0;  ///< as (1 - gap/range)² to nothing at this gap
     double friction = 0;        ///< μ
     double grain = 0.5;         ///< κ_f: 2κ_f μ along the tangent, 2(1-κ_f) μ across
     double with_hair = 0;       ///< C_η: μ (1 - C_η cos⁴) when dragged tip last

@@ -171,6 +171,15 @@ NormalForce normal_force(const Law& law, double weight, double radius, double de
     return out;
 }
 
+/// Potential of the wet film's pull at a gap (negative: indented), zero where it ends.
+NormalForce adhesion(const Law& law, double weight, double gap) {
+    if (law.adhesion <= 0 || gap >= law.adhesion_range) return {};
+    const double pull = law.adhesion * weight, range = law.adhesion_range;
+    if (gap <= 0) return {pull * (gap - range / 3), pull, 0};
+    const double u = 1 - gap / range;
+    return {-pull * range / 3 * u * u * u, pull * u * u, -2 * pull * u / range};
+}
+
 Mat3 outer(const Vec3& v) { return glm::outerProduct(v, v); }
 
 /// Spring that slips at `cap` along a displacement of metric length q; G d is the metric's slope.
@@ -245,10 +254,12 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
             const double depth = o.radius - glm::dot(out.node[i] - o.origin, o.normal);
             const NormalForce f =
                 normal_force(*frozen.law, rod.weight[i], o.radius, depth, frozen.multiplier[i]);
-            value += f.energy;
+            const NormalForce pull = adhesion(*frozen.law, rod.weight[i], -depth);
+            value += f.energy + pull.energy;
             out.normal[i] = f.force;
-            out.slope[i] -= f.force * o.normal;
-            if (f.stiffness > 0) out.curvature[i] += f.stiffness * outer(o.normal);
+            out.slope[i] += (pull.force - f.force) * o.normal;
+            const double stiffness = f.stiffness + pull.stiffness;
+            if (stiffness != 0) out.curvature[i] += stiffness * outer(o.normal);
             add_friction(frozen.friction[i], o.normal, out.node[i], value, out.slope[i],
                          out.curvature[i]);
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "brush/preset.h"
@@ -31,6 +32,10 @@ QueryTable make_table(const Preset& preset, int rows = 64);
 
 /// Shape at a moment within the table's range (clamped), cubic between rows.
 TableRow look_up(const QueryTable& table, double moment);
+
+/// Smallest moment whose shape has `tip_height` >= 0; the table's largest when none has.
+double standing_moment(const QueryTable& table,
+                       const std::function<double(const TableRow&)>& tip_height);
 
 /// The tuft standing on a plane. Lengths metres, angles radians.
 struct FixedShape {

@@ -24,6 +24,8 @@ rod::Law law_of(const Preset& p, double wetness, double share) {
     law.stiffness = p.transverse_stiffness / unit / share;
     law.core_stiffness = p.core_stiffness * law.stiffness;
     law.core_start = p.core_start;
+    law.adhesion = wetness * p.adhesion / (unit * p.length) / share;
+    law.adhesion_range = p.adhesion_range / p.length;
     law.friction = p.friction_dry + (p.friction_wet - p.friction_dry) * wetness;
     law.grain = p.grain;
     law.with_hair = p.with_hair;
@@ -101,16 +103,88 @@ struct Solved {
     Branch branch;
 };
 
-Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
-                   std::span<const ContactPlane> planes, const rod::Law& law, double share) {
-    Solved out;
-    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
-    out.result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law);
-    const SectionInput input{p, spine, out.result, obstacles, turn, share};
-    SectionOutput sections = make_sections(input);
+Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Quat& turn,
+                     std::span<const rod::Obstacle> obstacles, const rod::Law& law, double share) {
+    const double film = law.adhesion > 0 ? law.adhesion_range * p.length : 0;
+    Solved out{std::move(result), {}};
+    SectionOutput sections = make_sections({p, spine, out.result, obstacles, turn, film, share});
     spine.wide = sections.wide;
     out.branch.sections = std::move(sections.sections);
     return out;
+}
+
+Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
+                   std::span<const ContactPlane> planes, const rod::Law& law, double share) {
+    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
+    rod::Result result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law);
+    return with_sections(p, spine, std::move(result), turn, obstacles, law, share);
+}
+
+/// The spine from the query table: bent in the plane of the holder and the tip's last place,
+/// so that the tip follows the hand as a tractrix, by the moment that puts the tip on the plane.
+Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const rod::Clamp& clamp,
+                   const Quat& turn, std::span<const ContactPlane> planes, const rod::Law& law) {
+    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
+    rod::Memory& m = spine.memory;
+    const Vec3 root_before = m.clamp.position;
+    const Vec3 tip_before = rod::nodes(spine.rod, m).back();
+    rod::carry(m, clamp);
+    const std::size_t n = m.tangent.size();
+    rod::Result r;
+    r.converged = true;
+    r.moment.assign(n, 0);
+    r.normal_force.assign(n + 1, 0);
+    r.contact_force.assign(n + 1, Vec3{0});
+    const auto lay = [&](const TableRow& row, const Vec3& side) {
+        for (std::size_t i = 0; i <= n; ++i) {
+            const Vec2 b = row.nodes[n - i] / p.length;
+            m.node[i] = clamp.position + b.x * clamp.tangent + b.y * side;
+        }
+        for (std::size_t j = 0; j < n; ++j) m.tangent[j] = glm::normalize(m.node[j + 1] - m.node[j]);
+    };
+    Vec3 side = tip_before - clamp.position;
+    side -= glm::dot(side, clamp.tangent) * clamp.tangent;
+    side = glm::length(side) > 1e-9 ? glm::normalize(side) : clamp.side;
+    const Vec3 moved_by = clamp.position - root_before;
+    if (glm::dot(side, moved_by) > 0.999 * glm::length(moved_by) && glm::length(moved_by) > 1e-9) {
+        // Pushed straight ahead of the hand a tractrix balances; the hair gives way to one side.
+        side = glm::normalize(side + 0.03 * glm::cross(clamp.tangent, side));
+    }
+    if (obstacles.empty()) {
+        lay(table.rows.front(), side);
+        return with_sections(p, spine, std::move(r), turn, obstacles, law, 1);
+    }
+    const rod::Obstacle& o = obstacles.back();
+    const double root = glm::dot(clamp.position - o.origin, o.normal);
+    const double moment = standing_moment(table, [&](const TableRow& row) {
+        const Vec2 tip = row.nodes.front() / p.length;
+        return root + tip.x * glm::dot(clamp.tangent, o.normal) + tip.y * glm::dot(side, o.normal);
+    });
+    const TableRow row = look_up(table, moment);
+    lay(row, side);
+    if (moment > 0) {
+        const double unit = p.stiffness / p.length;
+        for (std::size_t j = 0; j < n; ++j) r.moment[j] = row.moments[n - j] / unit;
+        Vec3 lever = m.node.back() - clamp.position;
+        lever -= glm::dot(lever, o.normal) * o.normal;
+        const double reaction = moment / unit / std::max(glm::length(lever), 0.1);
+        Vec3 slip = m.node.back() - tip_before;
+        slip -= glm::dot(slip, o.normal) * o.normal;
+        const double moved = glm::length(slip);
+        r.force = reaction * o.normal;
+        if (moved > 1e-9) r.force -= law.friction * reaction / moved * slip;
+        r.root_moment = glm::cross(m.node.back() - clamp.position, r.force);
+        // Where the side of the tuft lies on the surface it shares the load.
+        double sum = 0;
+        for (std::size_t i = 1; i <= n; ++i) {
+            const rod::Obstacle& at = obstacles[i];
+            const double depth = at.radius - glm::dot(m.node[i] - at.origin, at.normal);
+            r.normal_force[i] = spine.rod.weight[i] * std::max(0.0, depth);
+            sum += r.normal_force[i];
+        }
+        for (double& f : r.normal_force) f *= sum > 0 ? reaction / sum : 0;
+    }
+    return with_sections(p, spine, std::move(r), turn, obstacles, law, 1);
 }
 
 /// SP of the bifurcation rule: ξ k (1 - Z_i/Z), with k the root moment over the moment of
@@ -211,6 +285,7 @@ Tuft make_tuft(const Preset& preset) {
     rod::Rod rod = rod::make_rod(profile, preset.segments, 0.25 + 0.75 * preset.hardness);
     rod.plastic_share = preset.plastic_share;
     tuft.spine = make_spine(preset, rod, clamp_of(preset, {}), 0, 1);
+    if (preset.spine == SpineMethod::table) tuft.table = make_table(preset);
     return tuft;
 }
 
@@ -247,8 +322,10 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const std::size_t own = tuft.spine.rest_radius.size();
     const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
     break_symmetry(p, tuft.spine, tuft.pose, pose, main_planes);
-    Solved solved = solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes,
-                                law_of(p, tuft.wetness, 1), 1);
+    const rod::Law law = law_of(p, tuft.wetness, 1);
+    Solved solved = p.spine == SpineMethod::table
+                        ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, law)
+                        : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, law, 1);
     tuft.pose = pose;
 
     const rod::Result& r = solved.result;
@@ -284,7 +361,6 @@ void reshape(Tuft& tuft) {
     const rod::Clamp clamp = tuft.spine.memory.clamp;
     tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
     tuft.split = false;
-    tuft.trail = Vec3{0};
 }
 
 Vec3 hand_force(const Preset& p, const TuftState& state) {

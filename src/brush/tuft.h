@@ -6,6 +6,7 @@
 
 #include "brush/preset.h"
 #include "brush/rod.h"
+#include "brush/table.h"
 #include "brush/tuft_state.h"
 #include "core/types.h"
 
@@ -33,7 +34,7 @@ struct Tuft {
     Spine spine;
     bool split = false;
     std::array<Spine, 3> twigs;     ///< sub-spines of the last third, used while split
-    Vec3 trail{0};                  ///< world, horizontal lag of the tip (table method)
+    QueryTable table;               ///< for the table method only
 };
 
 /// A straight tuft of this make. Throws `Error` for values out of range.

@@ -65,7 +65,7 @@ namespace {
 /// How far the contact squashes the hair round each node, 0 to 1, root first: indentation
 /// over radius, spread along the tuft over a few hair-bundle widths as hairs lean on each other.
 std::vector<double> squash(const SectionInput& in) {
-    constexpr double kReach = 0.05;  // of the length
+    constexpr double kReach = 0.07;  // of the length
     const rod::Memory& m = in.spine.memory;
     const std::size_t count = m.node.size();
     std::vector<double> raw(count, 0), out(count, 0), at(count, 0);
@@ -88,13 +88,30 @@ std::vector<double> squash(const SectionInput& in) {
     return out;
 }
 
-/// A flattened section keeps its lower side where the contact has it: its centre comes down
-/// by r - b, but not below the surface. Fades out for sections more than r off the surface.
-Vec3 lay_down(const rod::Obstacle& o, const Vec3& x, double r, double b, const Vec3& m) {
-    const double z = glm::dot(x - o.origin, o.normal);
-    const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;
-    const double down = near * (r - b) * std::abs(glm::dot(m, o.normal));
-    return x + (std::max(0.0, z - down) - z) * o.normal;
+/// How far each centre comes down along its plane's normal, metres, root first. A flattened
+/// section keeps its lower side where the contact has it, so the centre sinks by r - b, but
+/// not below the surface; what the contact's give let sink is lifted onto it. The free end
+/// beyond the contact comes down with the contact, and by the wet film's thickness more,
+/// until it touches. Towards the root it fades for sections more than r off the surface.
+std::vector<double> lowering(const SectionInput& in, const std::vector<Section>& sections) {
+    const std::size_t count = sections.size();
+    std::vector<double> down(count, 0);
+    if (in.obstacles.empty()) return down;
+    double tail = -1;  // how far the free end may come down; negative before any contact
+    for (std::size_t i = 1; i < count; ++i) {
+        const Section& s = sections[count - 1 - i];
+        const rod::Obstacle& o = in.obstacles[i];
+        const double z = glm::dot(s.centre - o.origin * in.preset.length, o.normal);
+        const double r = in.spine.rest_radius[i], upright = std::abs(glm::dot(s.m, o.normal));
+        if (tail >= 0 && z >= r) {
+            down[i] = std::clamp(z - 0.98 * s.b * upright, 0.0, tail);
+            continue;
+        }
+        const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;
+        down[i] = z - std::max(0.0, z - near * (r - s.b) * upright);
+        tail = z < r ? down[i] + in.film : -1;
+    }
+    return down;
 }
 
 }  // namespace
@@ -120,26 +137,28 @@ SectionOutput make_sections(const SectionInput& in) {
     for (std::size_t i = 0; i < count; ++i) {
         const double r = in.spine.rest_radius[i];
         const double moment = i + 1 < count ? in.result.moment[i] : 0;
-        // The ferrule holds the hair round within about one radius of its mouth.
-        const double held = in.share > 1 ? 1 : 1 - std::exp(-s * p.length / p.radius);
-        const double widen = 1 + held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
+        // The ferrule holds the hair round for some radii from its mouth.
+        const double out_of_ferrule = s * p.length / (2.5 * p.radius);
+        const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
+        const double widen = held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
                                          p.flatten_contact * squashed[i]);
         Section& section = out.sections[count - 1 - i];
-        section.a = r * std::min(widen, p.flatten_max);
+        // Nears its limit smoothly, or a line's width would show where it is reached.
+        const double room = p.flatten_max - 1;
+        section.a = r * (1 + (room > 0 ? room * std::tanh(widen / room) : 0));
         section.b = r > 0 ? r * r / section.a : 0;
         section.tangent = t[i];
         section.e = glm::normalize(e[i] - glm::dot(e[i], t[i]) * t[i]);
         section.m = glm::cross(section.e, t[i]);
         section.centre = m.node[i] * p.length;
-        if (i > 0 && !in.obstacles.empty()) {
-            rod::Obstacle o = in.obstacles[i];
-            o.origin *= p.length;
-            section.centre = lay_down(o, section.centre, r, section.b, section.m);
-        }
         section.moment = moment * p.stiffness / p.length;
         section.pressure = in.result.normal_force[i] / in.spine.rod.weight[i] * p.stiffness /
                            (p.length * p.length * p.length);
         if (i + 1 < count) s += in.spine.rod.length[i];
+    }
+    const std::vector<double> down = lowering(in, out.sections);
+    for (std::size_t i = 1; i < count && !in.obstacles.empty(); ++i) {
+        out.sections[count - 1 - i].centre -= down[i] * in.obstacles[i].normal;
     }
     out.wide = glm::conjugate(in.rotation) * e[0];
     return out;

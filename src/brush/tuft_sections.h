@@ -14,6 +14,7 @@ struct SectionInput {
     const rod::Result& result;
     std::span<const rod::Obstacle> obstacles;
     Quat rotation;       ///< of the ferrule
+    double film = 0;     ///< m, gap that the wet film closes
     double share = 1;    ///< spines the hair is shared among
 };
 
@@ -22,8 +23,8 @@ struct SectionOutput {
     Vec3 wide{1, 0, 0};               ///< e at the root, ferrule frame
 };
 
-/// a = r (1 + κ1 |m|/M_e0 + κ2 k_F + κ3 squash) <= flatten_max r and b = r²/a; held round
-/// by the ferrule at the root. The wide axis e lies in the contact plane where the spine presses
+/// a = r (1 + κ1 |m|/M_e0 + κ2 k_F + κ3 squash), bent over smoothly to stay below
+/// flatten_max r, and b = r²/a; held round by the ferrule at the root. The wide axis e lies in the contact plane where the spine presses
 /// most, else along the axis of bending, else where it was; from there it is carried along
 /// the spine without spin.
 SectionOutput make_sections(const SectionInput& input);
