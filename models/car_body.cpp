@@ -15,7 +15,6 @@ namespace {
 
 constexpr int kColumns = 2 * kMiddle;
 constexpr int kFloorColumn = 5;  ///< the wheel houses reach in to this column
-constexpr double kDegrees = std::numbers::pi / 180;
 
 /// Sides of the box the cage lies on; the flanks are numbered with y falling.
 enum Side { kNose, kTail, kLeft, kRight, kRoof };
@@ -39,17 +38,6 @@ class Body {
     /// A face of the left or right half; the right one is turned around.
     void add(Corners corners, bool right) {
         if (right) std::reverse(corners.begin(), corners.end());
-        cage_.add_face(std::move(corners));
-    }
-    /// A face of the floor, turned to look down.
-    void add_below(Corners corners) {
-        double area = 0;
-        for (std::size_t k = 0; k < corners.size(); ++k) {
-            const Vec3 a = cage_.points[corners[k]];
-            const Vec3 b = cage_.points[corners[(k + 1) % corners.size()]];
-            area += a.x * b.y - a.y * b.x;
-        }
-        if (area > 0) std::reverse(corners.begin(), corners.end());
         cage_.add_face(std::move(corners));
     }
     bool in_arch(int i, int r) const;
@@ -157,11 +145,24 @@ void Body::add_arch(const WheelDesign& w, bool right) {
         const Vec3 p = cage_.points[ring[k]];
         border.push_back({0.5 * design_.length() - p.x, std::abs(p.y), p.z});
     }
-    const double z_floor = border.front().z;
-    const double low = std::asin((z_floor - w.z) / w.arch_radius);
-    const double turn = (std::numbers::pi - 2 * low) / double(n - 1);
-    // Subdivision pulls a polygon of this many corners inwards.
-    const double grow = 6 / (4 + 2 * std::cos(turn));
+    // The opening: half a circle, and below the axle straight down to the floor,
+    // leaning out a little. The first and last step are short and round off the sill.
+    const auto opening = [&](double beyond, std::size_t k) {
+        const double radius = w.arch_radius + beyond, half = std::numbers::pi * radius / 2;
+        const double drop0 = w.z - border.front().z, drop1 = w.z - border.back().z;
+        const double sill = 12, steps = double(n - 3);
+        const double step = (2 * half + drop0 + drop1 - 2 * sill) / steps;
+        double at = -half - drop0 + sill + step * (double(k) - 1);
+        if (k == 0) at = -half - drop0;
+        if (k + 1 == n) at = half + drop1;
+        if (std::abs(at) > half) {
+            const double below = std::abs(at) - half;
+            return Vec3{w.s + std::copysign(radius + 0.05 * below, at), 0, w.z - below};
+        }
+        // Subdivision pulls a polygon inwards: its corners stand outside the circle.
+        const double grown = radius * 6 / (4 + 2 * std::cos(step / radius));
+        return Vec3{w.s + grown * std::sin(at / radius), 0, w.z + grown * std::cos(at / radius)};
+    };
 
     struct Loop {
         double from_border;  ///< 0 on the panel's border, 1 on the arch
@@ -178,10 +179,7 @@ void Body::add_arch(const WheelDesign& w, bool right) {
     for (const Loop& loop : loops) {
         Corners next;
         for (std::size_t k = 0; k < n; ++k) {
-            const double a = std::numbers::pi - low - turn * double(k);
-            const double radius = (w.arch_radius + loop.beyond) * grow;
-            Vec3 p{w.s - 0 + radius * std::cos(a), 0, w.z + radius * std::sin(a)};
-            if (k == 0 || k + 1 == n) p.z = z_floor;
+            Vec3 p = opening(loop.beyond, k);
             p.x = glm::mix(border[k].x, p.x, loop.from_border);
             p.z = glm::mix(border[k].z, p.z, loop.from_border);
             p.y = loop.inner_y > 0 ? loop.inner_y : design_.flank_y(p.x, p.z) + loop.out;
@@ -225,11 +223,12 @@ void Body::add_arch(const WheelDesign& w, bool right) {
         before.push_back(r.front());
         after.push_back(r.back());
     }
-    add_below(std::move(before));
-    add_below(std::move(after));
+    add(std::move(before), !right);
+    add(std::move(after), right);
     for (int c = 0; c < nu; ++c)
-        add_below({wall[{c, 0}], wall[{c + 1, 0}], vertex(w.first_station + c + 1, q, 0),
-                   vertex(w.first_station + c, q, 0)});
+        add({wall[{c + 1, 0}], wall[{c, 0}], vertex(w.first_station + c, q, 0),
+             vertex(w.first_station + c + 1, q, 0)},
+            right);
 }
 
 Body::Corners Body::region(Side side, int a0, int a1, int b0, int b1) const {
@@ -248,12 +247,15 @@ void Body::add_creases() {
                     cage_.crease(a->second, b->second, sharp);
             }
     };
-    along_ring(6, 2);    // character line
+    along_ring(6, 1.7);  // character line
     along_ring(2, 1.2);  // sill
+    along_ring(3, 0.8);
     for (const int i : {0, kStations})
         for (int j = 0; j < kColumns; ++j) {
             cage_.crease(vertex(i, j, 1), vertex(i, j + 1, 1), 1.5);
-            if (i == kStations) cage_.crease(vertex(i, j, kTop), vertex(i, j + 1, kTop), 2);
+            if (i == 0) continue;
+            cage_.crease(vertex(i, j, kTop), vertex(i, j + 1, kTop), 2);  // spoiler lip
+            cage_.crease(vertex(i, j, 4), vertex(i, j + 1, 4), 1.5);      // bumper shelf
         }
     for (const int j : {7, kColumns - 7})  // the bonnet's power dome
         for (int i = 2; i < 11; ++i) cage_.crease(vertex(i, j, kTop), vertex(i + 1, j, kTop), 1.5);
@@ -268,6 +270,7 @@ void Body::add_panels() {
     const CarveBorder cut{.sharp = 2}, frame{.sharp = 2, .corner_sharp = 1.5};
     const CarveLoop shut_line[] = {{5, 10, 2}, {10, 0, 2}};
     const CarveLoop glass[] = {{4, 16, 2}, {20, 14, 1}};
+    const CarveLoop intake[] = {{8, 40, 1.5}};
     // Bonnet and boot lid.
     carve(cage_, region(kRoof, 1, 11, 5, m - 5), cut, shut_line);
     carve(cage_, join(region(kRoof, 29, kStations, 6, m - 6), region(kTail, 6, m - 6, 5, kTop)),
@@ -286,18 +289,21 @@ void Body::add_panels() {
         carve(cage_, roof(13, 19, 2, 4), frame, glass);
         carve(cage_, roof(20, 25, 2, 4), frame, glass);
         carve(cage_, join(region(flank, 11, 20, 2, kTop), roof(11, 20, 0, 1)), cut, shut_line);
-        const CarveLoop lamp[] = {{3, 22, 2}, {14, 16, 1}};
+        const CarveLoop lamp[] = {{3, 24, 2}};
+        const CarveLoop bulb[] = {{5, -9, 1.5}}, light_bar[] = {{11, -10, 1.5}};
+        const CarveBorder base{.sharp = 1.5, .corner_sharp = 1};
         carve(cage_, join(end(kNose, 0, 5, 6, 7), region(flank, 0, 2, 6, 7)), frame, lamp);
-        carve(cage_, join(end(kTail, 0, 5, 6, 7), region(flank, 31, kStations, 6, 7)), frame, lamp);
-        const CarveLoop intake[] = {{8, 40, 1.5}};
-        carve(cage_, end(kNose, 1, 5, 2, 4), frame, intake);
+        for (int j = 1; j < 5; ++j) carve(cage_, end(kNose, j, j + 1, 6, 7), base, bulb);
+        const Corners tail_lamp = join(end(kTail, 0, 5, 6, 7), region(flank, 31, kStations, 6, 7));
+        carve(cage_, tail_lamp, frame, lamp);
+        carve(cage_, tail_lamp, base, light_bar);
     });
     const CarveLoop grille[] = {{10, 8, 2}, {14, 45, 1.5}};
     carve(cage_, region(kNose, 6, m - 6, 3, 5), frame, grille);
-    carve(cage_, region(kNose, 6, m - 6, 1, 2), frame, grille);
+    carve(cage_, region(kNose, 2, m - 2, 1, 2), frame, intake);
     const CarveLoop plate[] = {{8, 14, 2}};
     carve(cage_, region(kTail, 7, m - 7, 3, 4), frame, plate);
-    carve(cage_, region(kTail, 6, m - 6, 1, 2), frame, grille);
+    carve(cage_, region(kTail, 3, m - 3, 1, 2), frame, intake);
 }
 
 Cage Body::build() {

@@ -33,6 +33,8 @@ class CarDesign {
     double length() const;
     /// The point of the left half (j <= kMiddle) on the box's surface: (s, y, z).
     Vec3 point(int i, int j, int r) const;
+    /// The nose at half width `y` on row `r`.
+    Vec3 nose(double y, int r) const;
     /// Half width of the flank at a point of the side view.
     double flank_y(double s, double z) const;
     /// How far the fender stands out around the wheel arches, mm.
@@ -42,7 +44,7 @@ class CarDesign {
 
   private:
     Vec3 ring(double u, int r) const;
-    double ring_u(int i, int j) const;
+    double ring_u(int i, int j, int r) const;
     Vec3 top(int i, int j) const;
 
     PlaneLine plan_;
