@@ -1,5 +1,8 @@
 #include "io/project.h"
 
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
+
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -31,6 +34,32 @@ CREATE TABLE strokes(ordinal INTEGER PRIMARY KEY AUTOINCREMENT, id INTEGER NOT N
 CREATE TABLE pigments(plane INTEGER PRIMARY KEY, name TEXT NOT NULL, toml TEXT NOT NULL);
 CREATE TABLE tiles(slot INTEGER PRIMARY KEY, planes INTEGER NOT NULL, amounts BLOB NOT NULL);
 )";
+
+/// What SQLite says, in words for people.
+[[noreturn]] void rethrow(const SQLite::Exception& e, const std::filesystem::path& path) {
+    const std::string name = path.string();
+    switch (e.getErrorCode()) {
+        case SQLITE_FULL: throw Error(name, "cannot be written: the disk is full");
+        case SQLITE_READONLY: throw Error(name, "cannot be written: it is read-only");
+        case SQLITE_BUSY:
+        case SQLITE_LOCKED: throw Error(name, "is in use by another program");
+        case SQLITE_IOERR: throw Error(name, std::string("cannot be read or written: ") + e.what());
+        case SQLITE_CANTOPEN: throw Error(name, std::string("cannot be opened: ") + e.what());
+        case SQLITE_NOMEM: throw Error(name, "does not fit into memory");
+        case SQLITE_CONSTRAINT: throw Error(name, std::string("refuses the change: ") + e.what());
+        default: throw Error(name, std::string("the project is damaged: ") + e.what());
+    }
+}
+
+/// Runs `fn`, turning SQLite's exceptions into `Error`s that name the file.
+template <class Fn>
+auto guarded(const std::filesystem::path& path, Fn&& fn) {
+    try {
+        return fn();
+    } catch (const SQLite::Exception& e) {
+        rethrow(e, path);
+    }
+}
 
 std::uint32_t big_endian(const char* bytes) {
     std::uint32_t v = 0;

@@ -1,3 +1,5 @@
+#include <SQLiteCpp/SQLiteCpp.h>
+
 #include <array>
 #include <cmath>
 #include <cstring>
