@@ -265,6 +265,13 @@ std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const Pr
     return reports;
 }
 
+void Painting::adopt(std::vector<Stroke> strokes, ink::Canvas canvas) {
+    if (canvas.n_slots() != model_->texels.n_slots())
+        throw Error("the stored texels belong to another atlas");
+    canvas_ = std::move(canvas);
+    for (Stroke& stroke : strokes) journal_.restore(std::move(stroke));
+}
+
 void Painting::keep_undo(std::uint64_t id, std::vector<ink::TileSnapshot> before) {
     Undo undo{.stroke_id = id, .before = std::move(before)};
     for (const ink::TileSnapshot& tile : undo.before)
