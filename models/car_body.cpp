@@ -19,6 +19,32 @@ constexpr int kFloorColumn = 5;  ///< the wheel houses reach in to this column
 /// Sides of the box the cage lies on; the flanks are numbered with y falling.
 enum Side { kNose, kTail, kLeft, kRight, kRoof };
 
+/// The opening in `n` points (s, 0, z): half a circle `beyond` the arch, and below the axle
+/// straight down to the floor, leaning out a little. The first and last step are short
+/// and round off the sill.
+std::vector<Vec3> draw_arch(const WheelDesign& w, double beyond, double z_first, double z_last,
+                            std::size_t n) {
+    const double sill = 12;  // mm
+    const double radius = w.arch_radius + beyond, half = std::numbers::pi * radius / 2;
+    const double first = -half - (w.z - z_first), last = half + (w.z - z_last);
+    const double step = (last - first - 2 * sill) / double(n - 3);
+    // Subdivision pulls a polygon inwards: its corners stand outside the circle.
+    const double grown = radius * 6 / (4 + 2 * std::cos(step / radius));
+    std::vector<Vec3> points;
+    for (std::size_t k = 0; k < n; ++k) {
+        double at = first + sill + step * (double(k) - 1);
+        if (k == 0) at = first;
+        if (k + 1 == n) at = last;
+        const double below = std::abs(at) - half;
+        if (below > 0)
+            points.emplace_back(w.s + std::copysign(radius + 0.05 * below, at), 0, w.z - below);
+        else
+            points.emplace_back(w.s + grown * std::sin(at / radius), 0,
+                                w.z + grown * std::cos(at / radius));
+    }
+    return points;
+}
+
 /// Builds the cage on the box, remembers which face is where, and carves.
 class Body {
   public:
@@ -35,6 +61,7 @@ class Body {
     void add_grid();
     void add_floor();
     void add_arch(const WheelDesign& wheel, bool right);
+    void close_wheel_house(const WheelDesign& wheel, const std::vector<Corners>& rings, bool right);
     /// A face of the left or right half; the right one is turned around.
     void add(Corners corners, bool right) {
         if (right) std::reverse(corners.begin(), corners.end());
@@ -133,6 +160,17 @@ void Body::add_floor() {
 }
 
 void Body::add_arch(const WheelDesign& w, bool right) {
+    struct Loop {
+        double from_border;  ///< 0 on the panel's border, 1 on the arch
+        double beyond;       ///< radius beyond the arch, mm
+        double out;          ///< beyond the flank, mm
+        double inner_y;      ///< where > 0: half width itself, mm
+        double sharp;
+    };
+    constexpr Loop kLoops[] = {
+        {0.5, 26, 0, 0, 0},  {1, 27, 0, 0, 1.5}, {1, 22, 5, 0, 1.5}, {1, 0, 7, 0, 2},
+        {1, 0, -14, 0, 1.5}, {1, 12, 0, 760, 0}, {1, 12, 0, 565, 1},
+    };
     const int side = right ? kColumns : 0;
     Corners ring;
     for (int r = 0; r < w.top_row; ++r) ring.push_back(vertex(w.first_station, side, r));
@@ -141,47 +179,17 @@ void Body::add_arch(const WheelDesign& w, bool right) {
     for (int r = w.top_row - 1; r >= 0; --r) ring.push_back(vertex(w.last_station, side, r));
     const std::size_t n = ring.size();
     std::vector<Vec3> border;  // in the design's frame
-    for (std::size_t k = 0; k < n; ++k) {
-        const Vec3 p = cage_.points[ring[k]];
+    for (const std::uint32_t v : ring) {
+        const Vec3 p = cage_.points[v];
         border.push_back({0.5 * design_.length() - p.x, std::abs(p.y), p.z});
     }
-    // The opening: half a circle, and below the axle straight down to the floor,
-    // leaning out a little. The first and last step are short and round off the sill.
-    const auto opening = [&](double beyond, std::size_t k) {
-        const double radius = w.arch_radius + beyond, half = std::numbers::pi * radius / 2;
-        const double drop0 = w.z - border.front().z, drop1 = w.z - border.back().z;
-        const double sill = 12, steps = double(n - 3);
-        const double step = (2 * half + drop0 + drop1 - 2 * sill) / steps;
-        double at = -half - drop0 + sill + step * (double(k) - 1);
-        if (k == 0) at = -half - drop0;
-        if (k + 1 == n) at = half + drop1;
-        if (std::abs(at) > half) {
-            const double below = std::abs(at) - half;
-            return Vec3{w.s + std::copysign(radius + 0.05 * below, at), 0, w.z - below};
-        }
-        // Subdivision pulls a polygon inwards: its corners stand outside the circle.
-        const double grown = radius * 6 / (4 + 2 * std::cos(step / radius));
-        return Vec3{w.s + grown * std::sin(at / radius), 0, w.z + grown * std::cos(at / radius)};
-    };
-
-    struct Loop {
-        double from_border;  ///< 0 on the panel's border, 1 on the arch
-        double beyond;       ///< radius beyond the arch, mm
-        double out;          ///< beyond the flank, mm
-        double inner_y;      ///< where > 0: half width itself, mm
-        double sharp;
-    };
-    const Loop loops[] = {
-        {0.5, 26, 0, 0, 0},  {1, 27, 0, 0, 1.5}, {1, 22, 5, 0, 1.5}, {1, 0, 7, 0, 2},
-        {1, 0, -14, 0, 1.5}, {1, 12, 0, 760, 0}, {1, 12, 0, 565, 1},
-    };
     std::vector<Corners> rings{ring};
-    for (const Loop& loop : loops) {
+    for (const Loop& loop : kLoops) {
+        const std::vector<Vec3> arch =
+            draw_arch(w, loop.beyond, border.front().z, border.back().z, n);
         Corners next;
         for (std::size_t k = 0; k < n; ++k) {
-            Vec3 p = opening(loop.beyond, k);
-            p.x = glm::mix(border[k].x, p.x, loop.from_border);
-            p.z = glm::mix(border[k].z, p.z, loop.from_border);
+            Vec3 p = glm::mix(border[k], arch[k], loop.from_border);
             p.y = loop.inner_y > 0 ? loop.inner_y : design_.flank_y(p.x, p.z) + loop.out;
             next.push_back(cage_.add_point(place(p, right)));
         }
@@ -192,31 +200,32 @@ void Body::add_arch(const WheelDesign& w, bool right) {
         }
         rings.push_back(next);
     }
-    // The inner wall of the wheel house: a grid spanned by the last loop.
+    close_wheel_house(w, rings, right);
+}
+
+/// The inner wall, a grid spanned by the last ring, and the floor around the opening.
+void Body::close_wheel_house(const WheelDesign& w, const std::vector<Corners>& rings, bool right) {
     const Corners& inner = rings.back();
+    const std::size_t n = inner.size();
     const int nu = w.last_station - w.first_station, nv = w.top_row;
-    const auto at = [&](int c, int r) -> Vec3 {  // blended from the three sides and the floor line
-        const auto left = cage_.points[inner[std::size_t(r)]];
-        const auto rgt = cage_.points[inner[n - 1 - std::size_t(r)]];
-        return glm::mix(left, rgt, double(c) / nu);
-    };
     std::map<std::pair<int, int>, std::uint32_t> wall;
     for (int c = 0; c <= nu; ++c) {
         for (int r = 0; r <= nv; ++r) {
+            const std::uint32_t front = inner[std::size_t(r)], back = inner[n - 1 - std::size_t(r)];
             if (c == 0)
-                wall[{c, r}] = inner[std::size_t(r)];
+                wall[{c, r}] = front;
             else if (c == nu)
-                wall[{c, r}] = inner[n - 1 - std::size_t(r)];
+                wall[{c, r}] = back;
             else if (r == nv)
                 wall[{c, r}] = inner[std::size_t(nv + c)];
             else
-                wall[{c, r}] = cage_.add_point(at(c, r));
+                wall[{c, r}] = cage_.add_point(
+                    glm::mix(cage_.points[front], cage_.points[back], double(c) / nu));
         }
     }
     for (int c = 0; c < nu; ++c)
         for (int r = 0; r < nv; ++r)
             add({wall[{c, r}], wall[{c + 1, r}], wall[{c + 1, r + 1}], wall[{c, r + 1}]}, right);
-    // The floor around the opening.
     const int q = right ? kColumns - kFloorColumn : kFloorColumn;
     Corners before{vertex(w.first_station, q, 0)}, after{vertex(w.last_station, q, 0)};
     for (const Corners& r : rings) {
@@ -294,6 +303,7 @@ void Body::add_panels() {
         const CarveBorder base{.sharp = 1.5, .corner_sharp = 1};
         carve(cage_, join(end(kNose, 0, 5, 6, 7), region(flank, 0, 2, 6, 7)), frame, lamp);
         for (int j = 1; j < 5; ++j) carve(cage_, end(kNose, j, j + 1, 6, 7), base, bulb);
+        carve(cage_, join(end(kNose, 0, 1, 6, 7), region(flank, 0, 2, 6, 7)), base, bulb);
         const Corners tail_lamp = join(end(kTail, 0, 5, 6, 7), region(flank, 31, kStations, 6, 7));
         carve(cage_, tail_lamp, frame, lamp);
         carve(cage_, tail_lamp, base, light_bar);

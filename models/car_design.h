@@ -49,8 +49,8 @@ class CarDesign {
 
     PlaneLine plan_;
     std::vector<Curve> row_inset_, row_height_;  ///< [kTop + 1] over the length of the plan line
-    std::vector<Curve> rail_, screen_, middle_, waist_,
-        window_top_;  ///< [3]: s over station, y, z over s
+    std::vector<Curve> rail_, screen_, middle_;  ///< [3]: s over the station; y and z over s
+    std::vector<Curve> waist_, window_top_;      ///< [2]: y and z over s
 };
 
 }  // namespace tuft::models
