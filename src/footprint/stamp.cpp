@@ -1,6 +1,7 @@
 #include "footprint/stamp.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -10,13 +11,14 @@ namespace tuft::footprint {
 namespace {
 
 constexpr double kFacingAway = atlas::kLogMapMinCos;  // normals beyond this are never touched
-constexpr float kSlack = 1.1f;  // of a piece's radius: the log map stretches it a little
+constexpr float kAgree = 0.25f;  // of a hop: neighbours that differ by more went other ways
+constexpr float kSlack = 1.1f;   // of a piece's radius: the log map stretches it a little
 
 enum : std::uint8_t { kOpen, kFinal, kOutside };
 
 /// What the walk needs to know of a stamp.
 struct Reach {
-    Vec3f normal{0};
+    Vec3f origin{0}, normal{0};
     float radius = 0;    ///< metres, motion included
     Vec2f lo{0}, hi{0};  ///< of the picture, motion included, metres
 };
@@ -44,11 +46,20 @@ struct Walk {
         std::push_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
     }
 
-    /// Place of a piece: mean of what its settled neighbours say, those in radial direction
-    /// and near by first.
-    void place(std::uint32_t piece, PlanScratch::Node& n) {
-        float total = 0, u = 0, v = 0, c = 0, s = 0;
-        for (std::uint32_t k = graph.edge_start[piece]; k < graph.edge_start[piece + 1]; ++k) {
+    /// What one settled neighbour says of a piece's place.
+    struct Hint {
+        float weight, hop2, u, v, c, s;
+    };
+
+    /// Place of a piece: mean of what its settled neighbours say, those in radial direction and
+    /// near by first. Behind an obstacle the ways round it on both sides lead to different
+    /// places; there the neighbour with most weight and those who agree with it decide. No
+    /// place is nearer than the straight line in space.
+    void place(const atlas::Piece& piece, std::uint32_t index, PlanScratch::Node& n) {
+        std::array<Hint, 24> hints;
+        std::size_t count = 0, best = 0;
+        const std::uint32_t end = graph.edge_start[index + 1];
+        for (std::uint32_t k = graph.edge_start[index]; k < end && count < hints.size(); ++k) {
             const atlas::PieceEdge& e = graph.edges[k];
             const PlanScratch::Node& from = scratch.nodes[e.to];
             if (from.epoch != scratch.epoch || from.state != kFinal) continue;
@@ -57,19 +68,32 @@ struct Walk {
             const float pu = from.u - hu, pv = from.v - hv;
             const float hh = hu * hu + hv * hv, pp = pu * pu + pv * pv, hp = hu * pu + hv * pv;
             const float cos2 = hh * pp > 0 ? hp * hp / (hh * pp) : 1.0f;
-            const float w = (cos2 * cos2 + 1e-4f) / std::sqrt(hh + 1e-20f);
-            total += w;
-            u += w * pu;
-            v += w * pv;
-            c += w * ci;
-            s += w * si;
+            const float weight = (cos2 * cos2 + 1e-4f) / std::sqrt(hh + 1e-20f);
+            hints[count] = {weight, hh, pu, pv, ci, si};
+            if (weight > hints[best].weight) best = count;
+            ++count;
         }
-        const float length = std::sqrt(c * c + s * s);
-        if (!(total > 0) || !(length > 0)) return;
-        n.u = u / total;
-        n.v = v / total;
-        n.c = c / length;
-        n.s = s / length;
+        if (count == 0) return;
+        float total = 0, u = 0, v = 0, c = 0, s = 0;
+        const float agree = kAgree * kAgree * hints[best].hop2;
+        for (std::size_t k = 0; k < count; ++k) {
+            const Hint& h = hints[k];
+            const float du = h.u - hints[best].u, dv = h.v - hints[best].v;
+            if (du * du + dv * dv > agree) continue;
+            total += h.weight;
+            u += h.weight * h.u;
+            v += h.weight * h.v;
+            c += h.weight * h.c;
+            s += h.weight * h.s;
+        }
+        const float turn = std::sqrt(c * c + s * s), away = std::sqrt(u * u + v * v);
+        const float straight = total * glm::length(piece.centre - reach.origin);
+        const float stretch = away > 0 && away < 0.999f * straight ? straight / away : 1.0f;
+        n.u = stretch * u / total;
+        n.v = stretch * v / total;
+        if (!(turn > 0)) return;
+        n.c = c / turn;
+        n.s = s / turn;
     }
 
     bool faces_away(const atlas::Piece& piece) const {
@@ -97,8 +121,8 @@ struct Walk {
             scratch.heap.pop_back();
             PlanScratch::Node& n = scratch.nodes[i];
             if (n.state != kOpen || key > n.key) continue;
-            if (i != first) place(i, n);
             const atlas::Piece& piece = graph.pieces[i];
+            if (i != first) place(piece, i, n);
             const float distance = std::sqrt(n.u * n.u + n.v * n.v);
             n.state = kOutside;
             if (distance - kSlack * piece.radius > reach.radius || faces_away(piece)) continue;
@@ -186,6 +210,7 @@ std::vector<SubPose> spread_poses(const Footprint& footprint, const Motion& moti
 Reach reach_of(const Footprint& footprint, const Motion& motion) {
     Reach reach;
     const double swing = std::abs(motion.turn) * footprint.radius;
+    reach.origin = Vec3f(footprint.frame.origin);
     reach.normal = Vec3f(footprint.frame.n);
     reach.radius = static_cast<float>(footprint.radius + glm::length(motion.shift));
     const Vec2 hi = footprint.lo + footprint.cell * Vec2(footprint.width, footprint.height);
