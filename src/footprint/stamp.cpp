@@ -294,6 +294,11 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
         jobs.frames.push_back(f);
     }
     jobs.discrepancy /= std::max(footprint.radius, 1e-12);
+    const Vec2f to_cells = Vec2f(footprint.lo / footprint.cell + 0.5);
+    const Vec2f lo = walk.reach.lo / float(footprint.cell) - to_cells - 2.0f;
+    const Vec2f hi = walk.reach.hi / float(footprint.cell) - to_cells + 2.0f;
+    jobs.reach_lo = {lo.x, lo.y};
+    jobs.reach_hi = {hi.x, hi.y};
     jobs.sub_poses = spread_poses(footprint, motion, surface.texels.texel_size, options);
     pack_picture(footprint, jobs);
     return jobs;

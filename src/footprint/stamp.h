@@ -70,12 +70,13 @@ struct StampJobs {
     int width = 0, height = 0;  ///< of the packed picture
     std::vector<std::uint32_t>
         corners;  ///< coverage of cells (i,j) (i+1,j) (i,j+1) (i+1,j+1), a byte each
-    std::vector<SubPose> sub_poses;  ///< evenly spread over the motion
-    PieceFrame stamp_frame;          ///< serves all pieces when not piecewise
-    std::vector<PieceFrame> frames;  ///< one for each piece reached, by slot
-    std::vector<TileJob> tiles;      ///< by slot
-    double discrepancy = 0;          ///< between the two ways of mapping, over the radius
-    bool piecewise = false;          ///< set by `choose_mode`
+    std::vector<SubPose> sub_poses;               ///< evenly spread over the motion
+    std::array<float, 2> reach_lo{}, reach_hi{};  ///< cells: the picture in all its sub-poses
+    PieceFrame stamp_frame;                       ///< serves all pieces when not piecewise
+    std::vector<PieceFrame> frames;               ///< one for each piece reached, by slot
+    std::vector<TileJob> tiles;                   ///< by slot
+    double discrepancy = 0;  ///< between the two ways of mapping, over the radius
+    bool piecewise = false;  ///< set by `choose_mode`
     Mapping mapping = Mapping::log;
     Isa isa = Isa::baseline;
 

@@ -71,6 +71,25 @@ struct Rows {
     }
 }
 
+/// The rows that some pose of the picture may reach.
+[[gnu::always_inline]] inline Rows rows_in_picture(const StampJobs& jobs, Rows rows,
+                                                   const float* __restrict fu,
+                                                   const float* __restrict fv) {
+    const float lo_u = jobs.reach_lo[0], lo_v = jobs.reach_lo[1];
+    const float hi_u = jobs.reach_hi[0], hi_v = jobs.reach_hi[1];
+    Rows hit{rows.end, rows.begin};
+    for (int row = rows.begin; row < rows.end; row += kTile) {
+        int any = 0;
+#pragma omp simd reduction(| : any)
+        for (int t = row; t < row + kTile; ++t)
+            any |= (fu[t] >= lo_u) & (fu[t] <= hi_u) & (fv[t] >= lo_v) & (fv[t] <= hi_v);
+        if (any == 0) continue;
+        hit.begin = std::min(hit.begin, row);
+        hit.end = row + kTile;
+    }
+    return hit;
+}
+
 /// Adds the picture's value at each texel, 255 for full coverage.
 [[gnu::always_inline]] inline void gather(const StampJobs& jobs, const SubPose& pose, Rows rows,
                                           const float* __restrict fu, const float* __restrict fv,
@@ -111,7 +130,8 @@ struct Rows {
         PieceFrame frame = jobs.piecewise ? own : jobs.stamp_frame;
         frame.piece = own.piece;
         map_texels(tile, frame, rows, plane, fu, fv);
-        for (const SubPose& pose : jobs.sub_poses) gather(jobs, pose, rows, fu, fv, sum);
+        const Rows hit = rows_in_picture(jobs, rows, fu, fv);
+        for (const SubPose& pose : jobs.sub_poses) gather(jobs, pose, hit, fu, fv, sum);
     }
     const float scale = 1.0f / (255.0f * static_cast<float>(jobs.sub_poses.size()));
     int any = 0;
