@@ -2,43 +2,187 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "contact/obb.h"
+#include "contact/outside.h"
 
 namespace tuft::contact {
 namespace {
 
 using brush::ContactPlane;
 
-// The surface that node `p` meets, on the side of the ferrule's mouth `root`.
-ContactPlane node_plane(const mesh::SurfaceQuery& surface, const Vec3& p, const Vec3& root,
-                        const Vec3& reference, double reach) {
-    const auto q = surface.closest_point(p, reach);
-    if (!q) return {root - 1e3 * reach * reference, reference};  // nothing near: far below
-    // A wall seen from behind lies beyond the one the tuft came to.
-    if (glm::dot(q->normal, reference) > -0.2 && glm::dot(q->face_normal, root - q->position) > 0)
-        return {q->position, q->normal};
-    if (const auto front = surface.ray(p + reach * reference, -reference, 0, 2 * reach);
-        front && glm::dot(front->normal, reference) > 0)
-        return {front->position, front->normal};
-    return {q->position, reference};
+/// A step in work.
+struct Work {
+    const mesh::SurfaceQuery& surface;
+    const brush::Pose& pose;
+    const Options& options;
+    StandOptions stand;
+    double near = 0;   // metres: farther than this nothing of the tuft can touch
+    Stand root;        // of the ferrule's mouth
+};
+
+Stand stand_of_root(const Work& w, const Memory& memory, double length) {
+    const Vec3& root = w.pose.position;
+    // A hand that touched has not left the object's front within a tuft's length.
+    const bool known = memory.touching && glm::length(root - memory.root) < 2 * length;
+    const Vec3 from = known ? memory.outside : find_outside(w.surface, root, -w.pose.axis(), w.stand);
+    return stand_from(w.surface, from, known ? memory.side : 1, root, w.stand);
 }
 
-// Middle of the part of the tuft that is at the surface: nodes weighted by how deep
-// their section lies, so that it moves continuously.
-Vec3 contact_centre(const brush::TuftState& tuft, const std::vector<ContactPlane>& planes) {
+std::vector<Vec3> centres(const brush::Branch& branch) {
+    std::vector<Vec3> out;
+    for (const brush::Section& s : branch.sections) out.push_back(s.centre);
+    return out;
+}
+
+/// Stands of the tuft's nodes, tip first; sub-spines, which follow in the list, start from the trunk.
+std::vector<Stand> stand_nodes(const Work& w, std::span<const Vec3> nodes, std::size_t trunk) {
+    std::vector<Stand> out = stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand);
+    if (nodes.size() == trunk) return out;
+    const std::size_t twig = (nodes.size() - trunk) / 3;
+    for (std::size_t first = trunk; first < nodes.size(); first += twig) {
+        const auto points = nodes.subspan(first, twig);
+        const Stand& start = out[std::min(twig, trunk) - 1];  // the trunk's node they leave from
+        const std::vector<Stand> more = stand_along(w.surface, start, points, w.near, w.stand);
+        out.insert(out.end(), more.begin(), more.end());
+    }
+    return out;
+}
+
+/// The plane for a node that met `old` and came to rest where the surface is `now`. In a
+/// concave corner, where it would be thrown from wall to wall, it gets both walls' bisector.
+ContactPlane refreshed(const ContactPlane& old, const Stand& now, const Vec3& p, double radius) {
+    const ContactPlane& fresh = now.plane;
+    const double z_old = glm::dot(p - old.origin, old.normal);
+    constexpr double kCorner = 0.87;  // cos 30°
+    if (glm::dot(old.normal, fresh.normal) > kCorner || z_old > 1.5 * radius) return fresh;
+    const Vec3 sum = old.normal + fresh.normal;
+    if (glm::dot(sum, sum) < 0.1) return fresh;
+    const Vec3 n = glm::normalize(sum);
+    // Through the point where p would be in front of both.
+    const double needed = std::max(-z_old, -now.height) / glm::dot(n, fresh.normal);
+    return {p + needed * n, n};
+}
+
+/// Solves, looks where the nodes came to rest, and solves again where their planes were off.
+brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes) {
+    const std::size_t trunk = tuft.spine.rest_radius.size();
+    const bool was_split = tuft.split;
+    const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
+    for (const Stand& s : stand_nodes(w, nodes, trunk)) planes.push_back(s.plane);
+    if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt);
+
+    const brush::Tuft before = tuft;
+    brush::TuftState state = brush::step(tuft, w.pose, planes, dt);
+    for (int pass = 0; pass < w.options.max_refreshes && state.touching; ++pass) {
+        const std::vector<Vec3> rest = brush::predicted_nodes(tuft, w.pose);
+        if (tuft.split != was_split && rest.size() < nodes.size()) break;
+        const auto compared = std::span(rest).first(nodes.size());
+        const std::vector<Stand> stands = stand_nodes(w, compared, trunk);
+        double worst = 0;
+        std::vector<ContactPlane> fresh = planes;
+        for (std::size_t i = 0; i < planes.size(); ++i) {
+            const double radius = i < trunk ? before.spine.rest_radius[trunk - 1 - i] : before.spine.rest_radius[trunk - 1];
+            const double z = glm::dot(compared[i] - planes[i].origin, planes[i].normal);
+            if (std::min(z, stands[i].height) > 2 * radius) continue;
+            worst = std::max(worst, std::abs(z - stands[i].height));
+            fresh[i] = refreshed(planes[i], stands[i], compared[i], radius);
+        }
+        if (worst < w.options.refresh_error) break;
+        planes = std::move(fresh);
+        tuft = before;
+        const int iterations = state.iterations;
+        state = brush::step(tuft, w.pose, planes, dt);
+        state.iterations += iterations;
+    }
+    return state;
+}
+
+/// One plane for all nodes: the tip snapped to the weighted mean of the nearest vertices.
+brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, Result& result) {
+    const Vec3 tip = brush::predicted_nodes(tuft, w.pose).front();
+    const Vec3 holder = w.pose.position - tuft.preset.length * w.pose.axis();
+    const WeightedDistance d = weighted_distance(w.surface, tip, holder, w.options.nearest_vertices);
+    if (!d.found) return brush::step(tuft, w.pose, {}, dt);
+    const ContactPlane plane{snap_tip(tip, d), d.normal};
+    result.planes.assign(1, plane);
+    brush::TuftState state = brush::step(tuft, w.pose, result.planes, dt);
+    result.sphere = expand_ball(outline_points(state));
+    return state;
+}
+
+/// Stands of every section of every branch of the solved tuft.
+std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::TuftState& tuft) {
+    std::vector<std::vector<Stand>> out;
+    // The branch that reaches the ferrule first; the others start where it is nearest.
+    std::vector<std::size_t> order;
+    for (std::size_t b = 0; b < tuft.branches.size(); ++b) order.push_back(b);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return tuft.branches[a].sections.size() > tuft.branches[b].sections.size();
+    });
+    out.resize(tuft.branches.size());
+    for (const std::size_t b : order) {
+        const std::vector<Vec3> points = centres(tuft.branches[b]);
+        Stand start = w.root;
+        if (b != order.front() && !points.empty()) {
+            const std::vector<Stand>& trunk = out[order.front()];
+            const std::size_t at = std::min(points.size(), trunk.size());
+            if (at > 0) start = trunk[at - 1];
+        }
+        out[b] = stand_along(w.surface, start, points, w.near, w.stand);
+    }
+    return out;
+}
+
+/// The contact frame under the middle of the touching sections, and the distance to touch.
+/// Sections weigh as deep as they reach into the surface, so that it moves continuously.
+void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, Memory& memory, Result& result) {
     Vec3 sum{0};
-    double weight = 0;
-    std::size_t i = 0;
-    for (const brush::Branch& branch : tuft.branches) {
-        for (const brush::Section& s : branch.sections) {
-            const ContactPlane& plane = planes[std::min(i++, planes.size() - 1)];
-            const double z = glm::dot(s.centre - plane.origin, plane.normal);
-            const double w = std::max(0.0, std::hypot(s.a * glm::dot(s.e, plane.normal),
-                                                      s.b * glm::dot(s.m, plane.normal)) - z + 1e-5);
-            sum += w * s.centre;
-            weight += w;
+    double total = 0, heaviest = 0, gap = std::numeric_limits<double>::infinity();
+    const Stand* from = nullptr;
+    const Stand* lowest = nullptr;
+    for (std::size_t b = 0; b < stands.size(); ++b) {
+        const std::vector<brush::Section>& sections = result.tuft.branches[b].sections;
+        for (std::size_t i = 0; i < sections.size(); ++i) {
+            const Stand& s = stands[b][i];
+            if (s.triangle == kNone) continue;
+            const double under = s.height - std::sqrt(sections[i].a * sections[i].b);  // as the rod's contacts
+            if (under < gap) {
+                gap = under;
+                lowest = &s;
+            }
+            const std::size_t next = i + 1 < sections.size() ? i + 1 : i, prev = i > 0 ? i - 1 : 0;
+            const double share = 0.5 * glm::length(sections[next].centre - sections[prev].centre);
+            const double weight = std::max(0.0, 1e-5 - under) * share;
+            sum += weight * s.plane.origin;
+            total += weight;
+            if (weight > heaviest) {
+                heaviest = weight;
+                from = &s;
+            }
         }
     }
-    return weight > 0 ? sum / weight : tuft.branches.front().sections.front().centre;
+    if (!lowest) return;
+    result.distance = result.tuft.touching ? 0 : std::max(0.0, gap);
+    Stand at = *lowest;
+    if (total > 0) {
+        const Stand middle = stand_from(w.surface, from->outside, from->side, sum / total, w.stand);
+        if (middle.triangle != kNone) at = middle;
+    }
+    result.triangle = at.triangle;
+    result.frame = make_frame(at.plane.origin, at.plane.normal, memory.heading);
+    memory.heading = result.frame.t;
+}
+
+Vec3 hand_force(const brush::Preset& preset, const Result& result, const Options& options) {
+    Vec3 force = brush::hand_force(preset, result.tuft);
+    if (result.triangle != kNone && options.tolerance > 0) {
+        const double ramp = std::clamp((1 - result.distance / options.tolerance) / 0.1, 0.0, 1.0);
+        force += ramp * options.proximity_force * result.frame.n;
+    }
+    const double size = glm::length(force);
+    return size > preset.force_limit ? force * (preset.force_limit / size) : force;
 }
 
 }  // namespace
@@ -46,57 +190,43 @@ Vec3 contact_centre(const brush::TuftState& tuft, const std::vector<ContactPlane
 Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface,
             Memory& memory, double dt, const Options& options) {
     Result result;
-    const double length = tuft.preset.length;
-    const double reach = 1.5 * length;
+    const brush::Preset& preset = tuft.preset;
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, pose);
+    const double thick = 1.2 * preset.radius * std::max(1.0, preset.flatten_max);
+    const bool meets = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
-    // Broad phase: the tuft is within `reach` of its mouth.
-    const auto under = surface.closest_point(pose.position, 2 * reach);
-    if (!under) {
+    Work w{surface, pose, options, {}, 0, {}};
+    w.stand.reach = 2 * preset.length + thick;
+    w.near = thick + options.tolerance;
+    if (meets) w.root = stand_of_root(w, memory, preset.length);
+    const bool reachable = meets && w.root.triangle != kNone && w.root.height < preset.length + w.near;
+    if (!reachable) {
         result.tuft = brush::step(tuft, pose, {}, dt);
         const auto far = surface.closest_point(nodes.front());
         result.distance = far ? far->distance : std::numeric_limits<double>::infinity();
-        memory.normal = Vec3{0};
+        memory.touching = false;
         return result;
     }
-    // The side the tuft is on: where it touched before, else where its mouth is.
-    Vec3 reference = memory.normal;
-    if (glm::dot(reference, reference) < 0.5)
-        reference = glm::dot(under->normal, pose.axis()) < 0.3 ? under->normal : -pose.axis();
 
-    result.planes.reserve(nodes.size());
-    for (const Vec3& p : nodes)
-        result.planes.push_back(node_plane(surface, p, pose.position, reference, reach));
-    result.tuft = brush::step(tuft, pose, result.planes, dt);
-
-    const Vec3 centre = result.tuft.touching ? contact_centre(result.tuft, result.planes)
-                                             : result.tuft.branches.front().sections.front().centre;
-    if (const auto foot = surface.closest_point(centre, reach)) {
-        const bool front = glm::dot(foot->normal, reference) > -0.2;
-        const ContactPlane plane =
-            front ? ContactPlane{foot->position, foot->normal}
-                  : node_plane(surface, centre, pose.position, reference, reach);
-        const auto on = front ? foot : surface.closest_point(plane.origin, reach);
-        result.triangle = on->triangle;
-        result.frame = make_frame(plane.origin, plane.normal, memory.heading);
-        result.distance = result.tuft.touching
-                              ? 0.0
-                              : std::max(0.0, glm::dot(centre - plane.origin, plane.normal));
-        if (result.tuft.touching) {
-            memory.normal = plane.normal;
-            memory.heading = result.frame.t;
-        } else {
-            memory.normal = Vec3{0};
-        }
+    result.tuft = options.method == Method::exact ? solve(w, tuft, dt, result.planes)
+                                                 : solve_by_vertices(w, tuft, dt, result);
+    const std::vector<std::vector<Stand>> stands = stand_sections(w, result.tuft);
+    for (const std::vector<Stand>& branch : stands) {
+        result.branch_planes.emplace_back();
+        for (const Stand& s : branch) result.branch_planes.back().push_back(s.plane);
     }
-
-    const brush::Preset& preset = tuft.preset;
-    Vec3 force = preset.force_gain * result.tuft.force;
-    if (const double size = glm::length(force); size > preset.force_limit)
-        force *= preset.force_limit / size;
-    if (!result.tuft.touching && result.triangle != kNone && result.distance < options.tolerance)
-        force = options.proximity_force * result.frame.n;
-    result.hand_force = force;
+    place_frame(w, stands, memory, result);
+    if (options.method == Method::vertices && result.triangle != kNone && result.tuft.touching) {
+        const Vec3 holder = pose.position - preset.length * pose.axis();
+        result.patch = effective_patch(surface.mesh(), result.triangle, result.sphere, holder);
+        result.frame = make_frame(result.frame.origin, result.patch.normal, memory.heading);
+        memory.heading = result.frame.t;
+    }
+    result.hand_force = hand_force(preset, result, options);
+    memory.touching = result.tuft.touching;
+    memory.root = pose.position;
+    memory.outside = w.root.outside;
+    memory.side = w.root.side;
     return result;
 }
 

@@ -75,6 +75,59 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
     return true;
 }
 
+struct Nearest {
+    const TriangleMesh* mesh = nullptr;
+    Vec3 p{0};
+    double slack = 0, limit = 0;
+    std::size_t k = 0;
+    std::vector<NearVertex> found;  // sorted; `normal` sums up twice the vector areas
+};
+
+/// A vertex at distance d belongs to triangles at distance d or less, so that walking the
+/// triangles within the k-th best distance meets every triangle of every vertex kept.
+bool visit_vertices(RTCPointQueryFunctionArguments* args) {
+    Nearest& best = *static_cast<Nearest*>(args->userPtr);
+    const std::uint32_t t = args->primID;
+    const Vec3 a = best.mesh->position(t, 0);
+    const Vec3 area = glm::cross(best.mesh->position(t, 1) - a, best.mesh->position(t, 2) - a);
+    for (int corner = 0; corner < 3; ++corner) {
+        const std::uint32_t v = best.mesh->triangles[t][corner];
+        const auto known = std::find_if(best.found.begin(), best.found.end(),
+                                        [&](const NearVertex& n) { return n.index == v; });
+        if (known != best.found.end()) {
+            known->normal += area;
+            continue;
+        }
+        const Vec3 position = best.mesh->position(t, corner);
+        const NearVertex candidate{v, glm::length(position - best.p), position, area};
+        if (candidate.distance > best.limit) continue;
+        const auto nearer = [](const NearVertex& x, const NearVertex& y) {
+            return x.distance < y.distance || (x.distance == y.distance && x.index < y.index);
+        };
+        best.found.insert(std::upper_bound(best.found.begin(), best.found.end(), candidate, nearer), candidate);
+        if (best.found.size() > best.k) best.found.pop_back();
+    }
+    if (best.found.size() < best.k) return false;
+    const float shrunk = static_cast<float>(best.found.back().distance * (1 + 1e-6) + best.slack);
+    if (shrunk >= args->query->radius) return false;
+    args->query->radius = shrunk;
+    return true;
+}
+
+/// Metres that rounding to single precision can hide from the box tests round p.
+double rounding_slack(const TriangleMesh& mesh, const Vec3& p) {
+    return 4e-7 * (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + mesh.bounds.diagonal());
+}
+
+RTCPointQuery make_query(const Vec3& p, double radius) {
+    RTCPointQuery query{};
+    query.x = static_cast<float>(p.x);
+    query.y = static_cast<float>(p.y);
+    query.z = static_cast<float>(p.z);
+    query.radius = static_cast<float>(radius);
+    return query;
+}
+
 void check(RTCDevice device, const char* what) {
     const RTCError code = rtcGetDeviceError(device);
     if (code == RTC_ERROR_NONE) return;
@@ -156,15 +209,10 @@ std::optional<SurfacePoint> SurfaceQuery::closest_point(const Vec3& p, double ma
     Closest best;
     best.mesh = state_->mesh;
     best.p = p;
-    const double reach = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    best.slack = 4e-7 * (reach + state_->mesh->bounds.diagonal());
+    best.slack = rounding_slack(*state_->mesh, p);
     best.limit2 = max_distance * max_distance;
 
-    RTCPointQuery query{};
-    query.x = static_cast<float>(p.x);
-    query.y = static_cast<float>(p.y);
-    query.z = static_cast<float>(p.z);
-    query.radius = static_cast<float>(max_distance * (1 + 1e-6) + best.slack);
+    RTCPointQuery query = make_query(p, max_distance * (1 + 1e-6) + best.slack);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(state_->scene, &query, &context, visit_triangle, &best);
@@ -172,6 +220,25 @@ std::optional<SurfacePoint> SurfaceQuery::closest_point(const Vec3& p, double ma
     SurfacePoint s = surface_point(*state_->mesh, best.triangle, best.b1, best.b2);
     s.distance = std::sqrt(best.distance2);
     return s;
+}
+
+std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k, double max_distance) const {
+    if (!finite(p) || k <= 0 || !(max_distance >= 0)) return {};
+    Nearest best;
+    best.mesh = state_->mesh;
+    best.p = p;
+    best.slack = rounding_slack(*state_->mesh, p);
+    best.limit = max_distance;
+    best.k = static_cast<std::size_t>(k);
+    RTCPointQuery query = make_query(p, max_distance * (1 + 1e-6) + best.slack);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(state_->scene, &query, &context, visit_vertices, &best);
+    for (NearVertex& v : best.found) {
+        const double size = glm::length(v.normal);
+        v.normal = size > 0 ? v.normal / size : Vec3{0, 0, 1};
+    }
+    return std::move(best.found);
 }
 
 std::optional<SurfacePoint> SurfaceQuery::ray(const Vec3& origin, const Vec3& direction, double t_min,

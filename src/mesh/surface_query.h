@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "mesh/triangle_mesh.h"
 
@@ -13,6 +14,14 @@ struct RayHit {
     std::uint32_t triangle = kNone;
     float b1 = 0, b2 = 0;
     float distance = 0;
+};
+
+/// A vertex near a point; its normal is the area-weighted mean over its triangles.
+struct NearVertex {
+    std::uint32_t index = kNone;
+    double distance = 0;     ///< metres
+    Vec3 position{0};        ///< metres
+    Vec3 normal{0, 0, 1};    ///< unit
 };
 
 /// Ray and closest-point queries against a mesh by an Embree BVH. Keeps a
@@ -29,6 +38,11 @@ class SurfaceQuery {
     /// A small `max_distance` makes it faster: 1–3 µs near the surface.
     std::optional<SurfacePoint> closest_point(
         const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
+
+    /// The `k` vertices nearest to `p` among those that triangles use, nearest first, fewer
+    /// where `max_distance` metres does not hold so many.
+    std::vector<NearVertex> nearest_vertices(
+        const Vec3& p, int k, double max_distance = std::numeric_limits<double>::infinity()) const;
 
     /// First hit of the ray at a distance in [t_min, t_max]; `direction` is unit length.
     /// Both sides of a triangle are hit.

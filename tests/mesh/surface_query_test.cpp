@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <mutex>
@@ -122,6 +123,38 @@ TEST(SurfaceQuery, TiesGoToTheLowestTriangle) {
     const auto hit = query.closest_point(vertex + Vec3{0, 0, 0.01});
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit->triangle, lowest);
+}
+
+TEST(SurfaceQuery, NearestVerticesMatchBruteForce) {
+    const TriangleMesh mesh = random_triangles(800, 8);
+    const SurfaceQuery query(mesh);
+    Random random(9);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 p{random.uniform(-0.02, 0.12), random.uniform(-0.02, 0.12), random.uniform(-0.02, 0.12)};
+        std::vector<std::pair<double, std::uint32_t>> all;
+        for (std::uint32_t v = 0; v < mesh.n_vertices(); ++v)
+            all.emplace_back(glm::length(Vec3(mesh.positions[v]) - p), v);
+        std::sort(all.begin(), all.end());
+        const auto found = query.nearest_vertices(p, 8);
+        ASSERT_EQ(found.size(), 8u);
+        for (int k = 0; k < 8; ++k) {
+            EXPECT_EQ(found[k].index, all[k].second);
+            EXPECT_EQ(found[k].distance, all[k].first);
+        }
+        EXPECT_EQ(query.nearest_vertices(p, 8, all[4].first).size(), 5u);
+    }
+}
+
+TEST(SurfaceQuery, VertexNormalsComeFromEveryTriangleRoundThem) {
+    // On a faceted roof the vertices of the ridge look straight up, whatever they are asked from.
+    TriangleMesh mesh = grid(8, 0.08);
+    for (Vec3f& p : mesh.positions) p.z = -std::abs(p.x - 0.04f);
+    const SurfaceQuery query(mesh);
+    for (const Vec3& p : {Vec3{0.039, 0.041, 0.002}, Vec3{0.05, 0.04, 0.001}, Vec3{0.03, 0.04, -0.02}})
+        for (const NearVertex& v : query.nearest_vertices(p, 8))
+            if (std::abs(v.position.x - 0.04) < 1e-6 && v.position.y > 0.001 && v.position.y < 0.079) {
+                EXPECT_NEAR(std::abs(v.normal.z), 1, 1e-6);  // three facets on either side
+            }
 }
 
 TEST(SurfaceQuery, RayMatchesBruteForce) {

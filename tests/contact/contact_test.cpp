@@ -1,0 +1,370 @@
+#include "contact/contact.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "contact/outside.h"
+#include "core/random.h"
+#include "shapes.h"
+
+namespace tuft::contact {
+namespace {
+
+constexpr double kUp = std::numbers::pi;
+
+/// A pose whose tuft points to -z of `q` and whose tip, unbent, would be at `tip`.
+brush::Pose pose_at(const brush::Preset& preset, const Vec3& tip, const Quat& q = {1, 0, 0, 0}) {
+    brush::Pose pose;
+    pose.rotation = q;
+    pose.position = tip - preset.length * pose.axis();
+    return pose;
+}
+
+/// One brush with its memory on one surface.
+struct Hand {
+    explicit Hand(const mesh::SurfaceQuery& s, const std::string& name = "wolf", Options o = {})
+        : surface(s), tuft(brush::make_tuft(brush::load_preset(name))), options(o) {}
+
+    const brush::Preset& preset() const { return tuft.preset; }
+    Result move(const Vec3& tip, const Quat& q = {1, 0, 0, 0}) {
+        return step(tuft, pose_at(tuft.preset, tip, q), surface, memory, 1e-3, options);
+    }
+
+    const mesh::SurfaceQuery& surface;
+    brush::Tuft tuft;
+    Options options;
+    Memory memory;
+};
+
+bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+const std::vector<brush::Section>& spine(const Result& r) { return r.tuft.branches.front().sections; }
+
+TEST(Contact, FlatSheetIsTheBrushsOwnPlane) {
+    const mesh::TriangleMesh m = shapes::sheet(0.3, 60);
+    const mesh::SurfaceQuery surface(m);
+    Hand hand(surface);
+    brush::Tuft alone = brush::make_tuft(hand.preset());
+    const brush::ContactPlane ground;
+    for (int i = 0; i < 120; ++i) {
+        const double depth = 0.01 * std::min(1.0, i / 40.0), x = std::max(0.0, (i - 40) * 5e-4);
+        const brush::Pose pose = pose_at(hand.preset(), {x, 0, -depth});
+        const Result r = step(hand.tuft, pose, surface, hand.memory, 1e-3);
+        const brush::TuftState expected = brush::step(alone, pose, std::span(&ground, 1), 1e-3);
+        EXPECT_EQ(r.tuft.touching, expected.touching);
+        // The same problem with planes that differ by single precision of the mesh (1e-9 m).
+        EXPECT_NEAR(glm::length(r.tuft.force - expected.force), 0, 1e-4 * (glm::length(expected.force) + 1e-3));
+        EXPECT_NEAR(glm::length(spine(r).front().centre - expected.branches[0].sections.front().centre), 0, 2e-6);
+        if (r.tuft.touching) {
+            EXPECT_NEAR(r.frame.origin.z, 0, 1e-8);
+            EXPECT_NEAR(r.frame.n.z, 1, 1e-8);
+            EXPECT_EQ(r.distance, 0);
+        }
+    }
+}
+
+TEST(Contact, TurnedAndMovedSheetTurnsAndMovesEverything) {
+    const mesh::TriangleMesh flat = shapes::sheet(0.3, 50);
+    const mesh::SurfaceQuery flat_surface(flat);
+    Random random(1);
+    for (int trial = 0; trial < 4; ++trial) {
+        const Quat q = glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
+                                           random.uniform(-1, 1)});
+        const Vec3 d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        const mesh::TriangleMesh turned = shapes::moved(flat, q, d);
+        const mesh::SurfaceQuery turned_surface(turned);
+        for (const Method method : {Method::exact, Method::vertices}) {
+            Options options;
+            options.method = method;
+            Hand one(flat_surface, "mixed", options), two(turned_surface, "mixed", options);
+            for (int i = 0; i < 60; ++i) {
+                const Vec3 tip{i * 4e-4, i * 1e-4, -0.008 * std::min(1.0, i / 20.0)};
+                const Quat lean = glm::angleAxis(0.3, Vec3{0, 1, 0});
+                const Result a = one.move(tip, lean), b = two.move(q * tip + d, q * lean);
+                // Vertices at 1 m are rounded to 6e-8 m.
+                EXPECT_NEAR(glm::length(q * spine(a).front().centre + d - spine(b).front().centre), 0, 2e-5);
+                EXPECT_NEAR(glm::length(q * a.tuft.force - b.tuft.force), 0, 0.01 * glm::length(a.tuft.force) + 1e-5);
+                if (!a.tuft.touching || !b.tuft.touching) continue;
+                EXPECT_NEAR(glm::length(q * a.frame.origin + d - b.frame.origin), 0, 5e-5);
+                EXPECT_NEAR(glm::length(q * a.frame.n - b.frame.n), 0, 1e-3);
+            }
+        }
+    }
+}
+
+TEST(Contact, ThinPlateIsMetFromTheSideOfTheFerrule) {
+    // 1 mm thick, pressed 12 mm deep at once and little by little, from above and from below.
+    const mesh::TriangleMesh m = shapes::plate({0.08, 0.08, 0.0005});
+    const mesh::SurfaceQuery surface(m);
+    for (const double side : {1.0, -1.0})
+        for (const int steps : {1, 60}) {
+            Hand hand(surface);
+            const Quat q = side > 0 ? Quat{1, 0, 0, 0} : glm::angleAxis(kUp, Vec3{1, 0, 0});
+            Result r;
+            for (int i = 1; i <= steps; ++i) r = hand.move({0.003, 0.002, side * (0.0005 - 0.012 * i / steps)}, q);
+            for (int i = 0; i < 40; ++i) r = hand.move({0.003 + 2e-4 * i, 0.002, side * (0.0005 - 0.012)}, q);
+            ASSERT_TRUE(r.tuft.touching);
+            for (const brush::Section& s : spine(r)) EXPECT_GT(side * s.centre.z, 0.0005 - 3e-4);
+            EXPECT_NEAR(side * r.frame.origin.z, 0.0005, 1e-7);
+            EXPECT_GT(side * r.frame.n.z, 0.999);
+            EXPECT_GT(side * r.tuft.force.z, 0.01);
+        }
+}
+
+TEST(Contact, FerrulePushedThroughAPlateKeepsItsSide) {
+    const mesh::TriangleMesh m = shapes::plate({0.08, 0.08, 0.0005});
+    const mesh::SurfaceQuery surface(m);
+    Hand hand(surface);
+    const double length = hand.preset().length;
+    for (int i = 0; i <= 200; ++i) {
+        const double depth = 1.5 * length * std::sin(std::numbers::pi * i / 200);
+        const Result r = hand.move({0, 0, 0.0005 - depth});
+        ASSERT_TRUE(finite(r.tuft.force));
+        if (depth > 0.002) {
+            EXPECT_TRUE(r.tuft.touching);
+            EXPECT_GT(r.tuft.force.z, 0);
+            EXPECT_GT(r.frame.n.z, 0.999);
+        }
+    }
+    EXPECT_FALSE(hand.move({0, 0, 0.01}).tuft.touching);
+}
+
+TEST(Contact, OpenSheetIsMetFromEitherSide) {
+    const mesh::TriangleMesh m = shapes::sheet();  // normals +z, no thickness
+    const mesh::SurfaceQuery surface(m);
+    Hand hand(surface);
+    const Quat below = glm::angleAxis(kUp, Vec3{1, 0, 0});
+    Result r;
+    for (int i = 0; i <= 40; ++i) r = hand.move({0.01, 0, 0.002 + 2e-4 * i - 0.004}, below);
+    ASSERT_TRUE(r.tuft.touching);
+    EXPECT_LT(r.tuft.force.z, -0.005);
+    EXPECT_LT(r.frame.n.z, -0.999);
+    for (const brush::Section& s : spine(r)) EXPECT_LT(s.centre.z, 3e-4);
+}
+
+/// Drags a brush that leans into its motion, tip trailing, along -x over the surface z(x).
+struct Drag {
+    double worst_dip = 0;     ///< deepest node under the true surface, metres
+    double worst_jump = 0;    ///< largest change of force from step to step over the mean force
+    double mean_force = 0;
+    double frame_jump = 0;    ///< largest step of the frame's origin, metres
+};
+Drag drag_across(const mesh::SurfaceQuery& surface, const std::function<double(double)>& height, double depth) {
+    Hand hand(surface);
+    const Quat lean = glm::angleAxis(-0.6, Vec3{0, 1, 0});
+    for (int i = 0; i <= 40; ++i) hand.move({0.03, 0, height(0.03) - depth * i / 40}, lean);
+    for (int i = 0; i < 50; ++i) hand.move({0.03 - 1e-4 * i, 0, height(0.03 - 1e-4 * i) - depth}, lean);
+    Drag out;
+    Vec3 force{0}, origin{0};
+    constexpr int kSteps = 550;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double x = 0.025 - 1e-4 * i;
+        const Result r = hand.move({x, 0, height(x) - depth}, lean);
+        EXPECT_TRUE(r.tuft.touching);
+        for (const brush::Section& s : spine(r))
+            out.worst_dip = std::max(out.worst_dip, (height(s.centre.x) - s.centre.z));
+        if (i > 0) {
+            out.worst_jump = std::max(out.worst_jump, glm::length(r.tuft.force - force));
+            out.frame_jump = std::max(out.frame_jump, glm::length(r.frame.origin - origin));
+        }
+        force = r.tuft.force;
+        origin = r.frame.origin;
+        out.mean_force += glm::length(force) / kSteps;
+        EXPECT_NEAR(r.frame.origin.z, height(r.frame.origin.x), 1e-5);
+    }
+    out.worst_jump /= out.mean_force;
+    return out;
+}
+
+TEST(Contact, DragsOverAConvexCreaseAndThroughAGutter) {
+    // A node that slips over a sharp edge lets go at once: the hair is a chain of 16 segments.
+    for (const auto& [angle, jump] : {std::pair{0.5, 1.0}, {-0.5, 0.15}, {0.25, 0.5}, {-0.25, 0.1}}) {
+        const mesh::TriangleMesh m = shapes::roof(angle, 0.3);
+        const mesh::SurfaceQuery surface(m);
+        const double slope = std::tan(angle);
+        const Drag d = drag_across(surface, [=](double x) { return -std::abs(x) * slope; }, 0.006);
+        SCOPED_TRACE(angle);
+        EXPECT_LT(d.worst_dip, 5e-5);     // nodes keep off by their radius less what the hair's side gives
+        EXPECT_LT(d.worst_jump, jump);    // per 0.1 mm of travel
+        EXPECT_LT(d.frame_jump, 2e-3);
+    }
+}
+
+TEST(Contact, SmoothWaveIsFollowedSmoothly) {
+    const auto height = [](double x) { return 0.002 * std::sin(x / 0.008); };
+    const mesh::TriangleMesh m = shapes::surface(400, 40, [&](double u, double v) {
+        const double x = 0.3 * (u - 0.5);
+        return Vec3{x, 0.2 * (v - 0.5), height(x)};
+    });
+    const mesh::SurfaceQuery surface(m);
+    const Drag d = drag_across(surface, height, 0.005);
+    EXPECT_LT(d.worst_dip, 5e-5);
+    EXPECT_LT(d.worst_jump, 0.02);
+    EXPECT_LT(d.frame_jump, 5e-4);
+}
+
+TEST(Contact, CircleInsideABowlIsSteadyAndTheSameAtEveryAzimuth) {
+    constexpr double kRadius = 0.06;
+    const mesh::TriangleMesh m = shapes::bowl(kRadius, 160);
+    const mesh::SurfaceQuery surface(m);
+    Hand hand(surface);
+    constexpr double kPolar = 2.4;  // of the touched circle, from +z
+    const double depth = 0.006;
+    double lo = 1e9, hi = 0, worst = 0;
+    const int per_turn = 1200;
+    for (int i = 0; i < per_turn + 400; ++i) {
+        const double phi = 2 * std::numbers::pi * i / per_turn;
+        const Vec3 out{std::sin(kPolar) * std::cos(phi), std::sin(kPolar) * std::sin(phi), std::cos(kPolar)};
+        // The holder stands on the surface's normal and turns with the azimuth.
+        const Quat q = glm::angleAxis(phi, Vec3{0, 0, 1}) * glm::angleAxis(kPolar - kUp, Vec3{0, 1, 0});
+        const Result r = hand.move((kRadius + depth * std::min(1.0, i / 60.0)) * out, q);
+        for (const brush::Section& s : spine(r)) worst = std::max(worst, glm::length(s.centre) - kRadius);
+        if (i < 400) continue;
+        lo = std::min(lo, r.tuft.normal_force);
+        hi = std::max(hi, r.tuft.normal_force);
+        EXPECT_NEAR(glm::length(r.frame.origin), kRadius, 2e-5);
+        EXPECT_LT(glm::dot(r.frame.n, glm::normalize(r.frame.origin)), -0.9995);
+    }
+    EXPECT_LT(worst, 3e-4);
+    EXPECT_GT(lo, 0);
+    EXPECT_LT(hi / lo, 1.03);  // facets of 0.6 mm and stick-slip of the nodes
+}
+
+TEST(Contact, LeavesAPlateOverItsRim) {
+    const mesh::TriangleMesh m = shapes::plate({0.03, 0.05, 0.002}, 60);
+    const mesh::SurfaceQuery surface(m);
+    Hand hand(surface);
+    for (int i = 0; i <= 40; ++i) hand.move({0, 0, 0.002 - 0.008 * i / 40});
+    Vec3 force{0};
+    double steady = 0, worst = 0;
+    bool touching = true;
+    for (int i = 0; i <= 700; ++i) {
+        const Result r = hand.move({-1e-4 * i, 0, 0.002 - 0.008});
+        ASSERT_TRUE(finite(r.tuft.force));
+        if (i == 150) steady = glm::length(r.tuft.force);
+        if (i > 1) worst = std::max(worst, glm::length(r.tuft.force - force));
+        force = r.tuft.force;
+        touching = r.tuft.touching;
+        for (const brush::Section& s : spine(r)) {
+            const bool inside = std::abs(s.centre.x) < 0.03 - 4e-4 && std::abs(s.centre.z) < 0.002 - 4e-4;
+            EXPECT_FALSE(inside) << i;
+        }
+    }
+    EXPECT_FALSE(touching);
+    EXPECT_NEAR(glm::length(force), 0, 1e-9);
+    // The largest jump is the hair's snap when it slips off the edge.
+    EXPECT_LT(worst, 1.2 * steady);
+}
+
+TEST(Contact, HoverFeelsTheSurfaceWithinTheTolerance) {
+    const mesh::TriangleMesh m = shapes::sheet();
+    const mesh::SurfaceQuery surface(m);
+    Hand hand(surface);
+    const double tip_radius = brush::rest_radius(hand.preset(), 1);
+    double before = 0;
+    for (int i = 0; i <= 400; ++i) {
+        const double gap = 0.002 - 5e-6 * i;
+        const Result r = hand.move({0.01, 0.02, gap + tip_radius});
+        if (gap > 1e-6) {
+            EXPECT_NEAR(r.distance, gap, 1e-6);
+        }
+        // Next to what the tuft itself feels, such as the pull of a wet tip.
+        const double force = glm::dot(r.hand_force - brush::hand_force(hand.preset(), r.tuft), Vec3{0, 0, 1});
+        if (gap > 1.0e-3) {
+            EXPECT_NEAR(force, 0, 1e-12);
+        } else if (gap < 0.9e-3 && gap > 1e-6) {
+            EXPECT_NEAR(force, 0.1, 1e-12);
+        }
+        if (i > 0) {
+            EXPECT_LT(std::abs(force - before), 0.006);  // 0.1 N over 0.1 mm: 5 mN per step of 5 µm
+        }
+        before = force;
+    }
+}
+
+TEST(Contact, HandForceIsClamped) {
+    const mesh::TriangleMesh m = shapes::sheet();
+    const mesh::SurfaceQuery surface(m);
+    Hand hand(surface);
+    for (int i = 1; i <= 60; ++i) {
+        const Result r = hand.move({0, 0, -0.025 * i / 60});
+        const Vec3 wanted = brush::hand_force(hand.preset(), r.tuft) + Vec3{0, 0, 0.1};
+        const double size = glm::length(wanted);
+        EXPECT_NEAR(glm::length(r.hand_force - wanted * std::min(1.0, 7.9 / size)), 0, 1e-9);
+    }
+}
+
+TEST(Contact, VertexMethodGivesThePlaneOfTheSheetAndTheSphereOfTheTuft) {
+    const mesh::TriangleMesh m = shapes::sheet(0.2, 300);
+    const mesh::SurfaceQuery surface(m);
+    Options options;
+    options.method = Method::vertices;
+    Hand by_vertices(surface, "wolf", options), exact(surface);
+    for (int i = 0; i <= 80; ++i) {
+        const Vec3 tip{std::max(0, i - 40) * 3e-4, 0, -0.01 * std::min(1.0, i / 40.0)};
+        const Result a = by_vertices.move(tip), b = exact.move(tip);
+        EXPECT_NEAR(glm::length(a.tuft.force - b.tuft.force), 0, 1e-3 * glm::length(b.tuft.force) + 1e-5);
+        if (!a.tuft.touching || i < 20) continue;
+        EXPECT_NEAR(a.frame.n.z, 1, 1e-9);
+        for (const Vec3& p : outline_points(a.tuft)) EXPECT_LE(glm::length(p - a.sphere.centre), a.sphere.radius * (1 + 1e-12));
+        EXPECT_GT(a.patch.vertices.size(), 10u);
+    }
+}
+
+TEST(Contact, AnyPoseIsFiniteAndLeavesTheTuftFit) {
+    const mesh::TriangleMesh bowl = shapes::bowl(0.06, 40);
+    const mesh::TriangleMesh plate = shapes::plate({0.05, 0.04, 0.001}, 20);
+    const mesh::TriangleMesh roof = shapes::roof(1.2, 0.1, 20);
+    for (const mesh::TriangleMesh* m : {&bowl, &plate, &roof}) {
+        const mesh::SurfaceQuery surface(*m);
+        Hand hand(surface, "goat");
+        Random random(11);
+        for (int i = 0; i < 700; ++i) {
+            const Quat q = glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
+                                               random.uniform(-1, 1) + 1e-3});
+            const double spread = i % 7 == 0 ? 1.0 : 0.05;
+            hand.options.method = i % 3 == 0 ? Method::vertices : Method::exact;
+            const Result r = hand.move({random.uniform(-spread, spread), random.uniform(-spread, spread),
+                                        random.uniform(-spread, spread)}, q);
+            ASSERT_TRUE(finite(r.tuft.force) && finite(r.hand_force) && finite(r.frame.origin) && finite(r.frame.n));
+            ASSERT_NEAR(glm::length(r.frame.n), 1, 1e-9);
+            ASSERT_LE(glm::length(r.hand_force), hand.preset().force_limit + 1e-9);
+            for (const brush::Branch& b : r.tuft.branches)
+                for (const brush::Section& s : b.sections) ASSERT_TRUE(finite(s.centre));
+        }
+    }
+}
+
+TEST(Outside, WallBetweenMeansBehindHoweverThin) {
+    const mesh::TriangleMesh m = shapes::plate({0.05, 0.05, 0.0001});
+    const mesh::SurfaceQuery surface(m);
+    const StandOptions options;
+    for (const double depth : {0.0001, 0.001, 0.01, 0.03}) {
+        const Stand s = stand_from(surface, {0.01, 0, 0.02}, 1, {0.013, 0.001, 0.0001 - depth}, options);
+        EXPECT_NEAR(s.plane.origin.z, 0.0001, 1e-9);
+        EXPECT_NEAR(s.plane.normal.z, 1, 1e-9);
+        EXPECT_NEAR(s.height, -depth, 1e-9);
+        EXPECT_GT(s.outside.z, 0.0001);
+    }
+}
+
+TEST(Outside, NormalTurnsSmoothlyOverAConvexEdge) {
+    // Round the edge of a block at constant distance the normal is that of the rounded edge.
+    const mesh::TriangleMesh m = shapes::plate({0.05, 0.05, 0.02}, 30);
+    const mesh::SurfaceQuery surface(m);
+    constexpr double r = 0.001;
+    Vec3 before{0, 0, 1};
+    for (int i = 0; i <= 90; ++i) {
+        const double a = i * std::numbers::pi / 180;
+        const Vec3 p{0.05 + r * std::sin(a), 0.003, 0.02 + r * std::cos(a)};
+        const Stand s = stand_from(surface, p + 0.001 * Vec3{std::sin(a), 0, std::cos(a)}, 1, p, {});
+        EXPECT_LT(glm::length(s.plane.normal - before), 0.15);  // 1° per step, and the blend's 26° over 16
+        EXPECT_NEAR(s.height, r, 0.03 * r);  // 1 - cos of the angle at which the blend starts
+        before = s.plane.normal;
+    }
+    EXPECT_NEAR(before.x, 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace tuft::contact
