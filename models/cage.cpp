@@ -76,6 +76,19 @@ void carve(Cage& cage, std::span<const std::uint32_t> faces, const CarveBorder& 
     for (const auto& [a, b] : next)
         if (style.sharp > 0) cage.crease(a, b, style.sharp);
 
+    // Creases inside the region that end on its border: by the border vertex.
+    std::map<std::uint32_t, std::pair<std::uint32_t, double>> arriving;
+    for (const std::uint32_t f : faces) {
+        const auto& c = cage.faces[f];
+        for (std::size_t k = 0; k < c.size(); ++k) {
+            std::uint32_t v = c[k], w = c[(k + 1) % c.size()];
+            if (border.contains(w)) std::swap(v, w);
+            if (!border.contains(v) || border.contains(w)) continue;
+            const auto it = cage.sharpness.find(std::minmax(v, w));
+            if (it != cage.sharpness.end()) arriving[v] = {w, it->second};
+        }
+    }
+
     for (const CarveLoop& loop : loops) {
         std::map<std::uint32_t, std::uint32_t> copy;
         for (const auto& [v, b] : border)
@@ -85,6 +98,13 @@ void carve(Cage& cage, std::span<const std::uint32_t> faces, const CarveBorder& 
                 if (const auto it = copy.find(v); it != copy.end()) v = it->second;
         std::map<std::uint32_t, std::uint32_t> moved_next;
         std::map<std::uint32_t, Border> moved_border;
+        std::map<std::uint32_t, std::pair<std::uint32_t, double>> moved_arriving;
+        for (const auto& [v, end] : arriving) {
+            cage.crease(v, copy[v], end.second);
+            cage.crease(copy[v], end.first, end.second);
+            moved_arriving[copy[v]] = end;
+        }
+        arriving = std::move(moved_arriving);
         for (const auto& [a, b] : next) {
             cage.add_face({a, b, copy[b], copy[a]});
             if (border[a].corner && style.corner_sharp > 0)
@@ -99,6 +119,38 @@ void carve(Cage& cage, std::span<const std::uint32_t> faces, const CarveBorder& 
     if (loops.empty() || loops.back().depth == 0) return;
     for (const auto& [v, n] : normal)
         if (!previous.contains(v)) cage.points[v] -= loops.back().depth * n;
+}
+
+Cage make_block(std::array<int, 3> n, const std::function<Vec3(const Vec3& unit)>& place) {
+    Cage cage;
+    std::map<std::array<int, 3>, std::uint32_t> index;
+    const auto vertex = [&](const std::array<int, 3>& at) {
+        const auto [it, is_new] = index.try_emplace(at, 0);
+        if (is_new)
+            it->second = cage.add_point(
+                place({2.0 * at[0] / n[0] - 1, 2.0 * at[1] / n[1] - 1, 2.0 * at[2] / n[2] - 1}));
+        return it->second;
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (const int side : {0, n[axis]}) {
+            for (int a = 0; a < n[u]; ++a) {
+                for (int b = 0; b < n[v]; ++b) {
+                    std::vector<std::uint32_t> corners;
+                    for (const auto& [da, db] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+                        std::array<int, 3> at{};
+                        at[axis] = side;
+                        at[u] = a + da;
+                        at[v] = b + db;
+                        corners.push_back(vertex(at));
+                    }
+                    if (side == 0) std::reverse(corners.begin(), corners.end());
+                    cage.add_face(std::move(corners));
+                }
+            }
+        }
+    }
+    return cage;
 }
 
 Shape triangulate(const Cage& cage) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <utility>
@@ -44,6 +45,10 @@ void carve(Cage& cage, std::span<const std::uint32_t> faces, const CarveBorder& 
 /// Clark 1978; creases: DeRose, Kass and Truong 1998). The polygon mesh must be an
 /// orientable manifold; borders become creases. The result has quads only.
 Cage subdivide(const Cage& cage, int levels);
+
+/// A box of n × n × n cells' surface, its points placed by `place` from (-1…1)³. The
+/// faces of the side at -1 on the first axis come first.
+Cage make_block(std::array<int, 3> n, const std::function<Vec3(const Vec3& unit)>& place);
 
 /// The cage's polygons as triangles, quads cut along the shorter diagonal.
 Shape triangulate(const Cage& cage);

@@ -16,13 +16,13 @@ constexpr double kLength = 4650;
 /// Stations on the flank, mm from the nose. The panels around the wheels take six
 /// stations each; doubled stations stand beside the pillars.
 constexpr std::array<double, kStations + 1> kStationS = {
-    215,  300,  370,  430,  570,  710,  850,  990,  1130, 1270, 1420, 1560,
-    1700, 1800, 1940, 2100, 2300, 2460, 2620, 2790, 2840, 2980, 3130, 3210,
-    3290, 3430, 3570, 3710, 3850, 3990, 4130, 4240, 4335, 4430};
+    215,  285,  350,  410,  557,  703,  850,  997,  1143, 1290, 1430, 1560,
+    1700, 1800, 1940, 2100, 2300, 2460, 2620, 2790, 2840, 2980, 3120, 3195,
+    3270, 3417, 3563, 3710, 3857, 4003, 4150, 4245, 4340, 4430};
 
 /// Half widths of the columns at nose and tail, mm; column 0 is the corner itself.
 constexpr std::array<double, kMiddle + 1> kNoseY = {0, 735, 700, 665, 620, 565, 470, 330, 170, 0};
-constexpr std::array<double, kMiddle + 1> kTailY = {0, 735, 700, 660, 615, 560, 500, 360, 190, 0};
+constexpr std::array<double, kMiddle + 1> kTailY = {0, 740, 715, 690, 655, 610, 550, 390, 200, 0};
 
 /// The car seen from above: nose, front wheel, waist, rear wheel, tail.
 PlaneLine plan_line() {
@@ -44,14 +44,18 @@ struct Section {
 };
 
 constexpr Section kSections[] = {
-    {0, {150, 60, 44, 20, 4, 2, 26, 62, 118}, {180, 190, 262, 372, 478, 575, 640, 688, 730}},
-    {215, {130, 48, 34, 22, 10, 6, 16, 46, 86}, {178, 188, 285, 400, 505, 600, 668, 722, 760}},
-    {850, {75, 30, 14, 14, 14, 8, 0, 30, 68}, {165, 176, 310, 455, 605, 745, 800, 852, 884}},
-    {2200, {95, 36, 12, 38, 34, 17, 0, 28, 54}, {150, 162, 268, 380, 545, 715, 822, 880, 918}},
-    {3710, {80, 32, 14, 14, 14, 8, 0, 30, 80}, {165, 178, 312, 460, 612, 755, 846, 904, 946}},
-    {4430, {140, 58, 34, 20, 10, 10, 10, 44, 90}, {240, 255, 350, 470, 600, 720, 818, 886, 946}},
-    {kLength, {190, 84, 60, 30, 8, 30, 42, 92, 62}, {245, 258, 345, 470, 600, 705, 815, 905, 1000}},
+    {0, {150, 60, 44, 22, 4, 2, 26, 62, 118}, {180, 190, 268, 345, 470, 575, 640, 690, 730}},
+    {215, {130, 48, 34, 22, 10, 6, 16, 46, 86}, {178, 188, 292, 385, 500, 600, 666, 724, 760}},
+    {850, {75, 30, 10, 18, 16, 10, 0, 34, 68}, {165, 176, 310, 455, 605, 745, 802, 848, 884}},
+    {2200, {95, 36, 6, 46, 44, 25, 0, 34, 56}, {150, 162, 275, 352, 545, 712, 826, 876, 918}},
+    {3710, {80, 32, 10, 18, 16, 10, 0, 36, 82}, {165, 178, 312, 460, 612, 755, 848, 898, 940}},
+    {4430, {140, 58, 34, 18, 4, 14, 10, 44, 90}, {240, 255, 350, 475, 608, 700, 808, 872, 926}},
+    {kLength, {190, 84, 58, 22, 0, 38, 44, 92, 62}, {245, 258, 345, 475, 612, 664, 798, 880, 972}},
 };
+
+/// The front's columns lean: how wide each row stands compared to `kNoseY`.
+constexpr std::array<double, kTop + 1> kNoseSpread = {1,    1.02, 1.05, 1.05, 0.98,
+                                                      0.88, 0.94, 0.98, 1};
 
 /// A line of the upper body. At nose and tail it starts and ends on the ring.
 Curve with_ends(double first_at, double first, std::vector<Key> keys, double last_at, double last) {
@@ -78,7 +82,7 @@ CarDesign::CarDesign() : plan_(plan_line()) {
     }
     const double s0 = kStationS.front(), s1 = kStationS.back();
     const auto line = [&](int j, std::vector<Key> s, std::vector<Key> y, std::vector<Key> z) {
-        const Vec3 a = ring(ring_u(0, j), kTop), b = ring(ring_u(kStations, j), kTop);
+        const Vec3 a = ring(ring_u(0, j, kTop), kTop), b = ring(ring_u(kStations, j, kTop), kTop);
         return std::vector<Curve>{with_ends(s0, a.x, std::move(s), s1, b.x),
                                   with_ends(a.x, a.y, std::move(y), b.x, b.y),
                                   with_ends(a.x, a.z, std::move(z), b.x, b.z)};
@@ -103,9 +107,9 @@ CarDesign::CarDesign() : plan_(plan_line()) {
                   {2650, 1262},
                   {2950, 1248},
                   {3250, 1192},
-                  {3550, 1112},
-                  {3880, 1024},
-                  {4180, 998}});
+                  {3550, 1107},
+                  {3880, 1010},
+                  {4180, 974}});
     screen_ = line(6,
                    {{300, 215},
                     {500, 430},
@@ -136,9 +140,9 @@ CarDesign::CarDesign() : plan_(plan_line()) {
                     {2650, 1278},
                     {2950, 1263},
                     {3160, 1228},
-                    {3500, 1142},
-                    {3900, 1030, true},
-                    {4200, 1004}});
+                    {3500, 1137},
+                    {3900, 1012, true},
+                    {4200, 980}});
     middle_ = line(9,
                    {{300, 190},
                     {500, 410},
@@ -165,10 +169,10 @@ CarDesign::CarDesign() : plan_(plan_line()) {
                     {3050, 1293},
                     {3200, 1264},
                     {3450, 1198},
-                    {3750, 1104},
-                    {4000, 1024, true},
-                    {4150, 1010},
-                    {4330, 1004}});
+                    {3750, 1096},
+                    {4000, 1006, true},
+                    {4150, 988},
+                    {4330, 978}});
     const auto free_line = [](std::vector<Key> y, std::vector<Key> z) {
         return std::vector<Curve>{Curve(std::move(y)), Curve(std::move(z))};
     };
@@ -176,7 +180,7 @@ CarDesign::CarDesign() : plan_(plan_line()) {
         {{1700, 815}, {1800, 824}, {2300, 838}, {2840, 836}, {3210, 812}, {3430, 772}, {3570, 745}},
         {{1700, 962}, {2300, 976}, {2840, 988}, {3210, 1004}, {3430, 1042}, {3570, 1066}});
     window_top_ = free_line(
-        {{1700, 802}, {1800, 808}, {2300, 700}, {2700, 696}, {3130, 690}, {3430, 712}, {3570, 720}},
+        {{1700, 802}, {1800, 808}, {2300, 700}, {2700, 696}, {3130, 690}, {3430, 734}, {3570, 738}},
         {{1700, 968},
          {1800, 988},
          {1940, 1058},
@@ -194,10 +198,11 @@ double CarDesign::length() const {
     return kLength;
 }
 
-double CarDesign::ring_u(int i, int j) const {
+double CarDesign::ring_u(int i, int j, int r) const {
     const auto k = static_cast<std::size_t>(j);
     if (j == kMiddle) return i == 0 ? 0 : plan_.length();
-    if (i == 0 && j > 0) return plan_.find(1, kNoseY[k]);
+    if (i == 0 && j > 0)
+        return plan_.find(1, kNoseY[k] * (j < 3 ? 1 : kNoseSpread[static_cast<std::size_t>(r)]));
     if (i == kStations && j > 0) return plan_.find(1, kTailY[k], true);
     return plan_.find(0, kStationS[static_cast<std::size_t>(i)]);
 }
@@ -207,6 +212,12 @@ Vec3 CarDesign::ring(double u, int r) const {
     const Vec2 p = plan_.point(u) - row_inset_[row](u) * plan_.left_normal(u);
     const double z = row_height_[row](u);
     return {p.x, p.y + flare(p.x, z), z};
+}
+
+Vec3 CarDesign::nose(double y, int r) const {
+    Vec3 p = ring(y == 0 ? 0 : plan_.find(1, std::abs(y)), r);
+    p.y = y;
+    return p;
 }
 
 double CarDesign::flare(double s, double z) const {
@@ -237,14 +248,19 @@ Vec3 CarDesign::top(int i, int j) const {
         Vec3 mid = on(middle_);
         mid.y = 0;
         if (j == 6) return edge;
+        // The power dome: the bonnet's middle stands out over its sides.
+        const double hood = smooth_step(230, 700, station) * (1 - smooth_step(1290, 1580, station));
+        const double dome = 18 * hood;
+        mid.z += 0.8 * dome;
         if (j == kMiddle) return mid;
-        const double t = j == 7 ? 0.68 : 0.35;
+        const double t = j == 7 ? 0.68 + 0.1 * hood : 0.35;
         const double bow = std::pow(t, 2.2);
-        return {glm::mix(mid.x, edge.x, bow), edge.y * t, glm::mix(mid.z, edge.z, bow)};
+        return {glm::mix(mid.x, edge.x, bow), edge.y * t,
+                glm::mix(mid.z, edge.z, bow) + (j == 7 ? 0.7 * dome : 0.1 * dome)};
     }
     const Vec3 rail = on(rail_);
     if (j == 5) return rail;
-    const Vec3 side = ring(ring_u(i, 0), kTop);
+    const Vec3 side = ring(ring_u(i, 0, kTop), kTop);
     const double f = 0.2 * j;
     Vec3 open = glm::mix(side, rail, f);  // bonnet, boot: a crowned fender
     open.z += 4 * f * (1 - f) * 9;
@@ -261,7 +277,7 @@ Vec3 CarDesign::top(int i, int j) const {
 }
 
 Vec3 CarDesign::point(int i, int j, int r) const {
-    Vec3 p = i == 0 || i == kStations || j == 0 ? ring(ring_u(i, j), r) : top(i, j);
+    Vec3 p = i == 0 || i == kStations || j == 0 ? ring(ring_u(i, j, r), r) : top(i, j);
     if (j == kMiddle) p.y = 0;
     return p;
 }

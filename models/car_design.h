@@ -33,6 +33,8 @@ class CarDesign {
     double length() const;
     /// The point of the left half (j <= kMiddle) on the box's surface: (s, y, z).
     Vec3 point(int i, int j, int r) const;
+    /// The nose at half width `y` on row `r`.
+    Vec3 nose(double y, int r) const;
     /// Half width of the flank at a point of the side view.
     double flank_y(double s, double z) const;
     /// How far the fender stands out around the wheel arches, mm.
@@ -42,13 +44,13 @@ class CarDesign {
 
   private:
     Vec3 ring(double u, int r) const;
-    double ring_u(int i, int j) const;
+    double ring_u(int i, int j, int r) const;
     Vec3 top(int i, int j) const;
 
     PlaneLine plan_;
     std::vector<Curve> row_inset_, row_height_;  ///< [kTop + 1] over the length of the plan line
-    std::vector<Curve> rail_, screen_, middle_, waist_,
-        window_top_;  ///< [3]: s over station, y, z over s
+    std::vector<Curve> rail_, screen_, middle_;  ///< [3]: s over the station; y and z over s
+    std::vector<Curve> waist_, window_top_;      ///< [2]: y and z over s
 };
 
 }  // namespace tuft::models

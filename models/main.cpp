@@ -1,11 +1,10 @@
-#include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <string>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "mesh/polygon_soup.h"
 #include "shape.h"
 
 namespace {
@@ -30,51 +29,25 @@ constexpr Entry kModels[] = {
     {"thin_plate.ply", models::make_thin_plate},
 };
 
-template <class T>
-void put(std::vector<char>& out, T value) {
-    const std::size_t at = out.size();
-    out.resize(at + sizeof value);
-    std::memcpy(out.data() + at, &value, sizeof value);
-}
-
-struct PlyBytes {
-    std::vector<char> bytes;
-    std::size_t points_at = 0;  ///< where the vertex floats start
-    std::size_t faces_at = 0;   ///< where they end
-};
-
-PlyBytes to_ply(const Shape& shape) {
-    const std::string header =
-        "ply\nformat binary_little_endian 1.0\ncomment millimetres, z up\nelement vertex " +
-        std::to_string(shape.points.size()) +
-        "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-        std::to_string(shape.triangles.size()) +
-        "\nproperty list uchar int vertex_indices\nend_header\n";
-    PlyBytes ply{.bytes = {header.begin(), header.end()}, .points_at = header.size()};
-    for (const Vec3& p : shape.points)
-        for (int k = 0; k < 3; ++k) put(ply.bytes, static_cast<float>(p[k]) + 0.0f);
-    ply.faces_at = ply.bytes.size();
+mesh::PolygonSoup to_soup(const Shape& shape) {
+    mesh::PolygonSoup soup;
+    soup.polygon_start.push_back(0);
+    for (const Vec3& p : shape.points) soup.points.push_back(p + 0.0);  // no negative zeros
     for (const auto& triangle : shape.triangles) {
-        put(ply.bytes, std::uint8_t{3});
-        for (const std::uint32_t corner : triangle) put(ply.bytes, corner);
+        soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
+        soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
     }
-    return ply;
+    return soup;
 }
 
-/// Same counts and faces, and every coordinate within a micrometre: another C
-/// library may round a sine differently in its last bit.
-bool same_model(const PlyBytes& made, const std::vector<char>& file) {
-    if (made.bytes.size() != file.size()) return false;
-    if (std::memcmp(made.bytes.data(), file.data(), made.points_at) != 0) return false;
-    if (std::memcmp(made.bytes.data() + made.faces_at, file.data() + made.faces_at,
-                    file.size() - made.faces_at) != 0)
+/// Same faces, and every coordinate within a micrometre: another C library may
+/// round a sine differently in its last bit.
+bool same_model(const mesh::PolygonSoup& made, const mesh::PolygonSoup& file) {
+    if (made.points.size() != file.points.size() || made.corners != file.corners ||
+        made.polygon_start != file.polygon_start)
         return false;
-    for (std::size_t at = made.points_at; at < made.faces_at; at += sizeof(float)) {
-        float a = 0, b = 0;
-        std::memcpy(&a, made.bytes.data() + at, sizeof a);
-        std::memcpy(&b, file.data() + at, sizeof b);
-        if (!(std::abs(a - b) <= 1e-3f)) return false;
-    }
+    for (std::size_t i = 0; i < made.points.size(); ++i)
+        if (!(glm::length(made.points[i] - file.points[i]) <= 1e-3)) return false;
     return true;
 }
 
@@ -82,12 +55,15 @@ int run(bool check, const std::filesystem::path& folder) {
     int differing = 0;
     for (const Entry& entry : kModels) {
         const Shape shape = entry.make();
-        const PlyBytes ply = to_ply(shape);
+        const bool is_open = entry.make == models::make_sheet;
+        if (const std::string defect = models::solid_defect(shape); !is_open && !defect.empty())
+            throw Error(entry.file, defect);
+        const mesh::PolygonSoup soup = to_soup(shape);
         const std::filesystem::path path = folder / entry.file;
         if (!check) {
-            write_file(path, ply.bytes.data(), ply.bytes.size());
+            mesh::write_ply(path, soup);
             std::cout << path.string() << ": " << shape.triangles.size() << " triangles\n";
-        } else if (!same_model(ply, read_file(path))) {
+        } else if (!same_model(soup, mesh::read_ply(read_file(path), path))) {
             std::cerr << path.string() << " is not what this program makes\n";
             ++differing;
         }

@@ -62,6 +62,9 @@ int run(const Paint& a) {
         painting.brush(s.trace.brush);
         painting.ink(s.trace.ink);
     }
+    std::optional<io::Project> project;
+    if (!a.project.empty())
+        project = start_project(a.project, a.model.string(), a.surface.unit, painting, strokes);
     const auto painting_start = Clock::now();
     double first_stamp = 0;
     std::vector<stroke::StrokeReport> reports;
@@ -71,7 +74,10 @@ int run(const Paint& a) {
             if (first_stamp == 0) first_stamp = seconds_since(start);
             return progress(phase, (static_cast<double>(i) + fraction) / static_cast<double>(strokes.size()));
         }));
+        if (project) project->append(painting.journal().strokes().back());
     }
+    if (project && !strokes.empty())
+        project->save_canvas(painting.canvas(), painting.journal().strokes().back().id);
     const double painted = seconds_since(painting_start);
     console.clear();
     note_misses(reports, strokes, console);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "cli/arguments.h"
 #include "cli/console.h"
+#include "io/project.h"
 #include "render/picture.h"
 #include "stroke/painting.h"
 
@@ -18,6 +20,9 @@ stroke::ModelOptions model_options(const Surface& surface, Console& console);
 
 /// Reads, repairs and unwraps a model file.
 stroke::Model load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
+
+/// Reads and repairs a model file without giving it an atlas: enough to look at it.
+stroke::Model load_bare(const std::filesystem::path& path, const std::string& unit, Console& console);
 
 /// Throws `Error` when a file could not be written there: its folder is missing or not
 /// writable. Called before long work. Empty paths are fine.
@@ -36,12 +41,34 @@ struct Outputs {
     std::string unit = "mm";
 };
 void check_outputs(const Outputs& outputs);
+/// Exported model and preview; the project is written while painting.
 void write_outputs(const Outputs& outputs, const stroke::Painting& painting, Console& console);
 
 /// Picture of a painted model, or of a bare one (canvas == nullptr).
 render::Image draw_picture(const stroke::Model& model, const stroke::Painting* painting,
                            const std::string& material, const View& view, int turntable_frame,
                            int turntable_count, Console& console);
+
+void write_picture(const std::filesystem::path& path, const render::Image& image);
+
+/// A new project with the model and the presets of these strokes; strokes are appended
+/// to it as they are finished.
+io::Project start_project(const std::filesystem::path& path, const std::string& source,
+                          const std::string& unit, stroke::Painting& painting,
+                          const std::vector<stroke::Stroke>& strokes);
+
+/// A project with its model ready to be painted on.
+struct OpenProject {
+    io::Project file;
+    std::string source, unit;
+    ink::Substrate substrate;
+    stroke::Model model;
+};
+std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, Console& console);
+/// Lets the painting use the presets stored in the project.
+void use_presets(const io::Project& project, stroke::Painting& painting);
+/// Brings the painting to the project's last stroke: by its saved texels, else by replay.
+void show_strokes(const io::Project& project, stroke::Painting& painting, Console& console);
 
 nlohmann::json to_json(const mesh::RepairReport& report);
 nlohmann::json to_json(const atlas::Atlas& atlas, const atlas::AtlasReport& report);

@@ -11,9 +11,9 @@ namespace tuft::footprint {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kSearchSteps = 6;  // per segment, to find where the skin meets the surface
-constexpr int kSamples = 56;     // sections taken from a stretch that touches
-constexpr int kDirections = 32;  // points of a whole section's shadow
+constexpr int kSearchSteps = 4;  // per segment, to find where the skin meets the surface
+constexpr int kSamples = 48;     // sections taken from a stretch that touches
+constexpr int kDirections = 24;  // points of a whole section's shadow
 
 /// A section seen from the surface: everything in the stamp's (u, v) and height over it.
 struct Cut {
@@ -171,7 +171,7 @@ struct Stretch {
 
 /// Parameter between `out` (not touching) and `in` (touching) where the skin meets the surface.
 double meeting(const Skin& skin, double out, double in) {
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 26; ++i) {
         const double middle = 0.5 * (out + in);
         (skin.at(middle).overlap() >= 0 ? in : out) = middle;
     }

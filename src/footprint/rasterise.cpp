@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -10,20 +11,20 @@ namespace {
 
 constexpr int kMaxCells = 4096;  // along a side
 
-/// Signed area to the right of edges, per cell, and height they cross, per cell: summed
-/// from the left they give the covered part of each cell.
+/// Change of the covered part from each cell to the next: an edge adds the area to its
+/// right to its own cell and the rest of the height it crosses to the one after.
 struct Coverage {
-    int width, height;
-    std::vector<float> right, crossed;
+    int width, height;          ///< cells
+    std::vector<float> change;  ///< [height * (width + 1)]
 
-    Coverage(int w, int h)
-        : width(w), height(h), right(std::size_t(w) * h, 0), crossed(std::size_t(w) * h, 0) {}
+    Coverage(int w, int h) : width(w), height(h), change(std::size_t(w + 1) * h, 0) {}
 
     /// Part of an edge inside one cell.
     void add_in_cell(int i, int j, double x0, double x1, double dy) {
-        const std::size_t cell = static_cast<std::size_t>(j) * width + i;
-        right[cell] += static_cast<float>(dy * (1 - (0.5 * (x0 + x1) - i)));
-        crossed[cell] += static_cast<float>(dy);
+        float* at = change.data() + static_cast<std::size_t>(j) * (width + 1) + i;
+        const double right = dy * (1 - (0.5 * (x0 + x1) - i));
+        at[0] += static_cast<float>(right);
+        at[1] += static_cast<float>(dy - right);
     }
 
     /// Part of an edge inside one row of cells.
@@ -59,14 +60,21 @@ struct Coverage {
         }
     }
 
-    /// Cells of one row; counter-clockwise outlines cover positively.
+    /// Cells of kRows rows from row j on; outlines of one sense cover positively, all together
+    /// at most once. Rows are summed side by side: one sum alone would wait for itself.
+    static constexpr int kRows = 4;
     void resolve(int j, std::uint8_t* out) const {
-        float sum = 0;
+        const int n = std::min(kRows, height - j);
+        std::array<const float*, kRows> from;
+        for (int r = 0; r < kRows; ++r)
+            from[r] =
+                change.data() + static_cast<std::size_t>(j + std::min(r, n - 1)) * (width + 1);
+        std::array<float, kRows> sum{};
         for (int i = 0; i < width; ++i) {
-            const std::size_t cell = static_cast<std::size_t>(j) * width + i;
-            const float covered = std::abs(sum + right[cell]);
-            sum += crossed[cell];
-            out[i] = static_cast<std::uint8_t>(std::min(covered, 1.0f) * 255.0f + 0.5f);
+            for (int r = 0; r < kRows; ++r) sum[r] += from[r][i];
+            for (int r = 0; r < n; ++r)
+                out[static_cast<std::size_t>(r) * width + i] =
+                    static_cast<std::uint8_t>(std::min(std::abs(sum[r]), 1.0f) * 255.0f + 0.5f);
         }
     }
 };
@@ -106,7 +114,7 @@ Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::
             coverage.add(curve[k] / cell - first, curve[(k + 1) % curve.size()] / cell - first);
     }
     result.coverage.resize(static_cast<std::size_t>(result.width) * result.height);
-    for (int j = 0; j < result.height; ++j)
+    for (int j = 0; j < result.height; j += Coverage::kRows)
         coverage.resolve(j, result.coverage.data() + static_cast<std::size_t>(j) * result.width);
     return result;
 }

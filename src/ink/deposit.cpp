@@ -1,6 +1,7 @@
 #include "ink/deposit.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "ink/simd.h"
@@ -23,14 +24,33 @@ TUFT_CLONES void add_film(float* __restrict all, const float* __restrict w) {
     for (int t = 0; t < kN; ++t) all[t] += w[t];
 }
 
+TUFT_CLONES void linear_goals(float* __restrict goal, const float* __restrict coverage, float target) {
+    for (int t = 0; t < kN; ++t) goal[t] = target * coverage[t];
+}
+
+/// goal = −ln(1 − f hidden) / ε. The logarithm by exponent bits and the series of artanh,
+/// 4e-8 relative to |ln| ≥ 0.3: written out so that it gives the same bits everywhere.
+TUFT_CLONES void goals(float* __restrict goal, const float* __restrict coverage, float hidden,
+                       float inverse_extinction) {
+    for (int t = 0; t < kN; ++t) {
+        const float x = 1 - coverage[t] * hidden;
+        // x = m 2^e with m in [√½, √2)
+        const std::int32_t bits = std::bit_cast<std::int32_t>(x) - 0x3f3504f3;
+        const auto e = static_cast<float>(bits >> 23);
+        const float m = std::bit_cast<float>((bits & 0x007fffff) + 0x3f3504f3);
+        const float s = (m - 1) / (m + 1);
+        const float s2 = s * s;
+        const float series = 2 * s * (1 + s2 * (0.333333333f + s2 * (0.2f + s2 * (0.142857143f + s2 * 0.111111111f))));
+        goal[t] = -(e * 0.693147181f + series) * inverse_extinction;
+    }
+}
+
 /// film becomes dw; returns whether any is positive.
 TUFT_CLONES bool increments(float* __restrict film, const float* __restrict all,
-                            const float* __restrict coverage, float target, float capacity,
-                            float rate) {
+                            const float* __restrict goal, float capacity, float rate) {
     for (int t = 0; t < kN; ++t) {
         const float room = film[t] + capacity - all[t];
-        const float goal = target * coverage[t];
-        const float limit = goal < room ? goal : room;
+        const float limit = goal[t] < room ? goal[t] : room;
         const float lack = limit - film[t];
         film[t] = (lack > 0 ? lack : 0) * rate;
     }
@@ -66,6 +86,15 @@ Mix mix_of(Canvas& canvas, const Ink& ink) {
     return mix;
 }
 
+float extinction_of(const Ink& ink) {
+    constexpr Bands kLuminance{0.2126f, 0.7152f, 0.0722f};  // Rec. 709
+    double sum = 0;
+    for (const InkPart& part : ink.parts)
+        for (int b = 0; b < kBands; ++b)
+            sum += part.fraction * kLuminance[b] * (2 * part.pigment.k[b] + part.pigment.s[b]);
+    return static_cast<float>(sum);
+}
+
 double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
                std::span<const float, kN> area, double ds, const DepositParams& params) {
     alignas(64) float film[kN];
@@ -85,7 +114,16 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
     }
     if (!(strength > 0) || !(params.target > 0) || !(ds > 0)) return 0;
     const auto rate = static_cast<float>(-std::expm1(-ds / params.transfer_length));
-    if (!increments(film, all, coverage.data(), params.target, params.capacity, rate)) return 0;
+    alignas(64) float goal[kN];
+    // Below 1e-3 the law is linear to 5e-4, and 1 − f hidden would lose digits.
+    if (params.extinction * params.target > 1e-3f) {
+        // Beyond ε c = 12 the film hides to 6e-6; more would only lose digits.
+        const float extinction = std::min(params.extinction, 12 / params.target);
+        goals(goal, coverage.data(), -std::expm1(-extinction * params.target), 1 / extinction);
+    } else {
+        linear_goals(goal, coverage.data(), params.target);
+    }
+    if (!increments(film, all, goal, params.capacity, rate)) return 0;
     double given = 0;
     for (int p = 0; p < kMaxPigments; ++p)
         if (params.mix[p] > 0)

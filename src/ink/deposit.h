@@ -20,18 +20,24 @@ struct DepositParams {
     float target = 1.8f;             ///< c: film units of this ink under full coverage
     float transfer_length = 0.5e-3f; ///< s0, metres of travel
     float capacity = 8;              ///< film units that stay on a texel, all inks together
+    float extinction = 0;            ///< ε: how fast the ink's film hides, per film unit; 0: not regarded
 };
+
+/// ε of an ink: 2K + S of its mixture, weighted over the bands by luminance.
+float extinction_of(const Ink& ink);
 
 /// Lays down one stamp on one tile:
 ///
-///     dw = max(0, min(c f, w + C − W) − w) (1 − exp(−ds/s0)),   w_p += mix_p dw
+///     dw = max(0, min(g(f), w + C − W) − w) (1 − exp(−ds/s0))
+///     g(f) = −ln(1 − f (1 − exp(−ε c))) / ε,   g(f) = c f for ε = 0
 ///
-/// with f the texel's coverage, w the film of this very ink that is there already
-/// (the least w_p / mix_p over the ink's pigments), W all film and C the capacity.
-/// The film tends to c f however often and in whatever steps the tuft passes: edges
-/// keep the antialiasing of f, stamps do not bead, and any number of passes gives
-/// no more than the capacity. Another ink goes on top of what is there; nothing that
-/// lies there is removed.
+/// with f the texel's coverage, c the target, w the film of this very ink that is there
+/// already (the least w_p / mix_p over the ink's pigments), W all film and C the capacity.
+/// The film tends to g(f) ≤ g(1) = c however often and in whatever steps the tuft passes:
+/// stamps do not bead, and any number of passes gives no more than the capacity. The film
+/// thins towards the edge of the contact so that a texel covered by half looks half
+/// covered, which is what keeps the antialiasing of f in spite of a film that hides
+/// exponentially. Another ink goes on top of what is there; nothing there is removed.
 ///
 /// `coverage` [256], 0–1; `area` [256], m² of surface per texel; `ds` metres of travel
 /// the stamp stands for. Returns the ink given, film·m²: the sum of what was really

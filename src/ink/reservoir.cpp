@@ -68,6 +68,7 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
     DepositParams out;
     out.transfer_length = static_cast<float>(ink.transfer_length);
     out.capacity = substrate.capacity;
+    out.extinction = extinction_of(ink);
     out.mix = tuft.mix();
     const double left = tuft.remaining();
     if (!(left > 0)) {

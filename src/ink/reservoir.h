@@ -54,8 +54,7 @@ struct StampContact {
 ///
 /// so a loaded tuft (x ≈ 10–100) paints full strength at any speed and in any width,
 /// and one that has given most of its ink pales, wide strokes first. c · area never
-/// exceeds what is left. Only `mix`, `target` and `transfer_length` of the result are
-/// set by this; `capacity` is the substrate's.
+/// exceeds what is left.
 DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampContact& contact,
                             const Substrate& substrate);
 

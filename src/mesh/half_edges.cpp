@@ -155,7 +155,7 @@ PairingReport pair_half_edges(RawMesh& mesh) {
         report.duplicates_dropped = duplicates.count;
         return report;
     }
-    const bool trust_direction = 20 * disagreeing <= agreeing;
+    const bool trust_direction = 20 * disagreeing < agreeing;
     for (std::vector<std::uint32_t>& group : crowded) {
         // Triangles without an area have no say where others meet.
         std::vector<std::uint32_t> solid;

@@ -35,7 +35,7 @@ std::string count_text(std::size_t n, const char* one, const char* many) {
 
 /// How likely a product is to measure `diagonal` metres: see guess_unit.
 double plausibility(double diagonal) {
-    constexpr double kSmall = 0.06, kLarge = 6, kSpread = 0.7;  // metres; natural logarithm
+    constexpr double kSmall = 0.06, kLarge = 6, kSpread = 0.5;  // metres; natural logarithm
     const double beyond = diagonal < kSmall ? std::log(kSmall / diagonal)
                           : diagonal > kLarge ? std::log(diagonal / kLarge)
                                               : 0;
@@ -129,7 +129,11 @@ std::vector<std::string> describe_defects(const RepairReport& r) {
     const auto tell = [&](std::size_t n, const char* one, const char* many) {
         if (n) lines.push_back(count_text(n, one, many));
     };
-    tell(r.vertices_welded, "vertex lay on another one: welded", "vertices lay on others: welded");
+    // Triangles without shared vertices are the way of STL, not a defect.
+    if (!r.loose_triangles)
+        tell(r.vertices_welded, "vertex lay on another one: welded", "vertices lay on others: welded");
+    tell(r.crack_vertices_welded, "vertex lay next to another one across a crack: welded",
+         "vertices lay next to others across cracks: welded");
     tell(r.unused_vertices_dropped, "vertex is used by no face: dropped",
          "vertices are used by no face: dropped");
     tell(r.degenerate_faces_dropped, "face without an area: dropped",
@@ -168,6 +172,7 @@ std::vector<std::string> describe(const MeshSummary& s) {
     if (s.has_colours) extras += "vertex colours, ";
     if (!s.group_names.empty())
         extras += count_text(s.group_names.size(), "group, ", "groups, ");
+    if (r.loose_triangles) lines.push_back("the triangles came loose and were joined (as in STL)");
     if (!extras.empty()) lines.push_back("has " + extras.substr(0, extras.size() - 2));
     lines.push_back("unit: " + s.unit.sentence);
     if (std::abs(s.unit.metres_per_unit / s.metres_per_unit - 1) > 1e-9)

@@ -107,7 +107,7 @@ void ObjReader::read_vertex() {
 
 std::uint32_t ObjReader::point_index(std::int64_t written) {
     const auto n = static_cast<std::int64_t>(builder_.soup.points.size());
-    if (written < 0 && -written <= n) return static_cast<std::uint32_t>(n + written);
+    if (written < 0 && written >= -n) return static_cast<std::uint32_t>(n + written);
     if (written <= 0 || written >= kNone)
         text_.fail("the face uses vertex " + std::to_string(written) + ", which does not exist");
     if (written > n && static_cast<std::size_t>(written) > highest_) {

@@ -21,8 +21,8 @@ OffKind read_kind(TextCursor& text) {
     if (!text.skip_to_token()) text.fail("holds no data");
     TextCursor ahead = text;
     std::string_view word = ahead.word();
-    const char c = word[0];
-    if ((c >= '0' && c <= '9') || c == '+') return kind;
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (is_digit(word.front()) && is_digit(word.back())) return kind;
     text.word();
     const std::string_view whole = word;
     const auto take = [&](std::string_view prefix) {
@@ -158,7 +158,7 @@ void OffReader::read_text_face() {
     if (!text_.skip_to_token()) text_.fail("the file ends among its faces; it is cut off");
     const long line = text_.line();
     const std::int64_t n = text_.integer("the number of corners");
-    if (n < 0 || n > static_cast<std::int64_t>(text_.left() / 2))
+    if (n < 0 || n > static_cast<std::int64_t>(text_.left()))
         text_.fail("a face cannot have " + std::to_string(n) + " corners here");
     corners_.clear();
     for (std::int64_t k = 0; k < n; ++k) corners_.push_back(point_index(text_.integer("a corner")));

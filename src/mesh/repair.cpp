@@ -56,7 +56,6 @@ class Repair {
     RepairReport report_;
     RawMesh mesh_;
     std::size_t edges_split_ = 0;  ///< in the last pairing
-    bool was_loose_ = false;  ///< every corner had a point of its own, as in STL
     std::vector<std::uint32_t> ring_;  ///< scratch: corners of one polygon
     std::vector<Vec3> ring_points_;
     std::vector<std::array<std::uint32_t, 3>> cuts_;
@@ -67,17 +66,18 @@ void Repair::take_points() {
     report_.points_in_file = soup_.points.size();
     report_.polygons_in_file = soup_.n_polygons();
     report_.warnings = std::move(soup_.warnings);
-    was_loose_ = soup_.points.size() == soup_.corners.size() && soup_.n_polygons() > 1;
+    report_.loose_triangles = soup_.points.size() == soup_.corners.size() && soup_.n_polygons() > 1;
     Box bounds;
     double largest = 0;
     mesh_.positions.reserve(soup_.points.size());
     for (const Vec3& p : soup_.points) {
         const Vec3 q = p * options_.metres_per_unit;
+        const double reach = std::abs(q.x) + std::abs(q.y) + std::abs(q.z);
+        if (!(reach < 1e30)) throw Error("the mesh has points that are not finite numbers");
         mesh_.positions.emplace_back(q);
         bounds.add(q);
-        largest = std::max({largest, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+        largest = std::max(largest, reach);
     }
-    if (!(largest < 1e30)) throw Error("the mesh has points that are not finite numbers");
     soup_.points = {};
     mesh_.colours = std::move(soup_.point_colours);
     // Float coordinates keep 1e-5 of the size out to this distance from the origin.
@@ -133,6 +133,7 @@ void Repair::cut_polygon(std::size_t p, EarBudget& budget) {
 
 void Repair::cut_polygons() {
     EarBudget budget;
+    budget.tests += 100 * soup_.corners.size();
     mesh_.triangles.reserve(soup_.corners.size() - 2 * soup_.n_polygons());
     for (std::size_t p = 0; p < soup_.n_polygons(); ++p) {
         const std::size_t begin = soup_.polygon_start[p], end = soup_.polygon_start[p + 1];
@@ -186,7 +187,7 @@ bool Repair::close_cracks() {
     for (std::size_t v = 0; v < target.size(); ++v)
         if (target[v] != v) ++welded;
     if (welded == 0) return false;
-    report_.vertices_welded += welded;
+    report_.crack_vertices_welded = welded;
     std::vector<bool> keep(mesh_.triangles.size(), true);
     for (std::size_t t = 0; t < keep.size(); ++t) {
         auto& v = mesh_.triangles[t];
@@ -269,7 +270,7 @@ Surface Repair::run() {
     cut_polygons();
     tuft::report(options_.progress, "matching edges", 0);
     match();
-    if (was_loose_ && close_cracks()) match();
+    if (report_.loose_triangles && close_cracks()) match();
     report_.non_manifold_edges_split = edges_split_;
     for (;;) {
         make_manifold();

@@ -13,7 +13,7 @@ namespace tuft::mesh {
 struct RepairOptions {
     double metres_per_unit = 1e-3;  ///< the file's unit; millimetres by default
     double crease_angle = 40.0 * 0.017453292519943295;  ///< radians; normals split above it
-    ProgressFn progress;
+    ProgressFn progress = nullptr;
 };
 
 /// What was found in the file and done about it. Counts are of the file's elements.
@@ -21,7 +21,10 @@ struct RepairReport {
     std::size_t points_in_file = 0;
     std::size_t polygons_in_file = 0;
     std::size_t polygons_triangulated = 0;     ///< with more than three corners
+    bool loose_triangles = false;   ///< every corner came with its own point, as in STL
     std::size_t vertices_welded = 0;           ///< removed because they coincide with another
+    std::size_t crack_vertices_welded = 0;     ///< ... because they all but coincide: of loose
+                                               ///< triangles, on borders, within 1e-6 of the size
     std::size_t unused_vertices_dropped = 0;
     std::size_t degenerate_faces_dropped = 0;  ///< repeated corner or zero area
     std::size_t degenerate_faces_repaired = 0; ///< a corner on the opposite side: that side flipped

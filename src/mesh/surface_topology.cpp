@@ -3,6 +3,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/parallel.h"
 
@@ -42,6 +43,23 @@ struct Spoke {
     bool after_crease = false;  ///< a crease or the border lies before it
 };
 
+/// Gives the corners of each run of spokes between creases the run's mean normal.
+void average_runs(std::span<Spoke> spokes, std::vector<Vec3f>& normals) {
+    const auto first = std::find_if(spokes.begin(), spokes.end(),
+                                    [](const Spoke& s) { return s.after_crease; });
+    if (first != spokes.end()) std::rotate(spokes.begin(), first, spokes.end());
+    for (std::size_t begin = 0, end = 0; begin < spokes.size(); begin = end) {
+        Vec3 sum(0);
+        do {
+            sum += spokes[end].angle * spokes[end].normal;
+            ++end;
+        } while (end < spokes.size() && !spokes[end].after_crease);
+        const double length = glm::length(sum);
+        for (std::size_t i = begin; i < end; ++i)
+            normals[spokes[i].corner] = Vec3f(length > 1e-6 ? sum / length : spokes[i].normal);
+    }
+}
+
 VertexHandle vertex(std::uint32_t v) { return VertexHandle(static_cast<int>(v)); }
 FaceHandle face(std::size_t t) { return FaceHandle(static_cast<int>(t)); }
 std::uint32_t index(const auto& handle) { return static_cast<std::uint32_t>(handle.idx()); }
@@ -73,8 +91,8 @@ struct SurfaceTopology::State {
     void link_borders();
     Vec3 point(HalfedgeHandle h) const;
     bool is_hub(HalfedgeHandle h) const;
-    std::vector<Spoke> fan(std::size_t v, double cos_crease,
-                           const std::vector<Vec3f>& face_normals) const;
+    void fan(std::size_t v, double cos_crease, const std::vector<Vec3f>& face_normals,
+             std::vector<Spoke>& spokes) const;
     bool flip_flat(std::size_t t, RawMesh& raw);
 };
 
@@ -259,9 +277,11 @@ Vec3 SurfaceTopology::State::point(HalfedgeHandle h) const {
     return {p[0], p[1], p[2]};
 }
 
-std::vector<Spoke> SurfaceTopology::State::fan(std::size_t v, double cos_crease,
-                                               const std::vector<Vec3f>& face_normals) const {
-    std::vector<Spoke> spokes;
+/// The triangles around vertex v, counter-clockwise; `spokes` is filled anew.
+void SurfaceTopology::State::fan(std::size_t v, double cos_crease,
+                                 const std::vector<Vec3f>& face_normals,
+                                 std::vector<Spoke>& spokes) const {
+    spokes.clear();
     const HalfedgeHandle own = mesh.halfedge_handle(vertex(static_cast<std::uint32_t>(v)));
     // A border vertex's own half-edge is the border, which the fan begins right after.
     const bool open = mesh.is_boundary(own);
@@ -280,7 +300,6 @@ std::vector<Spoke> SurfaceTopology::State::fan(std::size_t v, double cos_crease,
     } while (h != start && !mesh.is_boundary(h));
     spokes[0].after_crease =
         open || glm::dot(spokes.back().normal, spokes[0].normal) < cos_crease;
-    return spokes;
 }
 
 std::vector<Vec3f> SurfaceTopology::corner_normals(double crease_angle) const {
@@ -298,27 +317,10 @@ std::vector<Vec3f> SurfaceTopology::corner_normals(double crease_angle) const {
     });
     std::vector<Vec3f> normals(3 * face_normals.size());
     parallel_for(state.mesh.n_vertices(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<Spoke> spokes;
         for (std::size_t v = begin; v < end; ++v) {
-            const std::vector<Spoke> spokes = state.fan(v, cos_crease, face_normals);
-            const std::size_t n = spokes.size();
-            std::size_t first = 0;
-            while (first < n && !spokes[first].after_crease) ++first;
-            if (first == n) first = 0;
-            for (std::size_t done = 0; done < n;) {
-                Vec3 sum(0);
-                std::size_t run = 0;
-                do {
-                    const Spoke& s = spokes[(first + done + run) % n];
-                    sum += s.angle * s.normal;
-                    ++run;
-                } while (done + run < n && !spokes[(first + done + run) % n].after_crease);
-                const double length = glm::length(sum);
-                for (std::size_t k = 0; k < run; ++k) {
-                    const Spoke& s = spokes[(first + done + k) % n];
-                    normals[s.corner] = Vec3f(length > 1e-6 ? sum / length : s.normal);
-                }
-                done += run;
-            }
+            state.fan(v, cos_crease, face_normals, spokes);
+            average_runs(spokes, normals);
         }
     });
     return normals;

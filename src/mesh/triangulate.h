@@ -13,7 +13,7 @@ namespace tuft::mesh {
 /// Keeps ear clipping from taking quadratic time on a hostile polygon: every corner tested
 /// against an ear costs one; when it is used up, what is left of a polygon becomes a fan.
 struct EarBudget {
-    std::uint64_t tests = 1'000'000'000;
+    std::uint64_t tests = 300'000'000;
     bool ran_out = false;
 };
 

@@ -32,6 +32,20 @@ void finish(Model& model, const ProgressFn& progress) {
     model.pieces = atlas::build_piece_graph(*model.mesh, model.atlas, model.texels, progress);
 }
 
+void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOptions& options) {
+    if (unwrap.size > 0) check_memory(unwrap.size, options.memory_limit);
+    if (unwrap.size == 0 && unwrap.texel_size > 0) {
+        // Before the charts are made: their area alone asks for this many texels.
+        const double side = std::sqrt(mesh::surface_area(*model.mesh)) / unwrap.texel_size;
+        check_memory(static_cast<std::uint32_t>(std::min(side, 4e9)), options.memory_limit);
+    }
+    atlas::Unwrapped unwrapped = atlas::unwrap(*model.mesh, unwrap);
+    model.atlas = std::move(unwrapped.atlas);
+    model.atlas_report = std::move(unwrapped.report);
+    check_memory(model.atlas.size, options.memory_limit);
+    finish(model, options.progress);
+}
+
 }  // namespace
 
 std::size_t atlas_memory(std::uint32_t size) {
@@ -67,16 +81,14 @@ Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options) {
     mesh::Surface surface = mesh::build_surface(std::move(soup), repair);
     model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(surface.mesh));
     model.repairs = std::move(surface.report);
-    if (unwrap.size == 0 && unwrap.texel_size > 0) {
-        // Before the charts are made: their area alone asks for this many texels.
-        const double side = std::sqrt(mesh::surface_area(*model.mesh)) / unwrap.texel_size;
-        check_memory(static_cast<std::uint32_t>(std::min(side, 4e9)), options.memory_limit);
-    }
-    atlas::Unwrapped unwrapped = atlas::unwrap(*model.mesh, unwrap);
-    model.atlas = std::move(unwrapped.atlas);
-    model.atlas_report = std::move(unwrapped.report);
-    check_memory(model.atlas.size, options.memory_limit);
-    finish(model, options.progress);
+    give_atlas(model, unwrap, options);
+    return model;
+}
+
+Model rescale_model(Model model, const ModelOptions& options) {
+    atlas::UnwrapOptions unwrap = options.unwrap;
+    unwrap.progress = options.progress;
+    give_atlas(model, unwrap, options);
     return model;
 }
 

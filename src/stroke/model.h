@@ -40,6 +40,9 @@ Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options = {});
 /// The same from a mesh and an atlas that exist already, such as a project's.
 Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress = {});
 
+/// The same mesh with a new atlas, of another size or with new charts.
+Model rescale_model(Model model, const ModelOptions& options);
+
 /// Bytes that painting on an atlas of size × size texels takes at most.
 std::size_t atlas_memory(std::uint32_t size);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brush/sweep.h"
 #include "contact/contact.h"
 #include "footprint/outline.h"
 #include "ink/reservoir.h"
@@ -25,18 +24,6 @@ double footprint_area(const footprint::Footprint& f) {
     std::size_t sum = 0;
     for (const std::uint8_t c : f.coverage) sum += c;
     return static_cast<double>(sum) / 255.0 * f.cell * f.cell;
-}
-
-// How far the middle of the ink lies behind the hand at each depth: half of the contact
-// patch and what it is behind the foot of the holder.
-std::vector<Lead> drag_lead(const brush::Preset& preset) {
-    std::vector<double> depths;
-    for (const double part : {0.05, 0.15, 0.3, 0.5, 0.75, 1.0})
-        depths.push_back(part * working_depth(preset));
-    std::vector<Lead> lead{{0, 0}};
-    for (const brush::SweepRow& row : brush::sweep_depth(preset, depths))
-        lead.push_back({row.depth, std::max(0.0, row.offset)});
-    return lead;
 }
 
 }  // namespace
@@ -263,6 +250,13 @@ std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const Pr
         journal_.restore(std::move(strokes[i]));
     }
     return reports;
+}
+
+void Painting::adopt(std::vector<Stroke> strokes, ink::Canvas canvas) {
+    if (canvas.n_slots() != model_->texels.n_slots())
+        throw Error("the stored texels belong to another atlas");
+    canvas_ = std::move(canvas);
+    for (Stroke& stroke : strokes) journal_.restore(std::move(stroke));
 }
 
 void Painting::keep_undo(std::uint64_t id, std::vector<ink::TileSnapshot> before) {

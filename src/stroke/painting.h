@@ -39,7 +39,7 @@ struct StrokeReport {
 };
 
 struct PaintingOptions {
-    std::string substrate = "porcelain";
+    std::string substrate = "porcelain";   ///< preset name; `use_substrate` takes any other
     std::size_t undo_bytes = std::size_t{256} << 20;  ///< kept copies of tiles; older strokes undo by replay
     bool record_forces = false;
 };
@@ -78,6 +78,10 @@ class Painting {
     /// Takes over a stored journal, ids kept, and paints what is not hidden.
     std::vector<StrokeReport> replay(std::vector<Stroke> strokes, const ProgressFn& progress = {});
 
+    /// Takes over a stored journal together with the texels it once made. Throws `Error`
+    /// when they were made for another texel map.
+    void adopt(std::vector<Stroke> strokes, ink::Canvas canvas);
+
     /// Takes the last stroke back, or paints the last one taken back again; false when
     /// there is none. Costs a copy of the tiles it touched, or a replay of everything
     /// once `undo_bytes` are used up.
@@ -89,6 +93,7 @@ class Painting {
     const ink::Canvas& canvas() const { return canvas_; }
     ink::Canvas& canvas() { return canvas_; }
     const ink::Substrate& substrate() const { return substrate_; }
+    void use_substrate(const ink::Substrate& substrate) { substrate_ = substrate; }
     std::vector<std::uint32_t> take_dirty() { return canvas_.take_dirty(); }
 
   private:

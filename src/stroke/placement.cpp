@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "brush/sweep.h"
 #include "core/error.h"
 
 namespace tuft::stroke {
@@ -279,7 +280,7 @@ LaidTrace lay(const mesh::SurfaceQuery& query, const Trace& trace) {
                                                   : lay_projected(query, trace);
 }
 
-double working_depth(const brush::Preset& preset) { return 0.4 * preset.length; }
+double working_depth(const brush::Preset& preset) { return 0.5 * preset.length; }
 
 HoldOptions hold_options(const brush::Preset& preset) {
     return {.tuft_length = preset.length,
@@ -288,9 +289,28 @@ HoldOptions hold_options(const brush::Preset& preset) {
             .lead = {}};
 }
 
+std::vector<Lead> drag_lead(const brush::Preset& preset) {
+    std::vector<double> depths;
+    for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
+        depths.push_back(part * working_depth(preset));
+    std::vector<Lead> lead{{0, 0}};
+    for (const brush::SweepRow& row : brush::sweep_depth(preset, depths))
+        lead.push_back({row.depth, std::max(0.0, row.offset + 0.5 * row.width)});
+    return lead;
+}
+
 Trace lead_hand(Trace trace, const HoldOptions& options) {
     if (options.lead.empty() || trace.samples.empty() || !trace.flat) return trace;
-    Vec2 dragged = Vec2(trace.samples.front().position);
+    // The hand knows where it is going to start: the string is taut from the first touch.
+    const Vec2 first(trace.samples.front().position);
+    Vec2 dragged = first;
+    for (const TraceSample& s : trace.samples) {
+        const Vec2 way = Vec2(s.position) - first;
+        if (glm::length(way) >= 0.5 * options.lead_turn) {
+            dragged = first - way * (options.lead_turn / glm::length(way));
+            break;
+        }
+    }
     for (TraceSample& s : trace.samples) {
         const Vec2 p(s.position);
         Vec2 string = p - dragged;

@@ -68,24 +68,29 @@ struct Lead {
 
 struct HoldOptions {
     double tuft_length = 0.02;      ///< metres from the ferrule's mouth to the unbent tip
-    double working_depth = 0.008;   ///< metres of the unbent tip below the surface at pressure 1
+    double working_depth = 0.010;   ///< metres of the unbent tip below the surface at pressure 1
     double hover = 0.002;           ///< metres of the tip above the surface when not pressed
     double max_tilt = 1.2;          ///< radians; more lean than this is cut
     std::vector<Lead> lead;         ///< rising in depth, linear between, constant outside; empty: none
     double lead_turn = 0.0015;      ///< metres of travel in which the lead follows a turn
 };
 
-/// Working depth of a brush: 0.4 of the free hair, where its belly reaches the paper.
+/// Working depth of a brush: half of the free hair.
 double working_depth(const brush::Preset& preset);
 
 /// Options for a brush, without a lead.
 HoldOptions hold_options(const brush::Preset& preset);
 
+/// The lead of a brush at depths up to its working depth: from the foot of the holder's
+/// axis back to the widest place of the steady contact patch, which lies half a line's
+/// width behind its end (`brush::sweep_depth`; takes some 50 ms).
+std::vector<Lead> drag_lead(const brush::Preset& preset);
+
 /// A dragged tuft paints behind the hand. Moves the samples of a flat trace ahead along the
 /// path by the lead for their depth, so that the ink will lie where the trace was. The
 /// direction is that of a point dragged behind the trace on a string of `lead_turn` (a
-/// tractrix), so it knows no future and can run while a pen is moving; where the path
-/// reverses, the lead passes through zero.
+/// tractrix), taut from the first touch in the direction in which the trace sets out;
+/// where the path reverses, the lead passes through zero.
 Trace lead_hand(Trace trace, const HoldOptions& options);
 
 /// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the

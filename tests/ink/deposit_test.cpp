@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/random.h"
+#include "ink/composite.h"
 #include "ink/reservoir.h"
 
 namespace tuft::ink {
@@ -61,6 +63,45 @@ TEST(Deposit, PassingAgainNeitherBeadsNorLosesTheEdge) {
     for (int i = 0; i < 200; ++i) deposit(canvas, 0, coverage, kArea, 1e-3, params);
     for (int t = 0; t < kN; ++t)
         EXPECT_NEAR((*canvas.plane(0, 0))[t], 1.8f * coverage[t], 2e-6f) << "the edge keeps f";
+}
+
+TEST(Deposit, ATexelHalfCoveredLooksHalfCovered) {
+    for (const auto& [name, under, tolerance] :
+         {std::tuple{"carbon", "porcelain", 0.02}, std::tuple{"cinnabar", "porcelain", 0.04},
+          std::tuple{"titanium-white", "clay", 0.06}}) {
+        const Ink ink = load_ink(name);
+        const Substrate substrate = load_substrate(under);
+        Canvas canvas(1);
+        const DepositParams params{.mix = mix_of(canvas, ink),
+                                   .target = static_cast<float>(ink.film),
+                                   .extinction = extinction_of(ink)};
+        Texels coverage;
+        for (int t = 0; t < kN; ++t) coverage[t] = static_cast<float>(t) / (kN - 1);
+        for (int i = 0; i < 50; ++i) deposit(canvas, 0, coverage, kArea, 1e-3, params);
+        EXPECT_NEAR((*canvas.plane(0, 0))[kN - 1], ink.film, 1e-4 * ink.film)
+            << "1 − f hidden is near 0 there and has lost digits";
+        const TileLook look = look_of_tile(canvas, 0, substrate);
+        for (int t = 0; t < kN; ++t) {
+            const double bare = look.colour[1][0], full = look.colour[1][kN - 1];
+            // Exact for a film that only absorbs; the tolerance is that of the scattering.
+            EXPECT_NEAR(look.colour[1][t], bare + coverage[t] * (full - bare), tolerance) << name << t;
+        }
+    }
+}
+
+TEST(Deposit, GoalsFollowTheLogarithm) {
+    const Texels coverage = random_texels(4, 0, 1);
+    for (const double extinction : {0.01, 1.0, 4.0, 100.0}) {
+        Canvas canvas(1);
+        deposit(canvas, 0, coverage, kArea, 1e6,
+                {.mix = mix_of(canvas, plain("black")), .target = 1.5f, .extinction = static_cast<float>(extinction)});
+        const double e = std::min(extinction, 12 / 1.5);
+        for (int t = 0; t < kN; ++t) {
+            const double x = 1 - coverage[t] * -std::expm1(-e * 1.5);
+            // Float rounding of x, magnified by the slope 1 / (ε x).
+            EXPECT_NEAR((*canvas.plane(0, 0))[t], -std::log(x) / e, 3e-7 * (1 + 1 / (e * x))) << extinction;
+        }
+    }
 }
 
 TEST(Deposit, GivenInkIsWhatTheTexelsGained) {

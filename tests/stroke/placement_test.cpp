@@ -262,13 +262,13 @@ TEST(Placement, HeldTuftReachesThePressedDepth) {
 }
 
 TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
-    // Straight: ahead by the length for the depth, once the string is taut.
+    // Straight: ahead by the length for the depth, from the first touch.
     std::vector<Vec2> points;
     for (int i = 0; i <= 100; ++i) points.push_back({1e-4 * i, 0});
     Trace trace = make_trace({}, points);
     const HoldOptions options{.working_depth = 0.008, .lead = {{0.002, 0.001}, {0.006, 0.005}}, .lead_turn = 1e-3};
     Trace led = lead_hand(trace, options);
-    EXPECT_EQ(led.samples[0].position, trace.samples[0].position);
+    EXPECT_NEAR(led.samples[0].position.x, 0.003, 1e-12);
     EXPECT_NEAR(led.samples[100].position.x, 0.01 + 0.003, 1e-12);  // depth 4 mm
     // On a circle a string of length l lags by asin(l/2R)-like angle: steady tractrix,
     // sin φ = l/R with the string tangent to the inner circle of radius sqrt(R² - l²).
@@ -280,6 +280,15 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     const Vec2 p(trace.samples.back().position), d = (Vec2(led.samples.back().position) - p) / 0.003;
     EXPECT_NEAR(glm::length(d), 1, 1e-9);
     EXPECT_NEAR(glm::dot(d, p / radius), l / radius, 6e-4);  // half a sample's step over R: 5e-4
+    // There and back: the lead passes through zero and turns round.
+    points.clear();
+    for (int i = 0; i <= 200; ++i) points.push_back({1e-4 * (i <= 100 ? i : 200 - i), 0});
+    led = lead_hand(make_trace({}, points), options);
+    EXPECT_NEAR(led.samples[110].position.x, 0.009, 1e-9);  // the string is slack after one length
+    EXPECT_NEAR(led.samples[200].position.x, -0.003, 1e-9);
+    // A dot has no direction.
+    led = lead_hand(make_trace({}, {{0.01, 0.02}, {0.01, 0.02}}), options);
+    EXPECT_EQ(led.samples[1].position, Vec3(0.01, 0.02, 0));
     // No lead: nothing moves.
     led = lead_hand(trace, {.lead = {}});
     EXPECT_EQ(led.samples[77].position, trace.samples[77].position);

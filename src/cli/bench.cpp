@@ -1,0 +1,253 @@
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "brush/tuft.h"
+#include "cli/commands.h"
+#include "cli/steps.h"
+#include "core/parallel.h"
+#include "ink/deposit.h"
+#include "io/read_model.h"
+#include "stroke/painting.h"
+
+/// Speed on this machine: one thread, CPU time, medians over repeats.
+namespace tuft::cli {
+namespace {
+
+using std::numbers::pi;
+
+double cpu_seconds() {
+    timespec t{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double quantile(std::vector<double> values, double q) {
+    std::sort(values.begin(), values.end());
+    const auto i = static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+    return values.empty() ? 0 : values[i];
+}
+
+// A sphere of 50 mm with rings of equal height; about 2 n² triangles.
+mesh::PolygonSoup sphere(int n) {
+    mesh::PolygonSoup soup;
+    const int rings = n, columns = 2 * n;
+    for (int j = 0; j <= rings; ++j)
+        for (int i = 0; i < columns; ++i) {
+            const double theta = pi * j / rings, phi = 2 * pi * i / columns;
+            soup.points.push_back(50.0 * Vec3(std::sin(theta) * std::cos(phi),
+                                              std::sin(theta) * std::sin(phi), std::cos(theta)));
+        }
+    soup.polygon_start.push_back(0);
+    const auto at = [&](int j, int i) { return static_cast<std::uint32_t>(j * columns + i % columns); };
+    for (int j = 0; j < rings; ++j)
+        for (int i = 0; i < columns; ++i) {
+            for (const std::uint32_t v : {at(j, i), at(j + 1, i), at(j + 1, i + 1)}) soup.corners.push_back(v);
+            soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+            for (const std::uint32_t v : {at(j, i), at(j + 1, i + 1), at(j, i + 1)}) soup.corners.push_back(v);
+            soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+        }
+    return soup;
+}
+
+// A disc of `texels` across with a soft rim, as a footprint on the model's equator.
+footprint::Footprint disc(const stroke::Model& model, int texels, double angle) {
+    footprint::Footprint f;
+    const double texel = model.atlas.texel_size;
+    const Box& box = model.mesh->bounds;
+    const Vec3 out{std::cos(angle), std::sin(angle), 0.1};
+    const auto on = model.query->ray(box.centre() + box.diagonal() * out, -glm::normalize(out));
+    const auto near = on ? on : model.query->closest_point(box.centre() + box.diagonal() * out);
+    f.frame = make_frame(near->position, near->normal, {0, 0, 1});
+    f.triangle = near->triangle;
+    f.cell = texel;
+    f.width = f.height = texels + 4;
+    f.lo = Vec2(-0.5 * f.width * texel);
+    f.radius = 0.5 * (texels + 1) * texel;
+    f.coverage.resize(static_cast<std::size_t>(f.width) * f.height);
+    for (int j = 0; j < f.height; ++j)
+        for (int i = 0; i < f.width; ++i) {
+            const double r = std::hypot(i + 0.5 - 0.5 * f.width, j + 0.5 - 0.5 * f.height);
+            f.coverage[static_cast<std::size_t>(j) * f.width + i] =
+                static_cast<std::uint8_t>(255 * std::clamp(0.5 + 0.5 * texels - r, 0.0, 1.0));
+        }
+    return f;
+}
+
+// Deposit alone: planning, evaluating and inking one stamp after the other along the equator.
+double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps) {
+    ink::Canvas canvas(model.texels.n_slots());
+    const ink::Ink ink = ink::load_ink("carbon");
+    const ink::DepositParams params{.mix = ink::mix_of(canvas, ink)};
+    const footprint::StampOptions options;
+    footprint::PlanScratch scratch;
+    const footprint::Surface surface = model.surface();
+    alignas(64) std::array<float, atlas::kTileTexels> exposure;
+    std::vector<footprint::Footprint> path;
+    const double radius = 0.5 * model.mesh->bounds.size().x;
+    for (int i = 0; i < stamps; ++i)
+        path.push_back(disc(model, texels, 0.3 + i * model.atlas.texel_size / radius));
+    std::vector<double> runs;
+    for (int repeat = 0; repeat < 7; ++repeat) {
+        bool piecewise = false;
+        const double start = cpu_seconds();
+        for (const footprint::Footprint& f : path) {
+            footprint::StampJobs jobs = footprint::plan_stamp(surface, f, {}, options, scratch);
+            piecewise = footprint::choose_mode(jobs, piecewise, options);
+            for (const footprint::TileJob& job : jobs.tiles) {
+                const atlas::TexelTile& tile = model.texels.tiles[job.slot];
+                if (footprint::evaluate_tile(tile, jobs, job, exposure))
+                    ink::deposit(canvas, job.slot, exposure, tile.area, model.atlas.texel_size, params);
+            }
+        }
+        runs.push_back((cpu_seconds() - start) / stamps * 1e6);
+    }
+    return quantile(runs, 0.5);
+}
+
+double footprint_texels(int texels) { return pi / 4 * texels * texels; }
+
+// The whole path: a brush as thick as makes lines of about `texels` across, dragged along
+// the equator; hand samples at 1 kHz and a stamp per texel.
+double stamps_per_second(const stroke::Model& model, int texels) {
+    stroke::Painting painting(model);
+    brush::Preset preset = brush::load_preset("mixed-medium");
+    const double scale = texels * model.atlas.texel_size / (2 * preset.radius);
+    preset.name = "bench";
+    preset.length *= scale;
+    preset.radius *= scale;
+    preset.stiffness *= std::pow(scale, 4);
+    preset.capacity = 1e-4;
+    painting.use_brush(preset);
+    stroke::Stroke s;
+    s.trace.flat = false;
+    s.trace.brush = "bench";
+    s.trace.ink = "carbon";
+    const double r = 0.5 * model.mesh->bounds.size().x;
+    const Vec3 centre = model.mesh->bounds.centre();
+    const double arc = 400 * model.atlas.texel_size / r;
+    for (int i = 0; i <= 400; ++i) {
+        const double a = 0.3 + arc * i / 400;
+        const double press = std::min(1.0, i / 60.0) * 0.25 * preset.length;
+        const Vec3 n{std::cos(a), std::sin(a), 0};
+        stroke::TraceSample p;
+        p.time = i * 1e-3;
+        p.position = centre + (r + preset.length - press) * n;
+        const Frame f = make_frame(Vec3{0}, n, {0, 0, 1});
+        p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
+        s.trace.samples.push_back(p);
+    }
+    std::vector<double> runs;
+    for (int repeat = 0; repeat < 5; ++repeat) {
+        const double start = cpu_seconds();
+        const stroke::StrokeReport report = painting.paint(s);
+        runs.push_back(static_cast<double>(report.stamps) / (cpu_seconds() - start));
+    }
+    return quantile(runs, 0.5);
+}
+
+// Press, drag and lift on a plane, 1 kHz, friction on.
+std::pair<double, double> rod_microseconds() {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset("mixed-medium"));
+    const double length = tuft.preset.length;
+    const brush::ContactPlane plane;
+    std::vector<double> times;
+    for (int i = 0; i < 3000; ++i) {
+        const double t = i * 1e-3;
+        const double press = std::min({1.0, t / 0.3, std::max(0.0, (3.0 - t) / 0.3)});
+        brush::Pose pose;
+        pose.time = t;
+        pose.position = {0.05 * std::clamp(t - 0.3, 0.0, 2.4), 0.004 * std::sin(6 * t),
+                         length * (1.02 - 0.3 * press)};
+        const double start = cpu_seconds();
+        brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
+        times.push_back((cpu_seconds() - start) * 1e6);
+    }
+    return {quantile(times, 0.5), quantile(times, 0.99)};
+}
+
+std::string cpu_name() {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    return "unknown";
+}
+
+struct Case {
+    std::string name;
+    stroke::Model model;
+    double atlas_seconds = 0;
+};
+
+}  // namespace
+
+int run(const Bench& a) {
+    Console console(a.common.quiet);
+    set_thread_count(1);
+    const std::uint32_t size = a.quick ? 2048 : 4096;
+    std::vector<Case> cases;
+    const auto add = [&](std::string name, mesh::PolygonSoup soup) {
+        stroke::ModelOptions options;
+        options.unwrap.size = size;
+        options.progress = console.progress();
+        Case c{.name = std::move(name), .model = stroke::prepare_model(std::move(soup), options)};
+        for (const auto& [phase, seconds] : c.model.atlas_report.seconds) c.atlas_seconds += seconds;
+        cases.push_back(std::move(c));
+    };
+    if (!a.model.empty()) {
+        add(a.model.stem().string(), io::read_model(a.model));
+    } else {
+        add("sphere-100k", sphere(224));
+        if (!a.quick) add("sphere-1M", sphere(708));
+    }
+
+    nlohmann::json j;
+    j["machine"] = cpu_name();
+    j["threads"] = 1;
+    const auto [median, p99] = rod_microseconds();
+    j["rod_microseconds"] = {{"median", median}, {"p99", p99}, {"segments", 16}};
+    for (Case& c : cases) {
+        const std::string on = fmt::format("{} at {} x {}", c.name, size, size);
+        nlohmann::json m{{"triangles", c.model.mesh->n_triangles()}, {"atlas_size", size}};
+        for (const int texels : {64, 128, 256}) {
+            report(console.progress(), "measuring", texels / 256.0);
+            const double us = microseconds_per_stamp(c.model, texels, 160);
+            m["microseconds_per_stamp"][std::to_string(texels)] = us;
+            if (texels == 256) m["ns_per_texel"]["one_ink"] = us * 1e3 / footprint_texels(texels);
+            m["stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels);
+        }
+        m["atlas_seconds"] = c.atlas_seconds;
+        j["models"][c.name] = m;
+        if (!j.contains("microseconds_per_stamp")) {
+            for (const char* key : {"microseconds_per_stamp", "stamps_per_second", "ns_per_texel", "atlas_seconds"})
+                j[key] = m[key];
+            j["model"] = on;
+        }
+    }
+    j["peak_mb"] = peak_megabytes();
+    console.clear();
+    if (a.common.json) {
+        std::cout << j.dump(2) << '\n';
+        return 0;
+    }
+    fmt::print("{}, one thread, CPU time, medians\n", j["machine"].get<std::string>());
+    fmt::print("rod solve, 16 segments: median {:.1f} us, 99 % {:.1f} us\n", median, p99);
+    for (const auto& [name, m] : j["models"].items()) {
+        fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s)\n", name, m["triangles"].get<std::size_t>(),
+                   size, size, m["atlas_seconds"].get<double>());
+        for (const char* texels : {"64", "128", "256"})
+            fmt::print("  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s\n", texels,
+                       m["microseconds_per_stamp"][texels].get<double>(),
+                       m["stamps_per_second"][texels].get<double>());
+    }
+    fmt::print("peak memory {:.0f} MiB\n", j["peak_mb"].get<double>());
+    return 0;
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "brush/picture.h"
+#include "brush/preset.h"
+#include "brush/sweep.h"
+#include "brush/table.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/steps.h"
+#include "core/files.h"
+#include "core/units.h"
+#include "io/image.h"
+
+namespace tuft::cli {
+namespace {
+
+void list_brushes(bool json) {
+    const std::vector<std::string> names = brush::list_presets();
+    if (json) {
+        std::cout << nlohmann::json{{"brushes", names}}.dump(2) << '\n';
+        return;
+    }
+    for (const std::string& name : names) {
+        const brush::Preset p = brush::load_preset(name);
+        fmt::print("{:<16} {:>4.0f} mm long, {:>4.1f} mm thick  {}\n", name, p.length / kMillimetre,
+                   2 * p.radius / kMillimetre, p.note);
+    }
+}
+
+nlohmann::json table_json(const brush::Preset& preset, const brush::QueryTable& table) {
+    nlohmann::json j{{"brush", preset.name},
+                     {"length_mm", preset.length / kMillimetre},
+                     {"root_stiffness_Nm2", preset.stiffness},
+                     {"rows", nlohmann::json::array()}};
+    for (const brush::TableRow& row : table.rows) {
+        nlohmann::json r{{"moment_mNm", row.moment * 1e3}, {"load_N", row.load}};
+        for (std::size_t i = 0; i < row.nodes.size(); ++i)
+            r["nodes"].push_back({{"x_mm", row.nodes[i].x / kMillimetre},
+                                  {"y_mm", row.nodes[i].y / kMillimetre},
+                                  {"angle_deg", row.angles[i] / kDegree},
+                                  {"moment_mNm", row.moments[i] * 1e3}});
+        j["rows"].push_back(std::move(r));
+    }
+    return j;
+}
+
+void print_table(const brush::Preset& preset, const brush::QueryTable& table) {
+    fmt::print("{}: {}\n", preset.name, preset.note);
+    fmt::print("tuft {:.1f} mm long, {:.1f} mm thick, root stiffness {:.3g} N m2, {} segments\n\n",
+               preset.length / kMillimetre, 2 * preset.radius / kMillimetre, preset.stiffness,
+               preset.segments);
+    fmt::print("{:>11} {:>9} {:>22} {:>11}   node angles from tip to root, degrees\n", "moment mNm",
+               "load N", "tip x, y mm", "tip angle");
+    for (std::size_t k = 0; k < table.rows.size(); k += 4) {
+        const brush::TableRow& row = table.rows[k];
+        fmt::print("{:>11.4f} {:>9.4f} {:>10.3f}, {:>10.3f} {:>11.2f}  ", row.moment * 1e3, row.load,
+                   row.nodes.front().x / kMillimetre, row.nodes.front().y / kMillimetre,
+                   row.angles.front() / kDegree);
+        for (std::size_t i = 0; i < row.angles.size(); i += 2)
+            fmt::print(" {:>5.1f}", row.angles[i] / kDegree);
+        fmt::print("\n");
+    }
+    fmt::print("\nEvery fourth of {} rows and every second node; --json prints them all.\n",
+               table.rows.size());
+}
+
+int calibrate(const Brush& a) {
+    check_extension(a.output, {".toml"});
+    check_output(a.output);
+    Console console(a.common.quiet);
+    const std::vector<brush::SweepRow> measured = brush::read_sweep(a.calibrate.string());
+    brush::Preset start = brush::load_preset(a.name.empty() || a.name == "calibrate" ? "mixed-medium" : a.name);
+    start.name = a.output.stem().string();
+    const brush::Calibration fit = brush::calibrate(start, measured);
+    const std::string toml = brush::preset_toml(fit.preset);
+    write_file(a.output, toml.data(), toml.size());
+    if (a.common.json)
+        std::cout << nlohmann::json{{"wrote", a.output.string()},
+                                    {"rms_width_mm", fit.rms.width / kMillimetre},
+                                    {"rms_drag_mm", fit.rms.drag / kMillimetre},
+                                    {"rms_offset_mm", fit.rms.offset / kMillimetre},
+                                    {"evaluations", fit.evaluations}}
+                         .dump(2)
+                  << '\n';
+    else
+        fmt::print("wrote {}: residuals (rms) {:.2f} mm of width, {:.2f} mm of contact length, {:.2f} mm of offset\n",
+                   a.output.string(), fit.rms.width / kMillimetre, fit.rms.drag / kMillimetre,
+                   fit.rms.offset / kMillimetre);
+    return 0;
+}
+
+}  // namespace
+
+int run(const Brush& a) {
+    if (!a.calibrate.empty()) return calibrate(a);
+    if (a.name.empty()) {
+        list_brushes(a.common.json);
+        return 0;
+    }
+    check_extension(a.picture, {".png"});
+    check_extension(a.sweep_depth, {".csv"});
+    check_output(a.picture);
+    check_output(a.sweep_depth);
+    const brush::Preset preset = brush::load_preset(a.name);
+    if (!a.picture.empty()) {
+        const brush::Picture picture = brush::draw_tuft(preset);
+        io::write_image(a.picture, io::view_of(picture.width, picture.height, 3, picture.rgb.data()));
+    }
+    if (!a.sweep_depth.empty()) {
+        std::vector<double> depths;
+        for (int mm = 0; mm <= 17; ++mm) depths.push_back(mm * kMillimetre);
+        const std::string csv = brush::sweep_csv(brush::sweep_depth(preset, depths));
+        write_file(a.sweep_depth, csv.data(), csv.size());
+    }
+    const brush::QueryTable table = brush::make_table(preset);
+    if (a.common.json) std::cout << table_json(preset, table).dump(2) << '\n';
+    else print_table(preset, table);
+    return 0;
+}
+
+}  // namespace tuft::cli

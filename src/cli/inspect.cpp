@@ -1,0 +1,116 @@
+#include "mesh/inspect.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/steps.h"
+#include "core/units.h"
+#include "io/read_model.h"
+
+namespace tuft::cli {
+namespace {
+
+nlohmann::json vector_json(const Vec3& v_metres) {
+    return {v_metres.x / kMillimetre, v_metres.y / kMillimetre, v_metres.z / kMillimetre};
+}
+
+int inspect_project(const Inspect& a) {
+    const io::Project project = io::Project::open(a.file);
+    const io::ProjectModel model = project.model();
+    const std::vector<stroke::Stroke> strokes = project.strokes();
+    const atlas::AtlasReport quality = atlas::measure(model.mesh, model.atlas);
+    if (a.common.json) {
+        nlohmann::json j{{"project", a.file.string()},
+                         {"format", project.format()},
+                         {"written_by", project.written_by()},
+                         {"model", model.source},
+                         {"triangles", model.mesh.n_triangles()},
+                         {"size_mm", vector_json(model.mesh.bounds.size())},
+                         {"atlas", to_json(model.atlas, quality)},
+                         {"strokes", nlohmann::json::array()}};
+        for (const stroke::Stroke& s : strokes)
+            j["strokes"].push_back({{"id", s.id},
+                                    {"label", s.trace.label},
+                                    {"brush", s.trace.brush},
+                                    {"ink", s.trace.ink},
+                                    {"samples", s.trace.samples.size()},
+                                    {"hidden", s.hidden}});
+        std::cout << j.dump(2) << '\n';
+        return 0;
+    }
+    const Vec3 size = model.mesh.bounds.size() / kMillimetre;
+    fmt::print("{}: project by {}, of {}\n", a.file.string(), project.written_by(), model.source);
+    fmt::print("{} triangles, {:.1f} x {:.1f} x {:.1f} mm; atlas {} x {}, {} charts, texel {:.3f} mm\n",
+               model.mesh.n_triangles(), size.x, size.y, size.z, model.atlas.size, model.atlas.size,
+               model.atlas.n_charts, model.atlas.texel_size / kMillimetre);
+    for (const stroke::Stroke& s : strokes)
+        fmt::print("  stroke {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", s.id, s.trace.brush,
+                   s.trace.ink, s.trace.samples.size(), s.trace.label, s.hidden ? " (hidden)" : "");
+    return 0;
+}
+
+}  // namespace
+
+int run(const Inspect& a) {
+    if (a.file.extension() == ".tuft" || io::is_project(a.file)) return inspect_project(a);
+    Console console(a.common.quiet);
+    mesh::PolygonSoup soup = io::read_model(a.file);
+    Box bounds;
+    for (const Vec3& p : soup.points) bounds.add(p);
+    const mesh::UnitGuess guess = mesh::guess_unit(bounds);
+    mesh::RepairOptions options;
+    if (const auto fixed = io::metres_per_unit_of(a.file)) options.metres_per_unit = *fixed;
+    else options.metres_per_unit = metres_per(a.unit.empty() ? guess.unit : a.unit).value_or(kMillimetre);
+    options.progress = console.progress();
+    mesh::Surface surface;
+    try {
+        surface = mesh::build_surface(std::move(soup), options);
+    } catch (const Error& error) {
+        throw Error(a.file.string(), error.what());
+    }
+    console.clear();
+    const mesh::MeshSummary s = mesh::summarise(surface, options.metres_per_unit);
+    atlas::AtlasReport uvs;
+    atlas::Atlas in_file;
+    if (s.has_uvs) {
+        in_file.size = 2048;
+        in_file.corner_uvs = surface.mesh.corner_uvs;
+        in_file.triangle_chart.assign(surface.mesh.n_triangles(), 0);
+        in_file.from_file = true;
+        uvs = atlas::measure(surface.mesh, in_file);
+    }
+    if (a.common.json) {
+        nlohmann::json j{{"file", a.file.string()},
+                         {"triangles", s.n_triangles},
+                         {"vertices", s.n_vertices},
+                         {"size_mm", vector_json(s.bounds.size())},
+                         {"area_cm2", s.area * 1e4},
+                         {"volume_cm3", s.volume * 1e6},
+                         {"median_edge_mm", s.median_edge / kMillimetre},
+                         {"unit_guess", s.unit.unit},
+                         {"unit_note", s.unit.sentence},
+                         {"has_uvs", s.has_uvs},
+                         {"has_colours", s.has_colours},
+                         {"groups", s.group_names},
+                         {"defects", mesh::describe_defects(s.report)},
+                         {"mesh", to_json(s.report)}};
+        if (s.has_uvs)
+            j["uvs"] = {{"flips", uvs.flips},
+                        {"overlapping_texels", uvs.overlapping_texels},
+                        {"l2_stretch", uvs.l2_stretch},
+                        {"utilisation", uvs.utilisation}};
+        std::cout << j.dump(2) << '\n';
+        return 0;
+    }
+    fmt::print("{}\n", a.file.string());
+    for (const std::string& line : mesh::describe(s)) fmt::print("{}\n", line);
+    if (s.has_uvs)
+        fmt::print("UVs: {} flipped triangles, {} texels of 2048 x 2048 covered twice, L2 stretch {:.3f}\n",
+                   uvs.flips, uvs.overlapping_texels, uvs.l2_stretch);
+    return 0;
+}
+
+}  // namespace tuft::cli

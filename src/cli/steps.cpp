@@ -1,0 +1,282 @@
+#include "cli/steps.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+#include <nlohmann/json.hpp>
+
+#include "core/units.h"
+#include "ink/composite.h"
+#include "io/export.h"
+#include "io/image.h"
+#include "io/inkml.h"
+#include "io/read_model.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::cli {
+
+stroke::ModelOptions model_options(const Surface& s, Console& console) {
+    stroke::ModelOptions options;
+    options.repair.metres_per_unit = metres_per(s.unit).value_or(kMillimetre);
+    options.unwrap.size = s.atlas_size;
+    options.unwrap.texel_size = s.texel_size_mm * kMillimetre;
+    options.unwrap.uvs = s.new_uv    ? atlas::UvPolicy::renew
+                         : s.keep_uv ? atlas::UvPolicy::keep
+                                     : atlas::UvPolicy::automatic;
+    options.progress = console.progress();
+    return options;
+}
+
+stroke::Model load_model(const fs::path& path, const Surface& s, Console& console) {
+    const ProgressFn progress = console.progress();
+    report(progress, "reading", 0);
+    mesh::PolygonSoup soup = io::read_model(path);
+    report(progress, "reading", 1);
+    stroke::ModelOptions options = model_options(s, console);
+    if (const auto fixed = io::metres_per_unit_of(path)) options.repair.metres_per_unit = *fixed;
+    try {
+        stroke::Model model = stroke::prepare_model(std::move(soup), options);
+        for (const std::string& warning : model.repairs.warnings) console.note("warning: " + warning);
+        return model;
+    } catch (const Error& error) {
+        const std::string what = error.what();
+        if (what.starts_with(path.string())) throw;
+        throw Error(path.string(), what);
+    }
+}
+
+stroke::Model load_bare(const fs::path& path, const std::string& unit, Console& console) {
+    mesh::RepairOptions options;
+    options.metres_per_unit =
+        io::metres_per_unit_of(path).value_or(metres_per(unit).value_or(kMillimetre));
+    options.progress = console.progress();
+    stroke::Model model;
+    try {
+        mesh::Surface surface = mesh::build_surface(io::read_model(path), options);
+        model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(surface.mesh));
+        model.repairs = std::move(surface.report);
+    } catch (const Error& error) {
+        const std::string what = error.what();
+        if (what.starts_with(path.string())) throw;
+        throw Error(path.string(), what);
+    }
+    model.query = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
+    return model;
+}
+
+void check_output(const fs::path& path) {
+    if (path.empty()) return;
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    std::error_code ec;
+    if (fs::is_directory(path, ec)) throw Error(path.string(), "is a folder, not a file to write");
+    if (!fs::is_directory(folder, ec))
+        throw Error(path.string(), "the output folder '" + folder.string() + "' does not exist");
+    if (::access(folder.c_str(), W_OK) != 0)
+        throw Error(path.string(), "the output folder '" + folder.string() + "' cannot be written to");
+}
+
+void check_extension(const fs::path& path, const std::vector<std::string>& allowed) {
+    if (path.empty()) return;
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (std::find(allowed.begin(), allowed.end(), extension) != allowed.end()) return;
+    throw UsageError(path.string() + ": the name must end in " + fmt::format("{}", fmt::join(allowed, ", ")));
+}
+
+std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
+    std::vector<stroke::Stroke> strokes;
+    for (const fs::path& file : a.strokes) {
+        for (stroke::Trace& trace : io::read_inkml(file)) {
+            if (trace.brush.empty() || !a.brush.empty())
+                trace.brush = a.brush.empty() ? "wolf-medium" : a.brush;
+            if (trace.ink.empty() || !a.ink.empty()) trace.ink = a.ink.empty() ? "carbon" : a.ink;
+            if (!a.place_mm.empty())
+                trace.placement.origin = kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]);
+            stroke::Stroke s;
+            s.trace = std::move(trace);
+            s.settings.spine = a.spine;
+            s.settings.footprint = a.footprint;
+            s.settings.contact = a.contact;
+            strokes.push_back(std::move(s));
+        }
+        report(console.progress(), "strokes", 1);
+    }
+    return strokes;
+}
+
+render::Image draw_picture(const stroke::Model& model, const stroke::Painting* painting,
+                           const std::string& material, const View& v, int frame, int count,
+                           Console& console) {
+    render::Appearance look;
+    const std::string name = !material.empty() ? material
+                             : painting        ? painting->substrate().name
+                                               : "porcelain";
+    const ink::Substrate substrate = ink::load_substrate(name);
+    look.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
+    look.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
+    ink::AtlasMap<float> colour, height;
+    std::vector<Vec3f> texels;
+    if (painting && !painting->journal().empty()) {
+        colour = ink::compose_linear(painting->canvas(), model.texels, substrate);
+        const auto* first = reinterpret_cast<const Vec3f*>(colour.texels.data());
+        look.maps.size = colour.size;
+        look.maps.corner_uvs = model.atlas.corner_uvs;
+        look.maps.base_colour = std::span(first, std::size_t{colour.size} * colour.size);
+    }
+    render::PictureOptions options;
+    options.width = v.width;
+    options.height = v.height;
+    options.view.azimuth = v.azimuth * kDegree;
+    options.view.elevation = v.elevation * kDegree;
+    if (!v.target_mm.empty()) {
+        options.view.target = kMillimetre * Vec3(v.target_mm[0], v.target_mm[1], v.target_mm[2]);
+        options.view.width_at_target = model.mesh->bounds.diagonal() / v.zoom;
+    } else if (v.zoom != 1) {
+        options.view.target = model.mesh->bounds.centre();
+        options.view.width_at_target = 1.3 * model.mesh->bounds.diagonal() / v.zoom;
+    }
+    options.progress = console.progress();
+    if (count > 1) options = render::turntable_frame(options, frame, count);
+    return render::render_picture(*model.mesh, *model.query, look, options);
+}
+
+void check_outputs(const Outputs& o) {
+    check_extension(o.project, {".tuft"});
+    check_extension(o.exported, {".glb", ".gltf", ".obj"});
+    check_extension(o.preview, {".png"});
+    for (const fs::path& path : {o.project, o.exported, o.preview}) check_output(path);
+}
+
+void write_outputs(const Outputs& o, const stroke::Painting& painting, Console& console) {
+    const stroke::Model& model = painting.model();
+    if (!o.exported.empty()) {
+        const io::ModelMaps maps = io::make_maps(painting.canvas(), model.texels, painting.substrate(),
+                                                 {.gutter = model.atlas.gutter});
+        io::export_model(o.exported, *model.mesh, model.atlas, maps,
+                         {.unit = o.unit, .progress = console.progress()});
+    }
+    if (!o.preview.empty())
+        write_picture(o.preview, draw_picture(model, &painting, "", o.view, 0, 1, console));
+}
+
+void write_picture(const fs::path& path, const render::Image& image) {
+    io::write_image(path, io::view_of(image.width, image.height, 3, image.rgb.data()));
+}
+
+io::Project start_project(const fs::path& path, const std::string& source, const std::string& unit,
+                          stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes) {
+    const stroke::Model& model = painting.model();
+    io::Project project = io::Project::create(
+        path, {.source = source,
+               .unit = unit,
+               .mesh = *model.mesh,
+               .atlas = model.atlas,
+               .substrate = ink::substrate_toml(painting.substrate())});
+    std::set<std::string> brushes, inks;
+    for (const stroke::Stroke& s : strokes) {
+        if (brushes.insert(s.trace.brush).second)
+            project.put_brush({s.trace.brush, brush::preset_toml(painting.brush(s.trace.brush))});
+        if (inks.insert(s.trace.ink).second)
+            project.put_ink({s.trace.ink, ink::ink_toml(painting.ink(s.trace.ink))});
+    }
+    return project;
+}
+
+std::unique_ptr<OpenProject> open_project(const fs::path& path, Console& console) {
+    auto opened = std::make_unique<OpenProject>(OpenProject{.file = io::Project::open(path)});
+    io::ProjectModel stored = opened->file.model();
+    opened->source = stored.source;
+    opened->unit = stored.unit;
+    opened->substrate = ink::parse_substrate(stored.substrate, path.string());
+    opened->model = stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), console.progress());
+    return opened;
+}
+
+void use_presets(const io::Project& project, stroke::Painting& painting) {
+    const std::string file = project.path().string();
+    for (const auto& [name, toml] : project.brushes()) {
+        brush::Preset preset = brush::parse_preset(toml, file + ": brush " + name);
+        preset.name = name;
+        painting.use_brush(preset);
+    }
+    for (const auto& [name, toml] : project.inks()) {
+        ink::Ink ink = ink::parse_ink(toml, file + ": ink " + name);
+        ink.name = name;
+        painting.use_ink(ink);
+    }
+}
+
+void show_strokes(const io::Project& project, stroke::Painting& painting, Console& console) {
+    std::vector<stroke::Stroke> strokes = project.strokes();
+    std::optional<io::SavedCanvas> saved = project.load_canvas(painting.model().texels.n_slots());
+    const std::uint64_t last = strokes.empty() ? 0 : strokes.back().id;
+    if (saved && saved->stroke_id == last) {
+        painting.adopt(std::move(strokes), std::move(saved->canvas));
+        return;
+    }
+    painting.replay(std::move(strokes), console.progress());
+}
+
+nlohmann::json to_json(const mesh::RepairReport& r) {
+    return {{"points_in_file", r.points_in_file},
+            {"polygons_in_file", r.polygons_in_file},
+            {"polygons_triangulated", r.polygons_triangulated},
+            {"vertices_welded", r.vertices_welded},
+            {"unused_vertices_dropped", r.unused_vertices_dropped},
+            {"degenerate_faces_dropped", r.degenerate_faces_dropped},
+            {"duplicate_faces_dropped", r.duplicate_faces_dropped},
+            {"non_manifold_edges_split", r.non_manifold_edges_split},
+            {"non_manifold_vertices_split", r.non_manifold_vertices_split},
+            {"faces_flipped", r.faces_flipped},
+            {"components", r.components},
+            {"holes", r.holes},
+            {"border_edges", r.border_edges},
+            {"closed", r.closed},
+            {"warnings", r.warnings}};
+}
+
+nlohmann::json to_json(const atlas::Atlas& a, const atlas::AtlasReport& r) {
+    nlohmann::json j{{"size", a.size},
+                     {"texel_size_mm", a.texel_size / kMillimetre},
+                     {"gutter", a.gutter},
+                     {"uvs_from_file", a.from_file},
+                     {"charts", r.charts},
+                     {"flips", r.flips},
+                     {"overlapping_texels", r.overlapping_texels},
+                     {"roomless_triangles", r.roomless_triangles},
+                     {"l2_stretch", r.l2_stretch},
+                     {"linf_stretch", r.linf_stretch},
+                     {"angle_distortion", r.angle_distortion},
+                     {"area_distortion", r.area_distortion},
+                     {"utilisation", r.utilisation},
+                     {"seam_length", r.seam_length},
+                     {"smallest_gap", r.smallest_gap}};
+    for (const auto& [phase, seconds] : r.seconds) j["seconds"][phase] = seconds;
+    return j;
+}
+
+nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::Stroke& s) {
+    return {{"id", r.stroke_id},
+            {"label", s.trace.label},
+            {"brush", s.trace.brush},
+            {"ink", s.trace.ink},
+            {"samples", r.samples},
+            {"stamps", r.stamps},
+            {"unconverged", r.unconverged},
+            {"ink_mm3", r.ink_given * ink::kFilmUnit * 1e9},
+            {"touched", r.touched()},
+            {"nearest_mm", r.nearest / kMillimetre}};
+}
+
+double peak_megabytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "atlas/atlas_picture.h"
+#include "cli/commands.h"
+#include "cli/steps.h"
+#include "core/units.h"
+#include "io/export.h"
+#include "io/image.h"
+
+namespace tuft::cli {
+
+int run(const Unwrap& a) {
+    check_extension(a.output, {".obj", ".glb", ".gltf"});
+    check_extension(a.picture, {".png"});
+    check_output(a.output);
+    check_output(a.picture);
+    Console console(a.common.quiet);
+    const stroke::Model model = load_bare(a.model, a.surface.unit, console);
+    const atlas::Unwrapped unwrapped =
+        atlas::unwrap(*model.mesh, model_options(a.surface, console).unwrap);
+    io::export_model(a.output, *model.mesh, unwrapped.atlas, {}, {.unit = a.surface.unit});
+    if (!a.picture.empty()) {
+        const atlas::AtlasPicture picture = atlas::draw_atlas(*model.mesh, unwrapped.atlas);
+        io::write_image(a.picture, io::view_of(static_cast<int>(picture.width), static_cast<int>(picture.height), 3, picture.rgb.data()));
+    }
+    console.clear();
+    const atlas::AtlasReport& r = unwrapped.report;
+    if (a.common.json) {
+        nlohmann::json j{{"model", a.model.string()}, {"wrote", a.output.string()},
+                         {"triangles", model.mesh->n_triangles()},
+                         {"atlas", to_json(unwrapped.atlas, r)}, {"peak_mb", peak_megabytes()}};
+        std::cout << j.dump(2) << '\n';
+        return 0;
+    }
+    fmt::print("{} charts at {} x {}, texel {:.3f} mm, {:.0f} % used{}\n", r.charts, unwrapped.atlas.size,
+               unwrapped.atlas.size, unwrapped.atlas.texel_size / kMillimetre, 100 * r.utilisation,
+               unwrapped.atlas.from_file ? " (the file's own UVs)" : "");
+    fmt::print("stretch L2 {:.4f}, Linf {:.2f}; seams {:.1f} x the diagonal; flips {}, overlapping texels {}, triangles without room {}\n",
+               r.l2_stretch, r.linf_stretch, r.seam_length, r.flips, r.overlapping_texels,
+               r.roomless_triangles);
+    fmt::print("wrote {}\n", a.output.string());
+    return 0;
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "io/packing.h"
+#include "io/project.h"
+
+namespace SQLite {
+class Database;
+}
+
+/// The tables of a project; included by project*.cpp only.
+namespace tuft::io {
+
+inline constexpr std::uint32_t kApplicationId = 0x54554654;  // "TUFT"
+inline constexpr std::int64_t kMaxTriangles = std::int64_t{1} << 28;
+inline constexpr std::int64_t kMaxSamples = std::int64_t{1} << 25;  ///< in one stroke
+
+[[noreturn]] inline void damaged(const std::filesystem::path& path, const std::string& what) {
+    throw Error(path.string(), "the project is damaged: " + what);
+}
+
+/// Stores an array of `count` elements of `size` bytes, made of numbers of
+/// `packing.element` bytes, in the table `arrays`; nothing when it is empty.
+void put_array_bytes(SQLite::Database& db, const char* owner, const char* name, const void* data,
+                     std::size_t count, std::size_t size, const Packing& packing);
+
+/// Whether the array is there; throws when it does not have `count` elements of `size` bytes.
+bool has_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner,
+               const char* name, std::size_t count, std::size_t size);
+void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, const char* owner,
+                     const char* name, void* out, std::size_t count, std::size_t size,
+                     const Packing& packing);
+
+template <class T>
+void put_array(SQLite::Database& db, const char* owner, const char* name,
+               const std::vector<T>& values, const Packing& packing) {
+    put_array_bytes(db, owner, name, values.data(), values.size(), sizeof(T), packing);
+}
+
+/// The stored array, which must have `expected` elements; empty when there is none. Its size
+/// is checked before memory is taken.
+template <class T>
+std::vector<T> get_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner,
+                         const char* name, const Packing& packing, std::size_t expected) {
+    if (!has_array(db, path, owner, name, expected, sizeof(T))) return {};
+    std::vector<T> values(expected);
+    get_array_bytes(db, path, owner, name, values.data(), expected, sizeof(T), packing);
+    return values;
+}
+
+/// Model and atlas (project_model.cpp). `load_model` checks sizes, indices and numbers.
+void store_model(SQLite::Database& db, const ProjectModel& model);
+ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path);
+std::uint64_t hash_of(const mesh::TriangleMesh& mesh);
+
+/// Strokes (project_strokes.cpp). The caller opens the transaction.
+void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                   std::span<const stroke::Stroke> strokes);
+std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path);
+
+}  // namespace tuft::io

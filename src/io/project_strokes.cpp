@@ -1,0 +1,128 @@
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "io/project_db.h"
+
+namespace tuft::io {
+namespace {
+
+constexpr std::size_t kFields = 11;  // per sample
+constexpr Packing kSamples{.element = 8, .lag = 1, .level = 6};
+
+/// All times, then all x, ...: columns of like numbers compress well.
+std::vector<double> columns_of(const std::vector<stroke::TraceSample>& samples) {
+    const std::size_t n = samples.size();
+    std::vector<double> out(kFields * n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const stroke::TraceSample& s = samples[i];
+        const std::array<double, kFields> fields{
+            s.time,     s.position.x, s.position.y, s.position.z, s.pressure,  s.tilt.x,
+            s.tilt.y, s.rotation.w, s.rotation.x, s.rotation.y, s.rotation.z};
+        for (std::size_t f = 0; f < kFields; ++f) out[f * n + i] = fields[f];
+    }
+    return out;
+}
+
+std::vector<stroke::TraceSample> samples_of(const std::vector<double>& columns) {
+    const std::size_t n = columns.size() / kFields;
+    std::vector<stroke::TraceSample> samples(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto field = [&](std::size_t f) { return columns[f * n + i]; };
+        samples[i] = {.time = field(0),
+                      .position = {field(1), field(2), field(3)},
+                      .pressure = field(4),
+                      .tilt = {field(5), field(6)},
+                      .rotation = Quat(field(7), field(8), field(9), field(10))};
+    }
+    return samples;
+}
+
+std::array<double, 9> numbers_of(const stroke::Placement& p) {
+    return {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z};
+}
+
+template <class Range>
+bool finite(const Range& values) {
+    for (const double v : values)
+        if (!std::isfinite(v)) return false;
+    return true;
+}
+
+}  // namespace
+
+void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                   std::span<const stroke::Stroke> strokes) {
+    SQLite::Statement insert(db,
+                             "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, "
+                             "laying, placement, sample_count, samples) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    for (const stroke::Stroke& stroke : strokes) {
+        const stroke::Trace& t = stroke.trace;
+        const std::vector<double> columns = columns_of(t.samples);
+        const std::array<double, 9> placement = numbers_of(t.placement);
+        if (!finite(columns) || !finite(placement))
+            throw Error(path.string(), "stroke " + std::to_string(stroke.id) +
+                                           " has numbers that are not finite and is not stored");
+        const std::vector<char> blob = pack(columns.data(), columns.size(), kSamples);
+        insert.bind(1, static_cast<std::int64_t>(stroke.id));
+        insert.bind(2, t.brush);
+        insert.bind(3, t.ink);
+        insert.bind(4, static_cast<std::int64_t>(t.seed));
+        insert.bind(5, t.label);
+        insert.bind(6, stroke::to_json(stroke.settings));
+        insert.bind(7, stroke.hidden ? 1 : 0);
+        insert.bind(8, t.flat ? 1 : 0);
+        insert.bind(9, t.placement.laying == stroke::Laying::project ? "project" : "wrap");
+        insert.bind(10, placement.data(), static_cast<int>(sizeof placement));
+        insert.bind(11, static_cast<std::int64_t>(t.samples.size()));
+        insert.bind(12, blob.data(), static_cast<int>(blob.size()));
+        insert.exec();
+        insert.reset();
+    }
+}
+
+std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path) {
+    SQLite::Statement select(db,
+                             "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
+                             "sample_count, samples FROM strokes ORDER BY ordinal");
+    std::vector<stroke::Stroke> strokes;
+    while (select.executeStep()) {
+        stroke::Stroke stroke;
+        stroke::Trace& t = stroke.trace;
+        stroke.id = static_cast<std::uint64_t>(select.getColumn(0).getInt64());
+        const std::string what =
+            path.string() + ": the project is damaged: stroke " + std::to_string(stroke.id);
+        t.brush = select.getColumn(1).getString();
+        t.ink = select.getColumn(2).getString();
+        t.seed = static_cast<std::uint64_t>(select.getColumn(3).getInt64());
+        t.label = select.getColumn(4).getString();
+        stroke.settings = stroke::settings_from_json(select.getColumn(5).getString());
+        stroke.hidden = select.getColumn(6).getInt() != 0;
+        t.flat = select.getColumn(7).getInt() != 0;
+        t.placement.laying =
+            select.getColumn(8).getString() == "project" ? stroke::Laying::project : stroke::Laying::wrap;
+        const SQLite::Column placement = select.getColumn(9);
+        std::array<double, 9> p{};
+        if (placement.getBytes() != static_cast<int>(sizeof p)) throw Error(what + " has no valid placement");
+        std::memcpy(p.data(), placement.getBlob(), sizeof p);
+        t.placement.origin = {p[0], p[1], p[2]};
+        t.placement.right = {p[3], p[4], p[5]};
+        t.placement.down = {p[6], p[7], p[8]};
+        const std::int64_t count = select.getColumn(10).getInt64();
+        if (count < 0 || count > kMaxSamples) throw Error(what + " has an impossible number of samples");
+        const SQLite::Column blob = select.getColumn(11);
+        const auto size = static_cast<std::size_t>(blob.getBytes());
+        const std::size_t numbers = kFields * static_cast<std::size_t>(count);
+        check_packed(blob.getBlob(), size, numbers * sizeof(double), what);
+        std::vector<double> columns(numbers);
+        unpack(blob.getBlob(), size, columns.data(), numbers, kSamples, what);
+        if (!finite(columns) || !finite(p)) throw Error(what + " has numbers that are not finite");
+        t.samples = samples_of(columns);
+        strokes.push_back(std::move(stroke));
+    }
+    return strokes;
+}
+
+}  // namespace tuft::io

@@ -1,0 +1,311 @@
+#include "io/project.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "core/random.h"
+#include "io/packing.h"
+#include "sample_model.h"
+
+namespace tuft::io {
+namespace {
+
+using namespace testing;
+
+ProjectModel sample_model() {
+    ProjectModel model;
+    model.source = "bowl.ply";
+    model.unit = "mm";
+    model.mesh = cylinder();
+    model.mesh.vertex_colours.assign(model.mesh.n_vertices(), {10, 20, 30, 255});
+    model.atlas = cylinder_atlas(model.mesh);
+    model.substrate = ink::substrate_toml(ink::load_substrate("porcelain"));
+    return model;
+}
+
+stroke::Stroke sample_stroke(std::uint64_t id, int samples = 50) {
+    stroke::Stroke s;
+    s.id = id;
+    s.trace.flat = id % 2 == 0;
+    s.trace.brush = "goat-medium";
+    s.trace.ink = "carbon";
+    s.trace.seed = 0xfedcba9876543210ULL + id;
+    s.trace.label = "七 \"1\"\n";
+    s.trace.placement.origin = {0.1, -0.0, 1e-300};
+    s.trace.placement.laying = id % 3 == 0 ? stroke::Laying::project : stroke::Laying::wrap;
+    s.settings.spacing = 0.1 + 1.0 / 3;
+    s.settings.lead = false;
+    s.hidden = id % 5 == 0;
+    for (int i = 0; i < samples; ++i) {
+        const auto r = [&](int k) { return uniform(id, 100 * i + k) - 0.5; };
+        s.trace.samples.push_back({.time = 0.01 * i,
+                                   .position = {r(0), r(1), r(2)},
+                                   .pressure = r(3),
+                                   .tilt = {r(4), r(5)},
+                                   .rotation = Quat(r(6), r(7), r(8), r(9))});
+    }
+    return s;
+}
+
+/// Equal to the bit, also the sign of zero.
+void expect_equal(const stroke::Stroke& a, const stroke::Stroke& b) {
+    EXPECT_EQ(a.id, b.id);
+    EXPECT_EQ(a.hidden, b.hidden);
+    EXPECT_EQ(a.settings, b.settings);
+    EXPECT_EQ(a.trace.flat, b.trace.flat);
+    EXPECT_EQ(a.trace.brush, b.trace.brush);
+    EXPECT_EQ(a.trace.ink, b.trace.ink);
+    EXPECT_EQ(a.trace.seed, b.trace.seed);
+    EXPECT_EQ(a.trace.label, b.trace.label);
+    EXPECT_EQ(a.trace.placement.laying, b.trace.placement.laying);
+    EXPECT_EQ(std::memcmp(&a.trace.placement.origin, &b.trace.placement.origin, 9 * sizeof(double)), 0);
+    ASSERT_EQ(a.trace.samples.size(), b.trace.samples.size());
+    for (std::size_t i = 0; i < a.trace.samples.size(); ++i) {
+        const stroke::TraceSample &p = a.trace.samples[i], &q = b.trace.samples[i];
+        EXPECT_EQ(p.time, q.time);
+        EXPECT_EQ(p.position, q.position);
+        EXPECT_EQ(p.pressure, q.pressure);
+        EXPECT_EQ(p.tilt, q.tilt);
+        EXPECT_EQ(p.rotation, q.rotation);
+    }
+}
+
+TEST(Packing, EveryBitComesBack) {
+    for (const std::size_t element : {std::size_t{1}, std::size_t{4}, std::size_t{8}})
+        for (const std::size_t lag : {std::size_t{1}, std::size_t{3}})
+            for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{1000}}) {
+                std::vector<unsigned char> data(count * element), back(count * element);
+                for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<unsigned char>(hash_bits(1, i));
+                const Packing packing{.element = element, .lag = lag};
+                const std::vector<char> blob = pack(data.data(), count, packing);
+                unpack(blob.data(), blob.size(), back.data(), count, packing, "x");
+                EXPECT_EQ(back, data);
+                EXPECT_THROW(unpack(blob.data(), blob.size(), back.data(), count + 1, packing, "x"), Error);
+            }
+}
+
+TEST(Packing, SmoothColumnsShrink) {
+    std::vector<double> times;
+    for (int i = 0; i < 2000; ++i) times.push_back(0.005 * i);
+    const Packing packing{.element = 8};
+    EXPECT_LT(pack(times.data(), times.size(), packing).size(), times.size() * 8 / 2);
+}
+
+TEST(Project, ModelAndAtlasComeBackToTheBit) {
+    const Folder folder("project_model");
+    const ProjectModel model = sample_model();
+    const std::uint64_t hash = Project::create(folder / "a.tuft", model).model_hash();
+    const Project project = Project::open(folder / "a.tuft");
+    EXPECT_EQ(project.model_hash(), hash);
+    EXPECT_EQ(project.format(), kProjectFormat);
+    EXPECT_EQ(project.written_by().substr(0, 5), "tuft ");
+    const ProjectModel back = project.model();
+    EXPECT_EQ(back.source, model.source);
+    EXPECT_EQ(back.unit, model.unit);
+    EXPECT_EQ(back.substrate, model.substrate);
+    EXPECT_EQ(back.mesh.positions, model.mesh.positions);
+    EXPECT_EQ(back.mesh.triangles, model.mesh.triangles);
+    EXPECT_EQ(back.mesh.corner_normals, model.mesh.corner_normals);
+    EXPECT_EQ(back.mesh.neighbours, model.mesh.neighbours);
+    EXPECT_EQ(back.mesh.corner_uvs, model.mesh.corner_uvs);
+    EXPECT_EQ(back.mesh.vertex_colours, model.mesh.vertex_colours);
+    EXPECT_EQ(back.mesh.triangle_groups, model.mesh.triangle_groups);
+    EXPECT_EQ(back.mesh.group_names, model.mesh.group_names);
+    EXPECT_EQ(back.mesh.bounds.lo, model.mesh.bounds.lo);
+    EXPECT_EQ(back.atlas.corner_uvs, model.atlas.corner_uvs);
+    EXPECT_EQ(back.atlas.triangle_chart, model.atlas.triangle_chart);
+    EXPECT_EQ(back.atlas.size, model.atlas.size);
+    EXPECT_EQ(back.atlas.texel_size, model.atlas.texel_size);
+    EXPECT_EQ(folder.n_files(), 1u) << "a project is one file";
+}
+
+TEST(Project, StrokesComeBackToTheBitInOrder) {
+    const Folder folder("project_strokes");
+    std::vector<stroke::Stroke> strokes;
+    for (const std::uint64_t id : {3, 1, 2, 10, 5}) strokes.push_back(sample_stroke(id));
+    strokes.push_back(sample_stroke(11, 0));
+    {
+        Project project = Project::create(folder / "a.tuft", sample_model());
+        project.append(std::span(strokes).first(4));
+        project.append(strokes[4]);
+        project.append(strokes[5]);
+        EXPECT_THROW(project.append(strokes[0]), Error) << "ids are unique";
+    }
+    Project project = Project::open(folder / "a.tuft");
+    ASSERT_EQ(project.n_strokes(), strokes.size());
+    const auto back = project.strokes();
+    for (std::size_t i = 0; i < strokes.size(); ++i) expect_equal(back[i], strokes[i]);
+    project.set_hidden(2, true);
+    project.remove(1);
+    EXPECT_THROW(project.remove(1), Error);
+    EXPECT_THROW(project.set_hidden(99, true), Error);
+    const auto changed = project.strokes();
+    ASSERT_EQ(changed.size(), strokes.size() - 1);
+    EXPECT_TRUE(changed[1].hidden);
+    stroke::Stroke bad = sample_stroke(50);
+    bad.trace.samples[3].position.y = NAN;
+    EXPECT_THROW(project.append(bad), Error);
+    EXPECT_EQ(project.n_strokes(), changed.size());
+}
+
+TEST(Project, PresetsAreReplacedByName) {
+    const Folder folder("project_presets");
+    Project project = Project::create(folder / "a.tuft", sample_model());
+    project.put_brush({"wolf", "a = 1"});
+    project.put_brush({"goat", "b = 2"});
+    project.put_brush({"wolf", "a = 3"});
+    project.put_ink({"carbon", "c = 4"});
+    EXPECT_EQ(project.brushes(), (std::vector<PresetText>{{"goat", "b = 2"}, {"wolf", "a = 3"}}));
+    EXPECT_EQ(project.inks(), (std::vector<PresetText>{{"carbon", "c = 4"}}));
+    project.put_substrate("x = 1");
+    EXPECT_EQ(project.model().substrate, "x = 1");
+}
+
+TEST(Project, PaintedTilesComeBackToTheBit) {
+    const Folder folder("project_tiles");
+    ink::Canvas canvas(500);
+    for (const char* name : {"carbon", "cinnabar"}) canvas.add_pigment(ink::load_ink(name).parts[0].pigment);
+    for (std::uint32_t slot = 7; slot < 400; slot += 3)
+        for (int t = 0; t < atlas::kTileTexels; ++t)
+            canvas.touch(slot, slot % 2)[t] = static_cast<float>(uniform(slot, t));
+    {
+        Project project = Project::create(folder / "a.tuft", sample_model());
+        EXPECT_FALSE(project.load_canvas(500)) << "nothing stored yet";
+        project.save_canvas(ink::Canvas(500), 1);
+        project.save_canvas(canvas, 42);
+    }
+    const Project project = Project::open(folder / "a.tuft");
+    const auto saved = project.load_canvas(500);
+    ASSERT_TRUE(saved);
+    EXPECT_EQ(saved->stroke_id, 42u);
+    EXPECT_TRUE(saved->canvas.same_contents(canvas));
+    EXPECT_EQ(saved->canvas.pigments()[1].k, canvas.pigments()[1].k);
+    EXPECT_FALSE(project.load_canvas(501)) << "another texel map";
+}
+
+TEST(Project, AKillLosesAtMostTheStrokeInHand) {
+    const Folder folder("project_kill");
+    const std::vector<stroke::Stroke> strokes{sample_stroke(1, 400), sample_stroke(2, 400)};
+    for (int round = 0; round < 5; ++round) {
+        Project::create(folder / "a.tuft", sample_model());
+        int pipe_ends[2];
+        ASSERT_EQ(::pipe(pipe_ends), 0);
+        const pid_t child = ::fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) {
+            // Only what has been committed is reported; no clean-up ever runs here.
+            Project project = Project::open(folder / "a.tuft");
+            for (std::uint64_t id = 1;; ++id) {
+                stroke::Stroke stroke = strokes[id % 2];
+                stroke.id = id;
+                project.append(stroke);
+                if (::write(pipe_ends[1], &id, sizeof id) != sizeof id) _exit(1);
+            }
+        }
+        std::uint64_t finished = 0;
+        for (int i = 0; i < 5 + 3 * round; ++i) ASSERT_EQ(::read(pipe_ends[0], &finished, sizeof finished), 8);
+        ASSERT_EQ(::kill(child, SIGKILL), 0);
+        ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+        ::close(pipe_ends[1]);
+        while (::read(pipe_ends[0], &finished, sizeof finished) == sizeof finished) {}
+        ::close(pipe_ends[0]);
+        {
+            Project project = Project::open(folder / "a.tuft");
+            const auto back = project.strokes();
+            ASSERT_GE(back.size(), finished);
+            ASSERT_LE(back.size(), finished + 1);
+            for (std::size_t i = 0; i < back.size(); ++i) {
+                stroke::Stroke wanted = strokes[(i + 1) % 2];
+                wanted.id = i + 1;
+                expect_equal(back[i], wanted);
+            }
+            project.append(sample_stroke(100000));
+        }
+        EXPECT_EQ(folder.n_files(), 1u) << "one file again after the recovery";
+    }
+}
+
+TEST(Project, MakingAProjectAnewIgnoresTheOldJournal) {
+    const Folder folder("project_anew");
+    Project::create(folder / "a.tuft", sample_model()).append(sample_stroke(1));
+    const std::string junk(5000, 'j');
+    write_file(folder / "a.tuft-journal", junk.data(), junk.size());
+    Project::create(folder / "a.tuft", sample_model());
+    EXPECT_EQ(Project::open(folder / "a.tuft").n_strokes(), 0u);
+    EXPECT_EQ(folder.n_files(), 1u);
+}
+
+std::string fault(const std::filesystem::path& path) {
+    try {
+        Project project = Project::open(path);
+        project.model();
+        project.strokes();
+        project.inks();
+        project.load_canvas(500);
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+TEST(Project, ForeignFilesAreNamedAsSuch) {
+    const Folder folder("project_foreign");
+    EXPECT_NE(fault(folder / "none.tuft").find("no such file"), std::string::npos);
+    const std::string text = "just some text";
+    write_file(folder / "t.tuft", text.data(), text.size());
+    EXPECT_NE(fault(folder / "t.tuft").find("is not a tuft project"), std::string::npos);
+    EXPECT_FALSE(is_project(folder / "t.tuft"));
+    write_file(folder / "empty.tuft", text.data(), 0);
+    EXPECT_NE(fault(folder / "empty.tuft").find("is not a tuft project"), std::string::npos);
+
+    Project::create(folder / "a.tuft", sample_model());
+    EXPECT_TRUE(is_project(folder / "a.tuft"));
+    std::vector<char> bytes = read_file(folder / "a.tuft");
+    std::vector<char> other = bytes;
+    std::memcpy(&other[68], "GPKG", 4);
+    write_file(folder / "o.tuft", other.data(), other.size());
+    EXPECT_NE(fault(folder / "o.tuft").find("not a tuft project"), std::string::npos);
+    bytes[63] = 9;  // user_version
+    write_file(folder / "n.tuft", bytes.data(), bytes.size());
+    EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to 1)"), std::string::npos);
+    EXPECT_THROW(Project::create(folder / "no/where/a.tuft", sample_model()), Error);
+}
+
+TEST(Project, DamagedFilesAreErrorsNeverCrashes) {
+    const Folder folder("project_damaged");
+    {
+        Project project = Project::create(folder / "a.tuft", sample_model());
+        for (std::uint64_t id = 1; id < 6; ++id) project.append(sample_stroke(id, 200));
+        ink::Canvas canvas(500);
+        canvas.add_pigment(ink::load_ink("carbon").parts[0].pigment);
+        for (std::uint32_t slot = 0; slot < 20; ++slot) canvas.touch(slot, 0).fill(0.5f);
+        project.save_canvas(canvas, 5);
+    }
+    const std::vector<char> good = read_file(folder / "a.tuft");
+    EXPECT_EQ(fault(folder / "a.tuft"), "");
+    for (const double part : {0.02, 0.3, 0.7, 0.99}) {
+        write_file(folder / "cut.tuft", good.data(), static_cast<std::size_t>(part * good.size()));
+        EXPECT_NE(fault(folder / "cut.tuft"), "") << part;
+    }
+    int refused = 0;
+    for (int i = 0; i < 120; ++i) {
+        std::vector<char> bytes = good;
+        Random random(i);
+        for (int k = 0; k < 1 + i % 20; ++k) {
+            const std::size_t at = 100 + static_cast<std::size_t>(random.uniform() * (bytes.size() - 100));
+            bytes[at] = static_cast<char>(random.bits());
+        }
+        write_file(folder / "bad.tuft", bytes.data(), bytes.size());
+        refused += fault(folder / "bad.tuft") != "";
+    }
+    EXPECT_GT(refused, 10) << "some hits fall on text, unused space or bits nobody checks";
+}
+
+}  // namespace
+}  // namespace tuft::io
