@@ -34,7 +34,7 @@ double quantile(std::vector<double> values, double q) {
     return values.empty() ? 0 : values[i];
 }
 
-// A sphere of 50 mm with rings of equal height; about 2 n² triangles.
+// A sphere of 50 mm with rings of equal height; 4 n² triangles.
 mesh::PolygonSoup sphere(int n) {
     mesh::PolygonSoup soup;
     const int rings = n, columns = 2 * n;
@@ -203,8 +203,8 @@ int run(const Bench& a) {
     if (!a.model.empty()) {
         add(a.model.stem().string(), io::read_model(a.model));
     } else {
-        add("sphere-100k", sphere(224));
-        if (!a.quick) add("sphere-1M", sphere(708));
+        add("sphere-100k", sphere(158));
+        if (!a.quick) add("sphere-1M", sphere(500));
     }
 
     nlohmann::json j;

@@ -19,8 +19,14 @@ int run(const Unwrap& a) {
     check_output(a.picture);
     Console console(a.common.quiet);
     const stroke::Model model = load_bare(a.model, a.surface.unit, console);
-    const atlas::Unwrapped unwrapped =
-        atlas::unwrap(*model.mesh, model_options(a.surface, console).unwrap);
+    atlas::UnwrapOptions options = model_options(a.surface, console).unwrap;
+    options.progress = console.progress();
+    atlas::Unwrapped unwrapped;
+    try {
+        unwrapped = atlas::unwrap(*model.mesh, options);
+    } catch (const Error& error) {
+        throw Error(a.model.string(), error.what());
+    }
     io::export_model(a.output, *model.mesh, unwrapped.atlas, {}, {.unit = a.surface.unit});
     if (!a.picture.empty()) {
         const atlas::AtlasPicture picture = atlas::draw_atlas(*model.mesh, unwrapped.atlas);

@@ -1,0 +1,126 @@
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace tuft::test {
+namespace {
+
+using nlohmann::json;
+
+class Commands : public Program {};
+
+TEST_F(Commands, PaintLeavesProjectModelAndPicture) {
+    write("s.inkml", stroke_file());
+    const Ran ran = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 512 --project " +
+                         path("p.tuft") + " --export " + path("m.glb") + " --preview " + path("v.png") +
+                         " --size 160x90 --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const json j = json::parse(ran.out);
+    EXPECT_EQ(j["strokes"].size(), 1u);
+    EXPECT_TRUE(j["strokes"][0]["touched"]);
+    EXPECT_GT(j["stamps"], 10);
+    EXPECT_EQ(read(path("m.glb")).substr(0, 4), "glTF");
+    EXPECT_EQ(read(path("v.png")).substr(1, 3), "PNG");
+    EXPECT_TRUE(ran.err.empty()) << ran.err;  // no progress where there is no terminal
+}
+
+TEST_F(Commands, ReplayMakesTheSameTexelsForAnyThreadCount) {
+    write("s.inkml", stroke_file());
+    const Ran painted = tuft("paint " + model("sphere.ply") + " --strokes " + path("s.inkml") +
+                             " --place 0,0,100 --atlas-size 1024 --project " + path("p.tuft") + " --json --threads 1");
+    ASSERT_EQ(painted.status, 0) << painted.err;
+    const std::string hash = json::parse(painted.out)["canvas_hash"];
+    for (const char* threads : {"1", "2", "8"}) {
+        const Ran replayed = tuft("replay " + path("p.tuft") + " --json --threads " + threads);
+        ASSERT_EQ(replayed.status, 0) << replayed.err;
+        EXPECT_EQ(json::parse(replayed.out)["canvas_hash"], hash) << threads << " threads";
+    }
+}
+
+TEST_F(Commands, ReplayTakesAnotherSizeInkAndModel) {
+    write("s.inkml", stroke_file());
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
+    const Ran larger = tuft("replay " + path("p.tuft") + " --atlas-size 512 --ink cinnabar --project " + path("q.tuft") + " --json");
+    ASSERT_EQ(larger.status, 0) << larger.err;
+    EXPECT_EQ(json::parse(larger.out)["atlas"]["size"], 512);
+    const Ran inspected = tuft("inspect " + path("q.tuft") + " --json");
+    ASSERT_EQ(inspected.status, 0) << inspected.err;
+    EXPECT_EQ(json::parse(inspected.out)["strokes"][0]["ink"], "cinnabar");
+    const Ran revised = tuft("replay " + path("p.tuft") + " --model " + model("thin_plate.ply") + " --json");
+    ASSERT_EQ(revised.status, 0) << revised.err;
+    EXPECT_EQ(json::parse(revised.out)["missed"], 0);
+}
+
+TEST_F(Commands, ExportWritesModelAndMaps) {
+    write("s.inkml", stroke_file());
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
+    for (const char* name : {"a.glb", "a.gltf", "a.obj", "a.png", "a.exr"}) {
+        const Ran ran = tuft("export " + path("p.tuft") + " -o " + path(name));
+        EXPECT_EQ(ran.status, 0) << name << ": " << ran.err;
+        EXPECT_TRUE(std::filesystem::exists(path(name))) << name;
+    }
+}
+
+TEST_F(Commands, UnwrapTellsItsFigures) {
+    const Ran ran = tuft("unwrap " + model("torus.ply") + " -o " + path("t.obj") + " --atlas-size 1024 --picture " + path("t.png") + " --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const json j = json::parse(ran.out)["atlas"];
+    EXPECT_EQ(j["flips"], 0);
+    EXPECT_EQ(j["overlapping_texels"], 0);
+    EXPECT_EQ(j["roomless_triangles"], 0);
+    const Ran kept = tuft("unwrap " + path("t.obj") + " -o " + path("u.obj") + " --keep-uv --atlas-size 1024 --json");
+    ASSERT_EQ(kept.status, 0) << kept.err;
+    EXPECT_TRUE(json::parse(kept.out)["atlas"]["uvs_from_file"]);
+}
+
+TEST_F(Commands, BrushPrintsItsTableAndListsItself) {
+    const Ran list = tuft("brush --json");
+    ASSERT_EQ(list.status, 0) << list.err;
+    EXPECT_GE(json::parse(list.out)["brushes"].size(), 9u);
+    const Ran table = tuft("brush wolf --json --picture " + path("b.png") + " --sweep-depth " + path("b.csv"));
+    ASSERT_EQ(table.status, 0) << table.err;
+    double last = -1;
+    for (const json& row : json::parse(table.out)["rows"]) {
+        EXPECT_GT(row["moment_mNm"], last);  // the table rises
+        last = row["moment_mNm"];
+    }
+    EXPECT_TRUE(read(path("b.csv")).starts_with("z_mm,width_mm,drag_mm,offset_mm\n"));
+}
+
+TEST_F(Commands, RenderDrawsATurntable) {
+    const Ran ran = tuft("render " + model("torus.ply") + " -o " + path("r.png") + " --size 64x48 --turntable 3");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    for (const char* name : {"r-0.png", "r-1.png", "r-2.png"}) EXPECT_TRUE(std::filesystem::exists(path(name)));
+}
+
+TEST_F(Commands, EveryFinishedStrokeSurvivesAKill) {
+    std::string many = stroke_file();
+    const std::size_t at = many.find("<trace>"), end = many.find("</trace>") + 8;
+    const std::string trace = many.substr(at, end - at);
+    std::string traces;
+    for (int i = 0; i < 400; ++i) traces += trace + "\n";
+    many.replace(at, end - at, traces);
+    write("many.inkml", many);
+    // Kill it in the middle: when the project has grown by some strokes, however long that takes.
+    const std::string project = path("p.tuft");
+    const std::string script =
+        "export TUFT_DATA='" TUFT_SOURCE "'\n'" TUFT_PROGRAM "' paint '" + model("sheet.ply") + "' --strokes '" +
+        path("many.inkml") + "' --atlas-size 1024 --threads 1 --project '" + project + "' >/dev/null 2>&1 &\n" +
+        "pid=$!; first=0\nwhile kill -0 $pid 2>/dev/null; do\n  size=$(stat -c %s '" + project +
+        "' 2>/dev/null || echo 0)\n  [ $first -eq 0 ] && first=$size\n"
+        "  [ $first -gt 0 ] && [ $size -gt $((first + 20000)) ] && break\n  sleep 0.01\ndone\n"
+        "kill -KILL $pid 2>/dev/null; wait $pid 2>/dev/null; true\n";
+    ASSERT_EQ(std::system(("bash '" + write("kill.sh", script) + "'").c_str()), 0);
+    const Ran inspected = tuft("inspect " + path("p.tuft") + " --json");
+    ASSERT_EQ(inspected.status, 0) << inspected.err;
+    const json strokes = json::parse(inspected.out)["strokes"];
+    EXPECT_GT(strokes.size(), 0u);
+    for (std::size_t i = 0; i < strokes.size(); ++i) {
+        EXPECT_EQ(strokes[i]["id"], i + 1);
+        EXPECT_EQ(strokes[i]["samples"], 51);
+    }
+    EXPECT_EQ(tuft("replay " + path("p.tuft")).status, 0);
+}
+
+}  // namespace
+}  // namespace tuft::test
