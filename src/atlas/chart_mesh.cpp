@@ -91,7 +91,7 @@ std::vector<std::vector<std::uint32_t>> connected_charts(std::span<const std::ui
     return charts;
 }
 
-FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv) {
+FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv, double gap) {
     FlatCheck check;
     for (const Vec2& p : uv)
         if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
@@ -129,68 +129,102 @@ FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv) {
         above += a3;
         if (above > 1e-3 * area) break;
     }
-    if (check.flips == 0 && chart.disk) check.crosses = crosses_itself(chart.loop, uv);
+    if (check.flips == 0 && chart.disk) check.crosses = crosses_itself(chart.loop, uv, gap);
     return check;
 }
 
-bool crosses_itself(std::span<const std::uint32_t> loop, std::span<const Vec2> uv) {
+namespace {
+
+double point_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+    const Vec2 d = b - a;
+    const double l = glm::dot(d, d);
+    const double t = l > 0 ? std::clamp(glm::dot(p - a, d) / l, 0.0, 1.0) : 0;
+    return glm::length(p - a - t * d);
+}
+
+/// Edges of a closed polygon by the square cells within `reach` of them.
+struct EdgeGrid {
+    std::vector<std::uint32_t> start, items;
+
+    EdgeGrid(const std::vector<Vec2>& p, const Vec2& lo, const Vec2& hi, double cell, double reach) {
+        const std::size_t n = p.size();
+        const auto columns = static_cast<std::size_t>((hi.x - lo.x) / cell) + 1;
+        const auto rows = static_cast<std::size_t>((hi.y - lo.y) / cell) + 1;
+        const auto index = [&](double x, std::size_t count) {
+            return std::min(static_cast<std::size_t>(std::max(0.0, x / cell)), count - 1);
+        };
+        const auto for_cells = [&](std::size_t i, auto&& visit) {
+            const Vec2 a = p[i] - lo, b = p[(i + 1) % n] - lo;
+            const std::size_t y0 = index(std::min(a.y, b.y) - reach, rows);
+            const std::size_t y1 = index(std::max(a.y, b.y) + reach, rows);
+            for (std::size_t y = y0; y <= y1; ++y) {
+                double xa = std::min(a.x, b.x), xb = std::max(a.x, b.x);
+                if (std::abs(b.y - a.y) > cell) {  // the part of the edge that nears this row
+                    const double slope = (b.x - a.x) / (b.y - a.y);
+                    const double y_lo = static_cast<double>(y) * cell - reach;
+                    const double x0 = a.x + slope * (y_lo - a.y);
+                    const double x1 = x0 + slope * (cell + 2 * reach);
+                    xa = std::max(xa, std::min(x0, x1) - 1e-6 * cell);
+                    xb = std::min(xb, std::max(x0, x1) + 1e-6 * cell);
+                }
+                const std::size_t x1 = index(xb + reach, columns);
+                for (std::size_t x = index(xa - reach, columns); x <= x1; ++x)
+                    visit(y * columns + x);
+            }
+        };
+        start.assign(columns * rows + 1, 0);
+        for (std::size_t i = 0; i < n; ++i) for_cells(i, [&](std::size_t c) { ++start[c + 1]; });
+        for (std::size_t c = 0; c + 1 < start.size(); ++c) start[c + 1] += start[c];
+        std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
+        items.resize(start.back());
+        for (std::size_t i = 0; i < n; ++i)
+            for_cells(i, [&](std::size_t c) { items[fill[c]++] = static_cast<std::uint32_t>(i); });
+    }
+};
+
+}  // namespace
+
+bool crosses_itself(std::span<const std::uint32_t> loop, std::span<const Vec2> uv, double gap) {
     const std::size_t n = loop.size();
     if (n < 4) return false;
     Vec2 lo(std::numeric_limits<double>::infinity()), hi = -lo;
-    double length = 0;
+    std::vector<Vec2> p(n);
+    std::vector<double> along(n + 1, 0);
     for (std::size_t i = 0; i < n; ++i) {
-        lo = glm::min(lo, uv[loop[i]]);
-        hi = glm::max(hi, uv[loop[i]]);
-        length += glm::length(uv[loop[(i + 1) % n]] - uv[loop[i]]);
+        p[i] = uv[loop[i]];
+        lo = glm::min(lo, p[i]);
+        hi = glm::max(hi, p[i]);
+        along[i + 1] = along[i] + glm::length(uv[loop[(i + 1) % n]] - p[i]);
     }
     // Slits of flat surfaces touch up to rounding: a crossing must be deeper than this.
-    const double touch = 1e-9 * glm::length(hi - lo);
-    const double cell =
-        std::max({length / static_cast<double>(n), glm::length(hi - lo) / 2048, 1e-300});
-    const auto columns = static_cast<std::size_t>((hi.x - lo.x) / cell) + 1;
-    const auto rows = static_cast<std::size_t>((hi.y - lo.y) / cell) + 1;
+    const double size = glm::length(hi - lo);
+    const double touch = 1e-9 * size;
+    const double cell = std::max({along[n] / static_cast<double>(n), size / 2048, 2 * gap, 1e-300});
+    const EdgeGrid grid(p, lo, hi, cell, 0.5 * gap);
 
-    const auto for_cells = [&](std::size_t i, auto&& visit) {
-        const Vec2 a = uv[loop[i]], b = uv[loop[(i + 1) % n]];
-        const auto y0 = static_cast<std::size_t>((std::min(a.y, b.y) - lo.y) / cell);
-        const auto y1 = static_cast<std::size_t>((std::max(a.y, b.y) - lo.y) / cell);
-        for (std::size_t y = y0; y <= std::min(y1, rows - 1); ++y) {
-            double xa = std::min(a.x, b.x), xb = std::max(a.x, b.x);
-            if (y1 > y0) {  // the part of the segment that lies in this row, widened by rounding
-                const double slope = (b.x - a.x) / (b.y - a.y);
-                const double ya = lo.y + static_cast<double>(y) * cell;
-                const double x0 = a.x + slope * (ya - a.y), x1 = x0 + slope * cell;
-                xa = std::max(xa, std::min(x0, x1) - 1e-6 * cell);
-                xb = std::min(xb, std::max(x0, x1) + 1e-6 * cell);
-            }
-            const auto c0 = static_cast<std::size_t>(std::max(0.0, (xa - lo.x) / cell));
-            const auto c1 = static_cast<std::size_t>(std::max(0.0, (xb - lo.x) / cell));
-            for (std::size_t x = c0; x <= std::min(c1, columns - 1); ++x) visit(y * columns + x);
-        }
+    const auto height = [](const Vec2& o, const Vec2& d, const Vec2& q) {
+        return d.x * (q.y - o.y) - d.y * (q.x - o.x);
     };
-    std::vector<std::uint32_t> start(columns * rows + 1, 0);
-    for (std::size_t i = 0; i < n; ++i) for_cells(i, [&](std::size_t c) { ++start[c + 1]; });
-    for (std::size_t c = 0; c + 1 < start.size(); ++c) start[c + 1] += start[c];
-    std::vector<std::uint32_t> fill(start.begin(), start.end() - 1), items(start.back());
-    for (std::size_t i = 0; i < n; ++i)
-        for_cells(i, [&](std::size_t c) { items[fill[c]++] = static_cast<std::uint32_t>(i); });
-
-    const auto height = [](const Vec2& o, const Vec2& along, const Vec2& p) {
-        return along.x * (p.y - o.y) - along.y * (p.x - o.x);
-    };
-    const auto cross = [&](std::size_t i, std::size_t j) {
-        const Vec2 a = uv[loop[i]], b = uv[loop[(i + 1) % n]];
-        const Vec2 c = uv[loop[j]], d = uv[loop[(j + 1) % n]];
+    const auto meet = [&](std::size_t i, std::size_t j) {
+        const Vec2 a = p[i], b = p[(i + 1) % n], c = p[j], d = p[(j + 1) % n];
         const double lab = touch * glm::length(b - a), lcd = touch * glm::length(d - c);
         const double c1 = height(a, b - a, c), c2 = height(a, b - a, d);
-        if (!((c1 > lab && c2 < -lab) || (c1 < -lab && c2 > lab))) return false;
         const double a1 = height(c, d - c, a), a2 = height(c, d - c, b);
-        return (a1 > lcd && a2 < -lcd) || (a1 < -lcd && a2 > lcd);
+        if (((c1 > lab && c2 < -lab) || (c1 < -lab && c2 > lab)) &&
+            ((a1 > lcd && a2 < -lcd) || (a1 < -lcd && a2 > lcd)))
+            return true;
+        if (!(gap > 0)) return false;
+        const double apart = std::abs(along[i] - along[j]);
+        if (std::min(apart, along[n] - apart) < 16 * gap) return false;
+        // The chart lies left of its border: only what is near on the right is too near.
+        if (height(a, b - a, 0.5 * (c + d)) > 0 || height(c, d - c, 0.5 * (a + b)) > 0) return false;
+        return std::min(std::min(point_segment(a, c, d), point_segment(b, c, d)),
+                        std::min(point_segment(c, a, b), point_segment(d, a, b))) < gap;
     };
-    for (std::size_t c = 0; c + 1 < start.size(); ++c)
-        for (std::uint32_t x = start[c]; x < start[c + 1]; ++x)
-            for (std::uint32_t y = x + 1; y < start[c + 1]; ++y)
-                if (items[x] != items[y] && cross(items[x], items[y])) return true;
+    for (std::size_t c = 0; c + 1 < grid.start.size(); ++c)
+        for (std::uint32_t x = grid.start[c]; x < grid.start[c + 1]; ++x)
+            for (std::uint32_t y = x + 1; y < grid.start[c + 1]; ++y)
+                if (grid.items[x] != grid.items[y] && meet(grid.items[x], grid.items[y])) return true;
     return false;
 }
 

@@ -5,6 +5,7 @@
 
 #include "atlas/flatten.h"
 #include "atlas/seam_graph.h"
+#include "atlas/straighten.h"
 #include "core/parallel.h"
 
 namespace tuft::atlas {
@@ -112,7 +113,7 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
                     flat[i].uv = flatten(flat[i].mesh);
                     accepted[i] = flat[i].mesh.faces.size() == 1 ||
                                   (!flat[i].uv.empty() &&
-                                   good(check_flat(flat[i].mesh, flat[i].uv), options));
+                                   good(check_flat(flat[i].mesh, flat[i].uv, options.gap), options));
                 }
             });
             for (std::size_t i = 0; i < flat.size(); ++i) {
@@ -145,7 +146,9 @@ CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& opti
         const Patch patch = make_patch(mesh, cut.twin, all, cut.unit);
         SeamGraph graph(patch, {}, 0);
         graph.glue_developable({}, progress);
-        cut_along(cut, patch, graph.seams());
+        std::vector<std::uint8_t> seam = graph.seams();
+        straighten_seams(patch, seam);
+        cut_along(cut, patch, seam);
     }
     std::vector<Piece> pieces;
     for (Triangles& t : connected_charts(cut.glued)) pieces.push_back({std::move(t), 0});

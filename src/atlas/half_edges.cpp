@@ -1,6 +1,7 @@
 #include "atlas/half_edges.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tuft::atlas {
 
@@ -74,6 +75,18 @@ Patch make_patch(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> 
     }
     patch.triangles = std::move(triangles);
     return patch;
+}
+
+std::vector<float> vertex_angles(const Patch& patch) {
+    std::vector<float> angle(patch.n_vertices, 0);
+    for (std::uint32_t h = 0; h < patch.vertex.size(); ++h) {
+        const double a = patch.length[h], b = patch.length[prev_half(h)];
+        const double c = patch.length[next_half(h)];
+        if (!(a > 0) || !(b > 0)) continue;
+        angle[patch.vertex[h]] += static_cast<float>(
+            std::acos(std::clamp((a * a + b * b - c * c) / (2 * a * b), -1.0, 1.0)));
+    }
+    return angle;
 }
 
 }  // namespace tuft::atlas

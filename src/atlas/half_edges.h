@@ -36,4 +36,11 @@ struct Patch {
 Patch make_patch(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> twin,
                  std::vector<std::uint32_t> triangles, double unit);
 
+/// Sum of the corner angles at each vertex, radians. [n_vertices]
+std::vector<float> vertex_angles(const Patch& patch);
+
+/// A vertex whose angles miss (or exceed) a full turn by more than this is laid flat
+/// only with a seam that ends there, radians.
+inline constexpr double kSlitDefect = 1.0;
+
 }  // namespace tuft::atlas

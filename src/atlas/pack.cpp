@@ -34,25 +34,6 @@ double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
     return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
 }
 
-std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-    std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
-        return a.x != b.x ? a.x < b.x : a.y < b.y;
-    });
-    std::vector<Vec2> hull(2 * points.size());
-    std::size_t k = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        while (k >= 2 && cross(hull[k - 2], hull[k - 1], points[i]) <= 0) --k;
-        hull[k++] = points[i];
-    }
-    const std::size_t lower = k + 1;
-    for (std::size_t i = points.size() - 1; i-- > 0;) {
-        while (k >= lower && cross(hull[k - 2], hull[k - 1], points[i]) <= 0) --k;
-        hull[k++] = points[i];
-    }
-    hull.resize(k > 1 ? k - 1 : k);
-    return hull;
-}
-
 /// A chart's hull and how it lies in its smallest rectangle.
 struct Shape {
     const std::vector<Vec2>* border = nullptr;
@@ -410,6 +391,25 @@ class Packer {
 };
 
 }  // namespace
+
+std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
+    std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
+        return a.x != b.x ? a.x < b.x : a.y < b.y;
+    });
+    std::vector<Vec2> hull(2 * points.size());
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        while (k >= 2 && cross(hull[k - 2], hull[k - 1], points[i]) <= 0) --k;
+        hull[k++] = points[i];
+    }
+    const std::size_t lower = k + 1;
+    for (std::size_t i = points.size() - 1; i-- > 0;) {
+        while (k >= lower && cross(hull[k - 2], hull[k - 1], points[i]) <= 0) --k;
+        hull[k++] = points[i];
+    }
+    hull.resize(k > 1 ? k - 1 : k);
+    return hull;
+}
 
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options) {
     Packing packing;

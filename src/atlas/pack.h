@@ -36,4 +36,7 @@ struct Packing {
 /// between charts are at least `gutter` texels, exactly.
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options);
 
+/// Corners of the convex hull, counter-clockwise.
+std::vector<Vec2> convex_hull(std::vector<Vec2> points);
+
 }  // namespace tuft::atlas

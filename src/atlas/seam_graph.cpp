@@ -13,8 +13,6 @@ namespace tuft::atlas {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// A vertex whose angles miss (or exceed) a full turn by more than this keeps its slit, radians.
-constexpr double kSlitDefect = 1.0;
 // An edge whose triangle is flatter than this part of the edge has no angle worth keeping.
 constexpr double kFlatTriangle = 1e-3;
 constexpr double kTie = 0.02;
@@ -65,12 +63,6 @@ double dihedral(const Patch& patch, std::uint32_t h) {
         static_cast<double>(glm::dot(patch.normal[h / 3], patch.normal[g / 3])), -1.0, 1.0));
 }
 
-double corner_angle(const Patch& patch, std::uint32_t h) {
-    const double a = patch.length[h], b = patch.length[prev_half(h)], c = patch.length[next_half(h)];
-    if (!(a > 0) || !(b > 0)) return 0;
-    return std::acos(std::clamp((a * a + b * b - c * c) / (2 * a * b), -1.0, 1.0));
-}
-
 }  // namespace
 
 void NormalMoments::add(const NormalMoments& m) {
@@ -116,18 +108,17 @@ SeamGraph::SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam, int
 
     degree_.assign(patch.n_vertices, 0);
     vertex_half_.assign(patch.n_vertices, kNone);
-    std::vector<float> angle(patch.n_vertices, 0);
     stays_.assign(patch.n_vertices, 0);
     for (std::uint32_t h = 0; h < 3 * n; ++h) {
         const std::uint32_t v = patch.vertex[h];
         vertex_half_[v] = h;
-        angle[v] += static_cast<float>(corner_angle(patch, h));
         if (patch.twin[h] != kNone) continue;
         for (const std::uint32_t w : {v, patch.vertex[next_half(h)]}) {
             stays_[w] = 1;
             ++degree_[w];
         }
     }
+    const std::vector<float> angle = vertex_angles(patch);
     for (std::uint32_t v = 0; v < patch.n_vertices; ++v)
         if (std::abs(angle[v] - 2 * std::numbers::pi) > kSlitDefect) stays_[v] = 1;
 
@@ -174,12 +165,12 @@ bool SeamGraph::is_closed(std::uint32_t chain) const {
     return ends_[chain].a == ends_[chain].b && degree_[ends_[chain].a] <= 2;
 }
 
-int SeamGraph::seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 2>& edges) const {
+int SeamGraph::seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>& edges) const {
     int found = 0;
     const auto take = [&](std::uint32_t h) {
         const std::uint32_t e = edge_of_[h];
         if (e == kNone || !seam_[e]) return;
-        if (found < 2) edges[found] = e;
+        if (found < 3) edges[found] = e;
         ++found;
     };
     const std::uint32_t start = vertex_half_[vertex];
@@ -216,7 +207,7 @@ void SeamGraph::join(std::uint32_t a, std::uint32_t b, std::uint32_t vertex) {
 /// Joins two chains that meet at a vertex and glues slits that end there.
 void SeamGraph::tidy(std::uint32_t vertex, std::vector<std::uint32_t>& changed) {
     while (!stays_[vertex]) {
-        std::array<std::uint32_t, 2> edges{};
+        std::array<std::uint32_t, 3> edges{};
         if (degree_[vertex] == 0 || degree_[vertex] > 2) return;
         if (seam_edges_at(vertex, edges) != static_cast<int>(degree_[vertex])) return;
         const std::uint32_t a = chain_of(edges[0]);
@@ -349,10 +340,24 @@ std::vector<SeamGraph::Chain> SeamGraph::chains() const {
     return chains;
 }
 
-std::vector<std::uint32_t> SeamGraph::chain_half_edges(std::uint32_t chain) const {
+std::vector<std::uint32_t> SeamGraph::half_edges(std::uint32_t chain) const {
     std::vector<std::uint32_t> halves;
     for (std::uint32_t e = chain_of(chain); e != kNone; e = next_[e]) halves.push_back(half_[e]);
     return halves;
+}
+
+std::vector<std::uint32_t> SeamGraph::glued_with(std::uint32_t chain) const {
+    const std::uint32_t c = chain_of(chain), v = ends_[c].a;
+    if (v != ends_[c].b || stays_[v] || degree_[v] != 3) return {};
+    std::array<std::uint32_t, 3> edges{};
+    if (seam_edges_at(v, edges) != 3) return {};
+    for (const std::uint32_t e : edges) {
+        const std::uint32_t slit = chain_of(e);
+        if (slit == c) continue;
+        const std::uint32_t far = ends_[slit].a == v ? ends_[slit].b : ends_[slit].a;
+        if (far != v && degree_[far] >= 2) return half_edges(slit);
+    }
+    return {};
 }
 
 std::vector<std::uint8_t> SeamGraph::seams() const {

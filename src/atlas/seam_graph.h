@@ -51,11 +51,14 @@ class SeamGraph {
     /// Glues in the order of least (error growth + small area) / length while the limits hold.
     void glue_developable(const GluingLimits& limits, const ProgressFn& progress = {});
 
-    /// All chains that could be glued, in the order of their ids.
+    /// All chains, in the order of their ids.
     std::vector<Chain> chains() const;
+    /// Half-edges of a chain, one per edge, in no order.
+    std::vector<std::uint32_t> half_edges(std::uint32_t chain) const;
+    /// The slit that gluing this chain would leave hanging and that is glued with it: a
+    /// chain that reached it from outside. Its half-edges; mostly none.
+    std::vector<std::uint32_t> glued_with(std::uint32_t chain) const;
     void glue(std::uint32_t chain);
-    /// Half-edges of a chain, on either side, in no order.
-    std::vector<std::uint32_t> chain_half_edges(std::uint32_t chain) const;
 
     std::uint32_t chart_of(std::uint32_t triangle) const;  ///< a triangle that stands for the chart
     const NormalMoments& moments(std::uint32_t chart) const { return moments_[chart]; }
@@ -69,7 +72,7 @@ class SeamGraph {
     void tidy(std::uint32_t vertex, std::vector<std::uint32_t>& changed);
     void join(std::uint32_t a, std::uint32_t b, std::uint32_t vertex);
     void take_away(std::uint32_t chain, std::vector<std::uint32_t>& changed);
-    int seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 2>& edges) const;
+    int seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>& edges) const;
 
     const Patch& patch_;
     std::vector<std::uint32_t> edge_of_;       // [3n]

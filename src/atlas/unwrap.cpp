@@ -7,6 +7,7 @@
 #include "atlas/charts.h"
 #include "atlas/coverage.h"
 #include "atlas/file_uvs.h"
+#include "atlas/merge.h"
 #include "atlas/pack.h"
 #include "atlas/snap.h"
 
@@ -92,9 +93,16 @@ std::vector<std::uint32_t> place_charts(const CutMesh& cut, const Packing& packi
 Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
     Unwrapped out;
     Stopwatch watch;
-    const ChartOptions chart_options;
+    ChartOptions chart_options;
+    // Parts of one chart keep a gutter from each other like two charts do: charts cover
+    // about two thirds of the page.
+    const double side = std::sqrt(mesh::surface_area(mesh));
+    const double page = 0.8 * options.size;
+    chart_options.gap = options.gutter * (options.size > 0 ? 1 / page : options.texel_size / side);
     CutMesh cut = cut_into_charts(mesh, chart_options, options.progress);
     watch.lap(out.report, "charts");
+    merge_charts(mesh, cut, chart_options, {}, options.progress);
+    watch.lap(out.report, "merge");
     Atlas& atlas = out.atlas;
     atlas.gutter = options.gutter;
     atlas.corner_uvs.resize(3 * mesh.n_triangles());
