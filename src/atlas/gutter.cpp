@@ -12,7 +12,7 @@ namespace tuft::atlas {
 namespace {
 
 constexpr std::array kRadii{1.6, 2.2, 3.0};  // texels, of the fit; more where it finds too little
-constexpr double kOnEdge = 0.01;    // texels; an uncovered centre may lie that far inside
+constexpr double kOnEdge = 0.01;             // texels; an uncovered centre may lie that far inside
 constexpr std::size_t kMaxTaps = 8;
 constexpr double kMaxGain = 2.0;  // Σ |weight| of a fit that is trusted
 
@@ -43,7 +43,7 @@ struct Border {
 };
 
 Vec2 corner(const Atlas& atlas, std::uint32_t triangle, int k) {
-    return Vec2(atlas.corner_uvs[3 * std::size_t{triangle} + k % 3]) * double(atlas.size);
+    return corner_texels(atlas, triangle, k % 3);
 }
 
 /// Unit normal of the edge from p to q that points away from `inside`.

@@ -11,10 +11,6 @@ namespace {
 /// Corners of one chart that belong together may differ by this much, texels.
 constexpr double kSameCorner = 1.0 / 64;
 
-Vec2 corner_texels(const Atlas& atlas, std::uint32_t triangle, int corner) {
-    return Vec2(atlas.corner_uvs[3 * std::size_t{triangle} + corner]) * double(atlas.size);
-}
-
 /// Corner of `other` at which its side of the edge (corner k → k+1 of `triangle`) starts, or −1.
 int facing_corner(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int k,
                   std::uint32_t other) {
@@ -31,6 +27,11 @@ bool finite(const Vec2& v) {
 }
 
 }  // namespace
+
+Vec2 corner_texels(const Atlas& atlas, std::uint32_t triangle, int corner) {
+    const Vec2 uv(atlas.corner_uvs[3 * std::size_t{triangle} + corner]);
+    return glm::clamp(uv, 0.0, 1.0) * double(atlas.size);
+}
 
 std::vector<SeamEdge> find_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
     std::vector<SeamEdge> seams;

@@ -30,6 +30,10 @@ struct SeamEdge {
     int corner_a = 0, corner_b = 0;  ///< the edge starts here in a, and here in b (reversed)
 };
 
+/// Place of a triangle's corner in the atlas, texels, inside it. Not finite where the
+/// atlas's own is not.
+Vec2 corner_texels(const Atlas& atlas, std::uint32_t triangle, int corner);
+
 std::vector<SeamEdge> find_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas);
 
 /// Samples of one edge, evenly spread, at most `spacing` texels apart on either side.

@@ -27,4 +27,8 @@ struct Footprint {
     bool empty() const { return coverage.empty(); }
 };
 
+/// A disc of `radius` metres about the origin, antialiased by distance: for benchmarks,
+/// tests and round stamps.
+Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double cell);
+
 }  // namespace tuft::footprint

@@ -81,6 +81,29 @@ struct Coverage {
 
 }  // namespace
 
+Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double cell) {
+    Footprint result;
+    result.frame = frame;
+    result.triangle = triangle;
+    result.cell = cell;
+    const double half = std::ceil(radius / cell) + 2;
+    if (!(half >= 2 && 2 * half <= kMaxCells))
+        throw Error("a disc of " + std::to_string(1e3 * radius) + " mm does not fit into " +
+                    std::to_string(kMaxCells) + " texels: use a larger texel size");
+    result.width = result.height = static_cast<int>(2 * half);
+    result.lo = Vec2{-half * cell};
+    result.radius = radius + cell;
+    result.coverage.reserve(static_cast<std::size_t>(result.width) * result.height);
+    for (int j = 0; j < result.height; ++j) {
+        for (int i = 0; i < result.width; ++i) {
+            const double out = glm::length(Vec2(i, j) + 0.5 - half) - radius / cell;
+            result.coverage.push_back(
+                static_cast<std::uint8_t>(std::clamp(0.5 - out, 0.0, 1.0) * 255 + 0.5));
+        }
+    }
+    return result;
+}
+
 Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle,
                     double cell) {
     Footprint result;

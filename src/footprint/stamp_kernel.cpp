@@ -8,6 +8,11 @@
 
 #if defined(__x86_64__) || defined(__i386__)
 #define TUFT_X86 1
+#ifdef __clang__
+#define TUFT_AVX512 "avx512f,avx512vl,avx512bw,avx512dq"
+#else
+#define TUFT_AVX512 "avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512"
+#endif
 #endif
 
 namespace tuft::footprint {
@@ -106,7 +111,7 @@ struct Rows {
         const float xp = x > 0.0f ? x : 0.0f, yp = y > 0.0f ? y : 0.0f;
         const float xi = xp < last_x ? xp : last_x, yi = yp < last_y ? yp : last_y;
         // A factor, not a selection: that would become a branch around the gather.
-        const float inside = (xi == x) & (yi == y) ? 1.0f : 0.0f;
+        const float inside = ((xi == x) & (yi == y)) ? 1.0f : 0.0f;
         const int i = static_cast<int>(xi), j = static_cast<int>(yi);
         const float fx = xi - static_cast<float>(i), fy = yi - static_cast<float>(j);
         const std::uint32_t q = corners[j * stride + i];
@@ -158,8 +163,8 @@ bool evaluate_baseline(const TexelTile& tile, const StampJobs& jobs, const TileJ
     return evaluate(tile, jobs, job, sum);
 }
 
-[[gnu::target("avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512")]] bool evaluate_avx512(
-    const TexelTile& tile, const StampJobs& jobs, const TileJob& job, float* __restrict sum) {
+[[gnu::target(TUFT_AVX512)]] bool evaluate_avx512(const TexelTile& tile, const StampJobs& jobs,
+                                                  const TileJob& job, float* __restrict sum) {
     return evaluate(tile, jobs, job, sum);
 }
 #endif

@@ -95,26 +95,6 @@ Vec2 place_of(const Stage& stage, const StampJobs& jobs, const Footprint& f, std
     return Vec2{NAN};
 }
 
-/// A disc of radius r, antialiased.
-Footprint disc(const Frame& frame, std::uint32_t triangle, double r, double cell) {
-    Footprint f;
-    f.frame = frame;
-    f.triangle = triangle;
-    f.cell = cell;
-    const int half = static_cast<int>(std::ceil(r / cell)) + 2;
-    f.width = f.height = 2 * half;
-    f.lo = Vec2{-half * cell};
-    f.radius = r + cell;
-    for (int j = 0; j < f.height; ++j) {
-        for (int i = 0; i < f.width; ++i) {
-            const double d = glm::length(f.lo / cell + Vec2(i, j) + 0.5) - r / cell;
-            f.coverage.push_back(
-                static_cast<std::uint8_t>(std::clamp(0.5 - d, 0.0, 1.0) * 255 + 0.5));
-        }
-    }
-    return f;
-}
-
 double disc_area(const Footprint& f) {
     double sum = 0;
     for (const std::uint8_t c : f.coverage) sum += c / 255.0;
