@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "stroke/trace.h"
+
+/// The sample decorations: strokes with their places on the models of `models/`.
+namespace tuft::samples {
+
+/// 七上八下 on the inside of the bowl, two rows of two.
+std::vector<stroke::Trace> bowl_inside();
+/// 漫步人生 around the outside of the bowl.
+std::vector<stroke::Trace> bowl_outside();
+/// Leaves on a winding stem around the plate's rim.
+std::vector<stroke::Trace> plate_ornament();
+/// Pinstripes along the right flank of the car.
+std::vector<stroke::Trace> car_pinstripe();
+
+}  // namespace tuft::samples

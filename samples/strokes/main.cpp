@@ -1,0 +1,34 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "compositions.h"
+#include "core/error.h"
+#include "io/inkml.h"
+
+using namespace tuft;
+
+/// tuft-strokes FOLDER: writes the sample stroke files.
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        fmt::print(stderr, "usage: tuft-strokes FOLDER\n");
+        return 2;
+    }
+    try {
+        const std::filesystem::path folder = argv[1];
+        const auto save = [&](const char* name, const char* title, const std::vector<stroke::Trace>& traces) {
+            double seconds = 0;
+            for (const stroke::Trace& t : traces) seconds += t.samples.back().time;
+            io::write_inkml(folder / name, traces, title);
+            fmt::print("{}: {} strokes, {:.0f} s\n", name, traces.size(), seconds);
+        };
+        save("qi-shang-ba-xia.inkml", "七上八下", samples::bowl_inside());
+        save("man-bu-ren-sheng.inkml", "漫步人生", samples::bowl_outside());
+        save("plate-ornament.inkml", "Leaves on a winding stem", samples::plate_ornament());
+        save("car-pinstripe.inkml", "Pinstripes", samples::car_pinstripe());
+    } catch (const Error& e) {
+        fmt::print(stderr, "tuft-strokes: {}\n", e.what());
+        return 1;
+    }
+    return 0;
+}
