@@ -178,13 +178,15 @@ double Ink::strength() const {
 Ink parse_ink(std::string_view text, const std::string& source) {
     const toml::table table = parse_table(text, source);
     const Reader in(table, source);
-    in.only({"name", "title", "film", "supply", "transfer_length_mm", "pigment"});
+    in.only({"name", "title", "film", "supply", "supply_length_mm", "transfer_length_mm", "pigment"});
     Ink ink;
     ink.name = in.text("name", "");
     ink.title = in.text("title", ink.name);
     ink.film = in.number("film", 0.01, 8, ink.film);
     ink.supply = in.number("supply", 1e-6, 1, ink.supply);
-    ink.transfer_length = in.number("transfer_length_mm", 0.001, 100, 0.08) * 1e-3;
+    ink.supply_length = in.number("supply_length_mm", 0.001, 100, ink.supply_length * 1e3) * 1e-3;
+    ink.transfer_length =
+        in.number("transfer_length_mm", 0.001, 100, ink.transfer_length * 1e3) * 1e-3;
     const toml::array* parts = table["pigment"].as_array();
     if (!parts || parts->empty()) in.fail(in.line(), "an ink needs at least one [[pigment]]");
     if (parts->size() > 8) in.fail(in.line(), "an ink has at most 8 pigments");
@@ -208,6 +210,7 @@ std::string ink_toml(const Ink& ink) {
     std::ostringstream out;
     out << "name = " << quoted(ink.name) << "\ntitle = " << quoted(ink.title)
         << "\nfilm = " << shortest(ink.film) << "\nsupply = " << shortest(ink.supply)
+        << "\nsupply_length_mm = " << shortest(ink.supply_length * 1e3)
         << "\ntransfer_length_mm = " << shortest(ink.transfer_length * 1e3) << "\n";
     for (const InkPart& part : ink.parts) {
         const Pigment& p = part.pigment;

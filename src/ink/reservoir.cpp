@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace tuft::ink {
+namespace {
+
+/// Part of the supply that comes without any bending: hair wets what it touches.
+constexpr double kCapillarySupply = 0.25;
+
+}  // namespace
 
 double Reservoir::remaining() const {
     double sum = water;
@@ -59,8 +65,8 @@ double paper_quantity(double eta, double moment_factor, double remaining) {
 }
 
 double supply_quantity(double eta, double moment_factor, double remaining, double ds,
-                       double transfer_length) {
-    return -remaining * std::expm1(-eta * moment_factor * ds / transfer_length);
+                       double supply_length) {
+    return -remaining * std::expm1(-eta * moment_factor * ds / supply_length);
 }
 
 DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampContact& contact,
@@ -76,7 +82,8 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
         return out;
     }
     const double k = std::clamp(contact.moment_factor, 0.0, 1.0);
-    const double offered = ink.supply * k * left / ink.supply_length;  // film·m² per metre
+    const double squeezed = kCapillarySupply + (1 - kCapillarySupply) * k;
+    const double offered = ink.supply * squeezed * left / ink.supply_length;  // film·m² per metre
     const double asked = ink.film * contact.width;
     double target = ink.film * std::min(1.0, 0.85 + 0.3 * k);
     if (asked > 0) target *= -std::expm1(-offered / asked);

@@ -36,9 +36,9 @@ void take(Reservoir& tuft, double amount);
 double paper_quantity(double eta, double moment_factor, double remaining);
 
 /// The same independent of how densely the path is sampled:
-/// Q = Z (1 − exp(−η k Δs / s0)); equals the recurrence for Δs = s0 and η k → 0.
+/// Q = Z (1 − exp(−η k Δs / l)); equals the recurrence for Δs = l and η k → 0.
 double supply_quantity(double eta, double moment_factor, double remaining, double ds,
-                       double transfer_length);
+                       double supply_length);
 
 /// How a stamp touches.
 struct StampContact {
@@ -47,12 +47,15 @@ struct StampContact {
     double area = 0;           ///< m² of the contact patch
 };
 
-/// Film the stamp tends to. The tuft offers η k Z / s0 ink per metre of travel, the
-/// stroke asks for `ink.film` times the contact's width; with x = offered / asked
+/// Film the stamp tends to. The tuft offers η k' Z / l ink per metre of travel (l =
+/// `ink.supply_length`), with
+/// k' = 0.25 + 0.75 k: a quarter comes by capillarity, also where the bending moment passes
+/// through zero, the rest is squeezed out as in the paper. The stroke asks for `ink.film`
+/// times the contact's width; with x = offered / asked
 ///
 ///     c = film (1 − exp(−x)) min(1, 0.85 + 0.3 k)
 ///
-/// so a loaded tuft (x ≈ 10–100) paints full strength at any speed and in any width,
+/// so a loaded tuft (x ≈ 5–100) paints full strength at any speed and in any width,
 /// and one that has given most of its ink pales, wide strokes first. c · area never
 /// exceeds what is left.
 DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampContact& contact,

@@ -159,7 +159,7 @@ TEST(Deposit, BitsArePinnedForEveryInstructionSet) {
     for (int i = 0; i < 40; ++i) {
         const Texels f = random_texels(i, 0, 1);
         deposit(canvas, 0, f, kArea, 7e-5, {.mix = mix, .target = 1.8f, .capacity = 1.5f});
-        const auto rate = static_cast<float>(-std::expm1(-7e-5 / static_cast<double>(0.5e-3f)));
+        const auto rate = static_cast<float>(-std::expm1(-7e-5 / static_cast<double>(DepositParams{}.transfer_length)));
         for (int t = 0; t < kN; ++t) {
             float inverse0 = 1.0f / mix[0], inverse1 = 1.0f / mix[1];
             float all = w[0][t] + w[1][t];
@@ -249,7 +249,7 @@ TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
     const double start = dip(tuft, mix);
     const Texels area = random_texels(8, 2e-6, 4e-6);  // coarse: much surface, little ink
     for (int i = 0; i < 1500; ++i) {
-        const StampContact contact{.moment_factor = 0.5, .width = 5e-3, .area = 2.5e-5};
+        const StampContact contact{.moment_factor = 0.5, .width = 5e-3, .area = 4 * kN * 4e-6};
         const DepositParams params = stamp_deposit(tuft, ink, contact, substrate);
         double given = 0;
         for (std::uint32_t slot = 0; slot < 4; ++slot)
@@ -258,7 +258,7 @@ TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
     }
     double on_texels = 0;
     for (std::uint32_t slot = 0; slot < kSlots; ++slot)
-        for (int t = 0; t < kN; ++t)
+        for (int t = 0; t < kN && canvas.touched(slot); ++t)
             on_texels += static_cast<double>(area[t]) * static_cast<double>((*canvas.plane(slot, 0))[t]);
     EXPECT_GT(on_texels, 0.9 * start) << "the test wants a brush that runs dry";
     EXPECT_GE(tuft.remaining(), 0);
