@@ -40,7 +40,9 @@ Canvas& Canvas::operator=(const Canvas& other) {
     return *this;
 }
 
-Canvas::Canvas(Canvas&& other) noexcept { *this = std::move(other); }
+Canvas::Canvas(Canvas&& other) noexcept {
+    *this = std::move(other);
+}
 
 Canvas& Canvas::operator=(Canvas&& other) noexcept {
     pigments_ = std::move(other.pigments_);

@@ -24,8 +24,8 @@ struct alignas(64) Plane : std::array<float, atlas::kTileTexels> {};
 /// of the set bits of `planes`.
 struct TileSnapshot {
     std::uint32_t slot = 0;
-    std::uint8_t planes = 0;      ///< bit p: pigment p has a plane here
-    std::vector<float> amounts;   ///< [256 × number of set bits]
+    std::uint8_t planes = 0;     ///< bit p: pigment p has a plane here
+    std::vector<float> amounts;  ///< [256 × number of set bits]
 
     bool operator==(const TileSnapshot&) const = default;
 };

@@ -24,7 +24,8 @@ TUFT_CLONES void add_film(float* __restrict all, const float* __restrict w) {
     for (int t = 0; t < kN; ++t) all[t] += w[t];
 }
 
-TUFT_CLONES void linear_goals(float* __restrict goal, const float* __restrict coverage, float target) {
+TUFT_CLONES void linear_goals(float* __restrict goal, const float* __restrict coverage,
+                              float target) {
     for (int t = 0; t < kN; ++t) goal[t] = target * coverage[t];
 }
 
@@ -40,7 +41,9 @@ TUFT_CLONES void goals(float* __restrict goal, const float* __restrict coverage,
         const float m = std::bit_cast<float>((bits & 0x007fffff) + 0x3f3504f3);
         const float s = (m - 1) / (m + 1);
         const float s2 = s * s;
-        const float series = 2 * s * (1 + s2 * (0.333333333f + s2 * (0.2f + s2 * (0.142857143f + s2 * 0.111111111f))));
+        const float series =
+            2 * s *
+            (1 + s2 * (0.333333333f + s2 * (0.2f + s2 * (0.142857143f + s2 * 0.111111111f))));
         goal[t] = -(e * 0.693147181f + series) * inverse_extinction;
     }
 }

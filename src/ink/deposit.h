@@ -16,11 +16,11 @@ using Mix = std::array<float, kMaxPigments>;
 Mix mix_of(Canvas& canvas, const Ink& ink);
 
 struct DepositParams {
-    Mix mix{};                       ///< what leaves the tuft
-    float target = 1.8f;             ///< c: film units of this ink under full coverage
-    float transfer_length = 0.08e-3f; ///< s0, metres of travel
-    float capacity = 8;              ///< film units that stay on a texel, all inks together
-    float extinction = 0;            ///< ε: how fast the ink's film hides, per film unit; 0: not regarded
+    Mix mix{};                         ///< what leaves the tuft
+    float target = 1.8f;               ///< c: film units of this ink under full coverage
+    float transfer_length = 0.08e-3f;  ///< s0, metres of travel
+    float capacity = 8;                ///< film units that stay on a texel, all inks together
+    float extinction = 0;  ///< ε: how fast the ink's film hides, per film unit; 0: not regarded
 };
 
 /// ε of an ink: 2K + S of its mixture, weighted over the bands by luminance.

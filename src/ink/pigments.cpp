@@ -1,5 +1,7 @@
 #include "ink/pigments.h"
 
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +9,6 @@
 #include <initializer_list>
 #include <optional>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -29,12 +30,14 @@ class Reader {
             if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
             const std::vector<std::string> known(keys.begin(), keys.end());
             const std::string near = nearest_name(key.str(), known);
-            fail(key.source().begin.line, "unknown key '" + std::string(key.str()) + "'" +
-                                              (near.empty() ? "" : ", did you mean '" + near + "'?"));
+            fail(key.source().begin.line,
+                 "unknown key '" + std::string(key.str()) + "'" +
+                     (near.empty() ? "" : ", did you mean '" + near + "'?"));
         }
     }
 
-    double number(std::string_view key, double lo, double hi, std::optional<double> fallback) const {
+    double number(std::string_view key, double lo, double hi,
+                  std::optional<double> fallback) const {
         const toml::node* node = table_.get(key);
         if (!node) {
             if (!fallback) fail(line(), "'" + std::string(key) + "' is missing");
@@ -48,8 +51,9 @@ class Reader {
         if (!node) fail(line(), "'" + std::string(key) + "' is missing");
         const toml::array* array = node->as_array();
         if (!array || array->size() != kBands)
-            fail(node->source().begin.line,
-                 "'" + std::string(key) + "' must be " + std::to_string(kBands) + " numbers (red, green, blue)");
+            fail(node->source().begin.line, "'" + std::string(key) + "' must be " +
+                                                std::to_string(kBands) +
+                                                " numbers (red, green, blue)");
         Bands result;
         for (int b = 0; b < kBands; ++b)
             result[b] = static_cast<float>(in_range(*array->get(b), key, lo, hi));
@@ -68,7 +72,9 @@ class Reader {
         return *value;
     }
 
-    [[noreturn]] void fail(long line, const std::string& what) const { throw Error(source_, line, what); }
+    [[noreturn]] void fail(long line, const std::string& what) const {
+        throw Error(source_, line, what);
+    }
     long line() const { return table_.source().begin.line; }
 
   private:
@@ -178,7 +184,8 @@ double Ink::strength() const {
 Ink parse_ink(std::string_view text, const std::string& source) {
     const toml::table table = parse_table(text, source);
     const Reader in(table, source);
-    in.only({"name", "title", "film", "supply", "supply_length_mm", "transfer_length_mm", "pigment"});
+    in.only(
+        {"name", "title", "film", "supply", "supply_length_mm", "transfer_length_mm", "pigment"});
     Ink ink;
     ink.name = in.text("name", "");
     ink.title = in.text("title", ink.name);
@@ -202,7 +209,8 @@ Ink parse_ink(std::string_view text, const std::string& source) {
         ink.parts.push_back(std::move(p));
     }
     if (ink.strength() > 1 + 1e-9)
-        in.fail(in.line(), "the fractions sum to " + shortest(ink.strength()) + "; at most 1 is possible");
+        in.fail(in.line(),
+                "the fractions sum to " + shortest(ink.strength()) + "; at most 1 is possible");
     return ink;
 }
 
@@ -259,7 +267,11 @@ Substrate load_substrate(std::string_view name) {
     return substrate;
 }
 
-std::vector<std::string> list_inks() { return list_presets("inks"); }
-std::vector<std::string> list_substrates() { return list_presets("substrates"); }
+std::vector<std::string> list_inks() {
+    return list_presets("inks");
+}
+std::vector<std::string> list_substrates() {
+    return list_presets("substrates");
+}
 
 }  // namespace tuft::ink

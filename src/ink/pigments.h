@@ -14,7 +14,7 @@
 /// in bulk are film·m²; one millilitre is 0.1 film·m².
 namespace tuft::ink {
 
-inline constexpr int kBands = 3;           ///< linear RGB, sRGB primaries
+inline constexpr int kBands = 3;  ///< linear RGB, sRGB primaries
 using Bands = std::array<float, kBands>;
 
 inline constexpr double kFilmUnit = 1e-5;  ///< metres of wet ink
@@ -22,32 +22,35 @@ inline constexpr double kFilmUnit = 1e-5;  ///< metres of wet ink
 inline constexpr double kFilmPerVolume = 1.0 / kFilmUnit;
 
 /// Film·m² in a volume given in millilitres.
-constexpr double film_of_millilitres(double ml) { return ml * 1e-6 * kFilmPerVolume; }
+constexpr double film_of_millilitres(double ml) {
+    return ml * 1e-6 * kFilmPerVolume;
+}
 
 struct Pigment {
-    std::string name;        ///< identifies the pigment across inks
-    Bands k{};               ///< absorption per film unit
-    Bands s{};               ///< scattering per film unit
-    float height = 2.5e-6f;  ///< metres left by one film unit when dry
-    float roughness = 0.5f;  ///< glTF perceptual roughness of the dry film
-    std::string source = {}; ///< where K and S come from
+    std::string name;         ///< identifies the pigment across inks
+    Bands k{};                ///< absorption per film unit
+    Bands s{};                ///< scattering per film unit
+    float height = 2.5e-6f;   ///< metres left by one film unit when dry
+    float roughness = 0.5f;   ///< glTF perceptual roughness of the dry film
+    std::string source = {};  ///< where K and S come from
 };
 
 struct InkPart {
     Pigment pigment;
-    double fraction = 1;     ///< of the wet ink; the rest of the ink is water
+    double fraction = 1;  ///< of the wet ink; the rest of the ink is water
 };
 
 /// An ink as it is in the dish.
 struct Ink {
-    std::string name;                ///< preset name: file stem
-    std::string title;               ///< for people
-    std::vector<InkPart> parts;      ///< fractions sum to at most 1
-    double film = 1.8;               ///< film units a full brush leaves
-    double supply = 0.004;           ///< η: part of the tuft's ink offered per supply length
-    double supply_length = 0.5e-3;   ///< metres of travel
-    double transfer_length = 0.08e-3; ///< s0, metres of travel in which a texel takes up its film:
-                                      ///< short beside the thinnest hairline, which must be black too
+    std::string name;               ///< preset name: file stem
+    std::string title;              ///< for people
+    std::vector<InkPart> parts;     ///< fractions sum to at most 1
+    double film = 1.8;              ///< film units a full brush leaves
+    double supply = 0.004;          ///< η: part of the tuft's ink offered per supply length
+    double supply_length = 0.5e-3;  ///< metres of travel
+    double transfer_length =
+        0.08e-3;  ///< s0, metres of travel in which a texel takes up its film:
+                  ///< short beside the thinnest hairline, which must be black too
 
     /// Sum of the fractions: 1 for undiluted ink.
     double strength() const;
@@ -59,7 +62,7 @@ struct Substrate {
     Bands reflectance{0.8f, 0.8f, 0.8f};  ///< linear, diffuse
     float roughness = 0.5f;               ///< glTF perceptual roughness
     float metallic = 0;
-    float capacity = 8;                   ///< film units that stay on it, all inks together
+    float capacity = 8;  ///< film units that stay on it, all inks together
 };
 
 /// The preset `name` from data_folder()/models/inks, or the file when `name` ends in

@@ -17,7 +17,9 @@ double Reservoir::remaining() const {
     return sum;
 }
 
-double Reservoir::fullness() const { return capacity > 0 ? remaining() / capacity : 0; }
+double Reservoir::fullness() const {
+    return capacity > 0 ? remaining() / capacity : 0;
+}
 
 Mix Reservoir::mix() const {
     Mix parts{};

@@ -49,7 +49,9 @@ ink::AtlasMap<std::uint8_t> normal_map(const ink::AtlasMap<float>& height, doubl
     const std::size_t n = height.size;
     out.texels.resize(n * n * 3);
     const auto scale = static_cast<float>(0.5e-6 / texel_size);
-    const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround((v + 1) * 127.5f)); };
+    const auto byte = [](float v) {
+        return static_cast<std::uint8_t>(std::lround((v + 1) * 127.5f));
+    };
     parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y) {
             const float* row = &height.texels[y * n];
@@ -98,7 +100,8 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
     });
     for (const fs::path& file : files) {
         fs::rename(file, parent / file.filename(), ec);
-        if (ec) throw Error((parent / file.filename()).string(), "cannot be written: " + ec.message());
+        if (ec)
+            throw Error((parent / file.filename()).string(), "cannot be written: " + ec.message());
     }
 }
 
@@ -120,9 +123,11 @@ void export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const at
                   const ModelMaps& maps, const ExportOptions& options) {
     const std::string extension = path.extension().string();
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj")
-        throw Error(path.string(), "models are written as .glb, .gltf or .obj, not as '" + extension + "'");
+        throw Error(path.string(),
+                    "models are written as .glb, .gltf or .obj, not as '" + extension + "'");
     const auto metres = metres_per(options.unit);
-    if (!metres) throw Error("unknown unit '" + options.unit + "'; there are um, mm, cm, m, in and ft");
+    if (!metres)
+        throw Error("unknown unit '" + options.unit + "'; there are um, mm, cm, m, in and ft");
     const ExportScene scene{.mesh = mesh,
                             .wedges = split_wedges(mesh, atlas.corner_uvs),
                             .corner_uvs = atlas.corner_uvs,
@@ -131,7 +136,8 @@ void export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const at
                             .metres_per_unit = *metres};
     std::vector<EncodedMap> encoded;
     report(options.progress, "export", 0);
-    const ImageOptions colour{.srgb = true, .channel_names = {}}, data{.srgb = false, .channel_names = {}};
+    const ImageOptions colour{.srgb = true, .channel_names = {}},
+        data{.srgb = false, .channel_names = {}};
     for (const MapFile& map : map_files(maps, options)) {
         if (!map.present) continue;
         const std::string kind = map.suffix;

@@ -21,7 +21,7 @@ struct ModelMaps {
     ink::AtlasMap<float> height;              ///< micrometres; may be empty
 };
 
-/// All maps of a canvas.
+/// All maps of a canvas; `options.seams` makes their gutters continue over seams.
 ModelMaps make_maps(const ink::Canvas& canvas, const atlas::TexelMap& texels,
                     const ink::Substrate& substrate, const ink::ComposeOptions& options = {});
 
@@ -30,8 +30,8 @@ ModelMaps make_maps(const ink::Canvas& canvas, const atlas::TexelMap& texels,
 ink::AtlasMap<std::uint8_t> normal_map(const ink::AtlasMap<float>& height, double texel_size);
 
 struct ExportOptions {
-    std::string unit = "mm";    ///< of OBJ coordinates; glTF is always in metres
-    bool z_up = true;           ///< the model's up axis is z: glTF gets (x, z, −y), y up
+    std::string unit = "mm";          ///< of OBJ coordinates; glTF is always in metres
+    bool z_up = true;                 ///< the model's up axis is z: glTF gets (x, z, −y), y up
     bool normals_from_height = true;  ///< a normal map when there is a height map with any height
     ProgressFn progress = {};
 };

@@ -14,9 +14,9 @@ namespace tuft::io {
 /// Vertices with one UV and one normal each: file formats that index all attributes
 /// together need them. In the order of first use by the triangles.
 struct Wedges {
-    std::vector<std::uint32_t> vertex;          ///< [n_wedges] of the mesh
-    std::vector<std::uint32_t> corner;          ///< [n_wedges] a corner that has its UV and normal
-    std::vector<std::uint32_t> corner_wedge;    ///< [3 n_triangles]
+    std::vector<std::uint32_t> vertex;        ///< [n_wedges] of the mesh
+    std::vector<std::uint32_t> corner;        ///< [n_wedges] a corner that has its UV and normal
+    std::vector<std::uint32_t> corner_wedge;  ///< [3 n_triangles]
 };
 
 /// Corners of a vertex with equal UV and normal, to the bit, share a wedge.

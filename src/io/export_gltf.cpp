@@ -1,7 +1,8 @@
+#include <tiny_gltf.h>
+
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <tiny_gltf.h>
 
 #include "core/error.h"
 #include "io/export_formats.h"
@@ -10,7 +11,9 @@ namespace tuft::io {
 namespace {
 
 /// Turns the model's frame into glTF's (y up).
-Vec3f to_gltf(const Vec3f& v, bool z_up) { return z_up ? Vec3f(v.x, v.z, -v.y) : v; }
+Vec3f to_gltf(const Vec3f& v, bool z_up) {
+    return z_up ? Vec3f(v.x, v.z, -v.y) : v;
+}
 
 /// Unit tangents along +u with the handedness of the UVs; bitangent = w (n × t) points
 /// towards +v (up in the picture).
@@ -20,10 +23,12 @@ std::vector<Vec4f> wedge_tangents(const ExportScene& scene) {
     std::vector<double> signs(sums.size(), 0);
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
         const Vec2 uv0(scene.corner_uvs[3 * t]);
-        const Vec2 a = Vec2(scene.corner_uvs[3 * t + 1]) - uv0, b = Vec2(scene.corner_uvs[3 * t + 2]) - uv0;
+        const Vec2 a = Vec2(scene.corner_uvs[3 * t + 1]) - uv0,
+                   b = Vec2(scene.corner_uvs[3 * t + 2]) - uv0;
         const double area = a.x * b.y - a.y * b.x;
         if (!(area != 0)) continue;
-        const Vec3 p0 = mesh.position(t, 0), p = mesh.position(t, 1) - p0, q = mesh.position(t, 2) - p0;
+        const Vec3 p0 = mesh.position(t, 0), p = mesh.position(t, 1) - p0,
+                   q = mesh.position(t, 2) - p0;
         Vec3 along_u = (b.y * p - a.y * q) * (area > 0 ? 1.0 : -1.0);
         const double length = glm::length(along_u);
         if (!(length > 0)) continue;
@@ -38,7 +43,8 @@ std::vector<Vec4f> wedge_tangents(const ExportScene& scene) {
     for (std::size_t w = 0; w < sums.size(); ++w) {
         const Vec3 n = glm::normalize(Vec3(mesh.corner_normals[scene.wedges.corner[w]]));
         const double scale = glm::length(sums[w]);
-        const Vec3 t = scale > 0 ? make_frame(Vec3(0), n, sums[w] / scale).t : make_frame(Vec3(0), n).t;
+        const Vec3 t =
+            scale > 0 ? make_frame(Vec3(0), n, sums[w] / scale).t : make_frame(Vec3(0), n).t;
         tangents[w] = Vec4f(to_gltf(Vec3f(t), scene.z_up), signs[w] < 0 ? -1.0f : 1.0f);
     }
     return tangents;
@@ -81,7 +87,8 @@ class Builder {
 
     template <class T>
     int add_attribute(const std::vector<T>& values, int type) {
-        return add_accessor(values, TINYGLTF_COMPONENT_TYPE_FLOAT, type, TINYGLTF_TARGET_ARRAY_BUFFER);
+        return add_accessor(values, TINYGLTF_COMPONENT_TYPE_FLOAT, type,
+                            TINYGLTF_TARGET_ARRAY_BUFFER);
     }
 
     /// A texture over a picture: in a buffer view, or in a file of its own.

@@ -11,7 +11,8 @@ namespace {
 
 void append_number(std::string& out, double value, int digits) {
     char buffer[40];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
+    const auto end =
+        std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
     out.append(buffer, end.ptr);
 }
 
@@ -42,7 +43,8 @@ class TextFile {
     void close() {
         flush();
         file_.close();
-        if (!file_) throw Error(path_.filename().string(), "could not be written to its end (disk full?)");
+        if (!file_)
+            throw Error(path_.filename().string(), "could not be written to its end (disk full?)");
     }
 
   private:
@@ -94,7 +96,8 @@ void write_staged(const std::filesystem::path& path, const void* data, std::size
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
     file.close();
-    if (!file) throw Error(path.filename().string(), "could not be written to its end (disk full?)");
+    if (!file)
+        throw Error(path.filename().string(), "could not be written to its end (disk full?)");
 }
 
 void write_obj(const std::filesystem::path& path, const ExportScene& scene,
@@ -131,7 +134,8 @@ void write_obj(const std::filesystem::path& path, const ExportScene& scene,
         std::string& out = file.text();
         if (!mesh.triangle_groups.empty() && mesh.triangle_groups[t] != group) {
             group = mesh.triangle_groups[t];
-            out += "g " + one_word(group < mesh.group_names.size() ? mesh.group_names[group] : "") + "\n";
+            out += "g " + one_word(group < mesh.group_names.size() ? mesh.group_names[group] : "") +
+                   "\n";
         }
         out += 'f';
         for (int k = 0; k < 3; ++k) {

@@ -36,7 +36,8 @@ const ImageCodec& load_codec() {
             continue;
         }
         using Entry = const ImageCodec* (*)();
-        if (void* entry = dlsym(module, kImageCodecSymbol)) return *reinterpret_cast<Entry>(entry)();
+        if (void* entry = dlsym(module, kImageCodecSymbol))
+            return *reinterpret_cast<Entry>(entry)();
         fault = "it has no " + std::string(kImageCodecSymbol);
     }
     throw Error("the picture library cannot be loaded" + (fault.empty() ? "" : ": " + fault) +
@@ -66,7 +67,8 @@ std::vector<unsigned char> encode(ImageFormat format, const PixelView& pixels,
 
 ImageFormat format_of(const std::vector<char>& bytes, const fs::path& path) {
     const auto starts = [&](std::string_view magic) {
-        return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+        return bytes.size() >= magic.size() &&
+               std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
     };
     if (starts("\x89PNG\r\n\x1a\n")) return ImageFormat::png;
     if (starts("\x76\x2f\x31\x01")) return ImageFormat::exr;
@@ -86,7 +88,10 @@ Image<T> read(const fs::path& path, std::size_t max_pixels) {
                                               .max_pixels = max_pixels},
                                              decoded);
     if (!fault.empty()) throw Error(path.string(), "the picture cannot be read: " + fault);
-    Image<T> image{.width = decoded.width, .height = decoded.height, .channels = decoded.channels, .pixels = {}};
+    Image<T> image{.width = decoded.width,
+                   .height = decoded.height,
+                   .channels = decoded.channels,
+                   .pixels = {}};
     image.pixels.resize(decoded.bytes.size() / sizeof(T));
     std::memcpy(image.pixels.data(), decoded.bytes.data(), image.pixels.size() * sizeof(T));
     return image;
@@ -97,7 +102,8 @@ Image<T> read(const fs::path& path, std::size_t max_pixels) {
 void write_image(const fs::path& path, const PixelView& pixels, const ImageOptions& options) {
     const std::string extension = path.extension().string();
     if (extension != ".png" && extension != ".exr")
-        throw Error(path.string(), "pictures are written as .png or .exr, not as '" + extension + "'");
+        throw Error(path.string(),
+                    "pictures are written as .png or .exr, not as '" + extension + "'");
     const std::vector<unsigned char> bytes = encode(
         extension == ".png" ? ImageFormat::png : ImageFormat::exr, pixels, options, path.string());
     write_file(path, bytes.data(), bytes.size());

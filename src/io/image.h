@@ -30,8 +30,8 @@ struct PixelView {
     enum class Type { u8, u16, f32 };
     Type type = Type::u8;
     int width = 0, height = 0, channels = 0;
-    const void* first = nullptr;    ///< top left pixel
-    std::ptrdiff_t row_bytes = 0;   ///< from a row to the one below it; may be negative
+    const void* first = nullptr;   ///< top left pixel
+    std::ptrdiff_t row_bytes = 0;  ///< from a row to the one below it; may be negative
 };
 
 template <class T>
@@ -85,8 +85,10 @@ std::vector<unsigned char> png_bytes(const PixelView& pixels, const ImageOptions
 /// Reads a PNG, EXR, JPEG or TIFF file into the asked type, colours as stored (no
 /// conversion but that of the number range). Throws `Error` for damaged files and for
 /// pictures of more than `max_pixels`, before memory is taken.
-Image8 read_image8(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
-Image16 read_image16(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
+Image8 read_image8(const std::filesystem::path& path,
+                   std::size_t max_pixels = std::size_t{1} << 29);
+Image16 read_image16(const std::filesystem::path& path,
+                     std::size_t max_pixels = std::size_t{1} << 29);
 ImageF read_image_float(const std::filesystem::path& path,
                         std::size_t max_pixels = std::size_t{1} << 29);
 

@@ -12,19 +12,26 @@ namespace {
 
 const char* extension_of(ImageFormat format) {
     switch (format) {
-        case ImageFormat::png: return "picture.png";
-        case ImageFormat::exr: return "picture.exr";
-        case ImageFormat::jpeg: return "picture.jpg";
-        case ImageFormat::tiff: return "picture.tif";
+        case ImageFormat::png:
+            return "picture.png";
+        case ImageFormat::exr:
+            return "picture.exr";
+        case ImageFormat::jpeg:
+            return "picture.jpg";
+        case ImageFormat::tiff:
+            return "picture.tif";
     }
     return "";
 }
 
 OIIO::TypeDesc type_of(PixelView::Type type) {
     switch (type) {
-        case PixelView::Type::u8: return OIIO::TypeDesc::UINT8;
-        case PixelView::Type::u16: return OIIO::TypeDesc::UINT16;
-        case PixelView::Type::f32: return OIIO::TypeDesc::FLOAT;
+        case PixelView::Type::u8:
+            return OIIO::TypeDesc::UINT8;
+        case PixelView::Type::u16:
+            return OIIO::TypeDesc::UINT16;
+        case PixelView::Type::f32:
+            return OIIO::TypeDesc::FLOAT;
     }
     return OIIO::TypeDesc::UNKNOWN;
 }
@@ -47,8 +54,10 @@ std::string encode_checked(const EncodeRequest& request, std::vector<unsigned ch
     // Pixels count as premultiplied otherwise, and colour is lost where alpha is 0.
     spec.attribute("oiio:UnassociatedAlpha", 1);
     if (!exr && request.options->srgb) spec.attribute("oiio:ColorSpace", "sRGB");
-    if (exr) spec.attribute("compression", "zip");
-    else spec.attribute("png:compressionLevel", request.options->compression);
+    if (exr)
+        spec.attribute("compression", "zip");
+    else
+        spec.attribute("png:compressionLevel", request.options->compression);
 
     const char* name = extension_of(request.format);
     OIIO::Filesystem::IOVecOutput memory;
@@ -67,13 +76,15 @@ std::string decode_checked(const DecodeRequest& request, DecodedImage& out) {
     config.attribute("oiio:UnassociatedAlpha", 1);
     OIIO::Filesystem::IOMemReader memory(const_cast<void*>(request.bytes), request.size);
     const char* name = extension_of(request.format);
-    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(name, false, &config, &memory);
+    std::unique_ptr<OIIO::ImageInput> input =
+        OIIO::ImageInput::create(name, false, &config, &memory);
     if (!input) return OIIO::geterror();
     OIIO::ImageSpec spec;
     if (!input->set_ioproxy(&memory) || !input->open(name, spec, config)) return input->geterror();
     if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
         return "it has no pixels";
-    if (static_cast<std::size_t>(spec.width) > request.max_pixels / static_cast<std::size_t>(spec.height) ||
+    if (static_cast<std::size_t>(spec.width) >
+            request.max_pixels / static_cast<std::size_t>(spec.height) ||
         spec.nchannels > 64)
         return "it has " + std::to_string(spec.width) + " × " + std::to_string(spec.height) +
                " pixels with " + std::to_string(spec.nchannels) + " channels, which is too many";
@@ -82,7 +93,8 @@ std::string decode_checked(const DecodeRequest& request, DecodedImage& out) {
     out.channels = spec.nchannels;
     const OIIO::TypeDesc type = type_of(request.type);
     out.bytes.resize(std::size_t(spec.width) * spec.height * spec.nchannels * type.size());
-    if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data())) return input->geterror();
+    if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data()))
+        return input->geterror();
     return "";
 }
 

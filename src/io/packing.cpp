@@ -33,7 +33,8 @@ void gather(const unsigned char* planes, std::size_t count, std::size_t lag, voi
     for (std::size_t i = 0; i < count; ++i) {
         T v = 0;
         for (std::size_t b = 0; b < sizeof(T); ++b)
-            v = static_cast<T>(v | static_cast<T>(static_cast<T>(planes[b * count + i]) << (8 * b)));
+            v = static_cast<T>(v |
+                               static_cast<T>(static_cast<T>(planes[b * count + i]) << (8 * b)));
         if (i >= lag) {
             T before;
             std::memcpy(&before, bytes + (i - lag) * sizeof(T), sizeof before);
@@ -54,12 +55,14 @@ std::vector<char> pack(const void* data, std::size_t count, const Packing& packi
     std::vector<char> blob(ZSTD_compressBound(planes.size()));
     const std::size_t size =
         ZSTD_compress(blob.data(), blob.size(), planes.data(), planes.size(), packing.level);
-    if (ZSTD_isError(size)) throw Error(std::string("compression failed: ") + ZSTD_getErrorName(size));
+    if (ZSTD_isError(size))
+        throw Error(std::string("compression failed: ") + ZSTD_getErrorName(size));
     blob.resize(size);
     return blob;
 }
 
-void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const std::string& what) {
+void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes,
+                  const std::string& what) {
     if (ZSTD_getFrameContentSize(blob, blob_size) != bytes) throw Error(what + " is damaged");
 }
 

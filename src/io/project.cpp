@@ -39,15 +39,23 @@ CREATE TABLE tiles(slot INTEGER PRIMARY KEY, planes INTEGER NOT NULL, amounts BL
 [[noreturn]] void rethrow(const SQLite::Exception& e, const std::filesystem::path& path) {
     const std::string name = path.string();
     switch (e.getErrorCode()) {
-        case SQLITE_FULL: throw Error(name, "cannot be written: the disk is full");
-        case SQLITE_READONLY: throw Error(name, "cannot be written: it is read-only");
+        case SQLITE_FULL:
+            throw Error(name, "cannot be written: the disk is full");
+        case SQLITE_READONLY:
+            throw Error(name, "cannot be written: it is read-only");
         case SQLITE_BUSY:
-        case SQLITE_LOCKED: throw Error(name, "is in use by another program");
-        case SQLITE_IOERR: throw Error(name, std::string("cannot be read or written: ") + e.what());
-        case SQLITE_CANTOPEN: throw Error(name, std::string("cannot be opened: ") + e.what());
-        case SQLITE_NOMEM: throw Error(name, "does not fit into memory");
-        case SQLITE_CONSTRAINT: throw Error(name, std::string("refuses the change: ") + e.what());
-        default: throw Error(name, std::string("the project is damaged: ") + e.what());
+        case SQLITE_LOCKED:
+            throw Error(name, "is in use by another program");
+        case SQLITE_IOERR:
+            throw Error(name, std::string("cannot be read or written: ") + e.what());
+        case SQLITE_CANTOPEN:
+            throw Error(name, std::string("cannot be opened: ") + e.what());
+        case SQLITE_NOMEM:
+            throw Error(name, "does not fit into memory");
+        case SQLITE_CONSTRAINT:
+            throw Error(name, std::string("refuses the change: ") + e.what());
+        default:
+            throw Error(name, std::string("the project is damaged: ") + e.what());
     }
 }
 
@@ -83,7 +91,8 @@ Header header_of(const fs::path& path) {
 
 void set_pragmas(SQLite::Database& db) {
     db.setBusyTimeout(kBusyMilliseconds);
-    db.exec("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY;");
+    db.exec(
+        "PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY;");
     sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
     // The rollback journal keeps a project one file; each commit reaches the disk.
@@ -115,7 +124,8 @@ std::vector<PresetText> get_presets(SQLite::Database& db, const char* kind) {
     SQLite::Statement s(db, "SELECT name, toml FROM presets WHERE kind = ? ORDER BY name");
     s.bind(1, kind);
     std::vector<PresetText> presets;
-    while (s.executeStep()) presets.emplace_back(s.getColumn(0).getString(), s.getColumn(1).getString());
+    while (s.executeStep())
+        presets.emplace_back(s.getColumn(0).getString(), s.getColumn(1).getString());
     return presets;
 }
 
@@ -177,7 +187,8 @@ Project Project::create(const fs::path& path, const ProjectModel& model) {
         guarded(path, [&] {
             SQLite::Database db(temporary.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
             // Nothing to protect yet: the file gets its name when it is complete.
-            db.exec("PRAGMA journal_mode = OFF; PRAGMA synchronous = FULL; PRAGMA page_size = 8192;");
+            db.exec(
+                "PRAGMA journal_mode = OFF; PRAGMA synchronous = FULL; PRAGMA page_size = 8192;");
             db.exec("PRAGMA application_id = " + std::to_string(kApplicationId) +
                     "; PRAGMA user_version = " + std::to_string(kProjectFormat) + ";");
             SQLite::Transaction transaction(db);
@@ -200,8 +211,9 @@ Project Project::open(const fs::path& path) {
     if (header.application != kApplicationId)
         throw Error(path.string(), "is a database, but not a tuft project");
     if (header.version > kProjectFormat)
-        throw Error(path.string(), "was written by a newer tuft (format " + std::to_string(header.version) +
-                                       ", this one reads up to " + std::to_string(kProjectFormat) +
+        throw Error(path.string(), "was written by a newer tuft (format " +
+                                       std::to_string(header.version) + ", this one reads up to " +
+                                       std::to_string(kProjectFormat) +
                                        "); update tuft to open it");
     return guarded(path, [&] {
         auto state = std::make_unique<State>(path);
@@ -212,10 +224,13 @@ Project Project::open(const fs::path& path) {
     });
 }
 
-const fs::path& Project::path() const { return state_->path; }
+const fs::path& Project::path() const {
+    return state_->path;
+}
 
 int Project::format() const {
-    return state_->run([](SQLite::Database& db) { return db.execAndGet("PRAGMA user_version").getInt(); });
+    return state_->run(
+        [](SQLite::Database& db) { return db.execAndGet("PRAGMA user_version").getInt(); });
 }
 
 std::string Project::written_by() const {
@@ -225,7 +240,8 @@ std::string Project::written_by() const {
 ProjectModel Project::model() const {
     return state_->run([&](SQLite::Database& db) {
         ProjectModel model = load_model(db, state_->path);
-        for (const PresetText& preset : get_presets(db, "substrate")) model.substrate = preset.second;
+        for (const PresetText& preset : get_presets(db, "substrate"))
+            model.substrate = preset.second;
         return model;
     });
 }
@@ -267,7 +283,8 @@ void Project::set_hidden(std::uint64_t stroke_id, bool hidden) {
         SQLite::Statement s(db, "UPDATE strokes SET hidden = ? WHERE id = ?");
         s.bind(1, hidden ? 1 : 0);
         s.bind(2, static_cast<std::int64_t>(stroke_id));
-        if (s.exec() != 1) throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
+        if (s.exec() != 1)
+            throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
     });
 }
 
@@ -275,7 +292,8 @@ void Project::remove(std::uint64_t stroke_id) {
     state_->change([&](SQLite::Database& db) {
         SQLite::Statement s(db, "DELETE FROM strokes WHERE id = ?");
         s.bind(1, static_cast<std::int64_t>(stroke_id));
-        if (s.exec() != 1) throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
+        if (s.exec() != 1)
+            throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
     });
 }
 
@@ -303,7 +321,8 @@ void Project::save_canvas(const ink::Canvas& canvas, std::uint64_t stroke_id) {
         SQLite::Statement tile(db, "INSERT INTO tiles(slot, planes, amounts) VALUES(?, ?, ?)");
         for (const std::uint32_t slot : canvas.touched_slots()) {
             const ink::TileSnapshot snapshot = canvas.snapshot(slot);
-            const std::vector<char> blob = pack(snapshot.amounts.data(), snapshot.amounts.size(), kTiles);
+            const std::vector<char> blob =
+                pack(snapshot.amounts.data(), snapshot.amounts.size(), kTiles);
             tile.bind(1, static_cast<std::int64_t>(slot));
             tile.bind(2, static_cast<int>(snapshot.planes));
             tile.bindNoCopy(3, blob.data(), static_cast<int>(blob.size()));
@@ -324,21 +343,25 @@ std::optional<SavedCanvas> Project::load_canvas(std::size_t n_slots) const {
         SQLite::Statement pigment(db, "SELECT toml FROM pigments ORDER BY plane");
         while (pigment.executeStep())
             saved.canvas.add_pigment(
-                ink::parse_ink(pigment.getColumn(0).getString(), state_->path.string()).parts.at(0).pigment);
+                ink::parse_ink(pigment.getColumn(0).getString(), state_->path.string())
+                    .parts.at(0)
+                    .pigment);
         SQLite::Statement tile(db, "SELECT slot, planes, amounts FROM tiles ORDER BY slot");
         while (tile.executeStep()) {
             const std::int64_t slot = tile.getColumn(0).getInt64();
             const int planes = tile.getColumn(1).getInt();
-            if (slot < 0 || slot >= static_cast<std::int64_t>(n_slots) || planes < 0 || planes > 255)
+            if (slot < 0 || slot >= static_cast<std::int64_t>(n_slots) || planes < 0 ||
+                planes > 255)
                 damaged(state_->path, "a tile lies outside the atlas");
             ink::TileSnapshot snapshot{.slot = static_cast<std::uint32_t>(slot),
                                        .planes = static_cast<std::uint8_t>(planes),
                                        .amounts = {}};
             snapshot.amounts.resize(std::popcount(snapshot.planes) * atlas::kTileTexels);
             const SQLite::Column blob = tile.getColumn(2);
-            unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), snapshot.amounts.data(),
-                   snapshot.amounts.size(), kTiles,
-                   state_->path.string() + ": the project is damaged: tile " + std::to_string(slot));
+            unpack(
+                blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), snapshot.amounts.data(),
+                snapshot.amounts.size(), kTiles,
+                state_->path.string() + ": the project is damaged: tile " + std::to_string(slot));
             saved.canvas.restore(snapshot);
         }
         // What does not add up is made again from the strokes.
@@ -347,6 +370,8 @@ std::optional<SavedCanvas> Project::load_canvas(std::size_t n_slots) const {
     });
 }
 
-bool is_project(const fs::path& path) { return header_of(path).application == kApplicationId; }
+bool is_project(const fs::path& path) {
+    return header_of(path).application == kApplicationId;
+}
 
 }  // namespace tuft::io

@@ -24,11 +24,11 @@ inline constexpr int kProjectFormat = 1;  ///< highest format version this progr
 using PresetText = std::pair<std::string, std::string>;
 
 struct ProjectModel {
-    std::string source;      ///< file the model came from, for people
-    std::string unit = "mm"; ///< unit of that file
-    mesh::TriangleMesh mesh; ///< metres
+    std::string source;       ///< file the model came from, for people
+    std::string unit = "mm";  ///< unit of that file
+    mesh::TriangleMesh mesh;  ///< metres
     atlas::Atlas atlas;
-    std::string substrate;   ///< TOML text
+    std::string substrate;  ///< TOML text
 };
 
 /// Texels as they were after stroke `stroke_id`, to be shown without a replay.
@@ -54,10 +54,10 @@ class Project {
 
     const std::filesystem::path& path() const;
     int format() const;
-    std::string written_by() const;      ///< program and version that made it
+    std::string written_by() const;  ///< program and version that made it
 
-    ProjectModel model() const;          ///< checked: sizes agree, indices in range, numbers finite
-    std::uint64_t model_hash() const;    ///< of positions and triangles
+    ProjectModel model() const;        ///< checked: sizes agree, indices in range, numbers finite
+    std::uint64_t model_hash() const;  ///< of positions and triangles
 
     void put_brush(const PresetText& preset);
     void put_ink(const PresetText& preset);

@@ -30,11 +30,14 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
         for (const std::uint32_t v : triangle)
             if (v >= n_vertices) damaged(path, "a triangle has a vertex that does not exist");
     for (const std::uint32_t t : m.neighbours)
-        if (t != kNone && t >= n_triangles) damaged(path, "a triangle has a neighbour that does not exist");
+        if (t != kNone && t >= n_triangles)
+            damaged(path, "a triangle has a neighbour that does not exist");
     for (const std::uint32_t g : m.triangle_groups)
-        if (g >= m.group_names.size()) damaged(path, "a triangle is in a group that does not exist");
+        if (g >= m.group_names.size())
+            damaged(path, "a triangle is in a group that does not exist");
     for (const std::uint32_t c : model.atlas.triangle_chart)
-        if (c >= model.atlas.n_charts) damaged(path, "a triangle is in a chart that does not exist");
+        if (c >= model.atlas.n_charts)
+            damaged(path, "a triangle is in a chart that does not exist");
     if (!all_finite(m.positions) || !all_finite(m.corner_normals) || !all_finite(m.corner_uvs) ||
         !all_finite(model.atlas.corner_uvs))
         damaged(path, "the model has numbers that are not finite");
@@ -132,13 +135,15 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
     ProjectModel model;
     model.source = row.getColumn(0).getString();
     model.unit = row.getColumn(1).getString();
-    const std::int64_t vertices = row.getColumn(2).getInt64(), triangles = row.getColumn(3).getInt64();
+    const std::int64_t vertices = row.getColumn(2).getInt64(),
+                       triangles = row.getColumn(3).getInt64();
     if (vertices < 1 || vertices > 3 * kMaxTriangles || triangles < 1 || triangles > kMaxTriangles)
         damaged(path, "the model's counts are out of range");
     const auto n_v = static_cast<std::size_t>(vertices), n_t = static_cast<std::size_t>(triangles);
     mesh::TriangleMesh& m = model.mesh;
     try {
-        m.group_names = nlohmann::json::parse(row.getColumn(4).getString()).get<std::vector<std::string>>();
+        m.group_names =
+            nlohmann::json::parse(row.getColumn(4).getString()).get<std::vector<std::string>>();
     } catch (const nlohmann::json::exception&) {
         damaged(path, "the names of the groups cannot be read");
     }

@@ -19,7 +19,7 @@ std::vector<double> columns_of(const std::vector<stroke::TraceSample>& samples) 
     for (std::size_t i = 0; i < n; ++i) {
         const stroke::TraceSample& s = samples[i];
         const std::array<double, kFields> fields{
-            s.time,     s.position.x, s.position.y, s.position.z, s.pressure,  s.tilt.x,
+            s.time,   s.position.x, s.position.y, s.position.z, s.pressure,  s.tilt.x,
             s.tilt.y, s.rotation.w, s.rotation.x, s.rotation.y, s.rotation.z};
         for (std::size_t f = 0; f < kFields; ++f) out[f * n + i] = fields[f];
     }
@@ -41,7 +41,8 @@ std::vector<stroke::TraceSample> samples_of(const std::vector<double>& columns) 
 }
 
 std::array<double, 9> numbers_of(const stroke::Placement& p) {
-    return {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z};
+    return {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y,
+            p.right.z,  p.down.x,   p.down.y,   p.down.z};
 }
 
 template <class Range>
@@ -55,9 +56,10 @@ bool finite(const Range& values) {
 
 void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
                    std::span<const stroke::Stroke> strokes) {
-    SQLite::Statement insert(db,
-                             "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, "
-                             "laying, placement, sample_count, samples) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    SQLite::Statement insert(
+        db,
+        "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, "
+        "laying, placement, sample_count, samples) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (const stroke::Stroke& stroke : strokes) {
         const stroke::Trace& t = stroke.trace;
         const std::vector<double> columns = columns_of(t.samples);
@@ -84,9 +86,10 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
 }
 
 std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path) {
-    SQLite::Statement select(db,
-                             "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
-                             "sample_count, samples FROM strokes ORDER BY ordinal");
+    SQLite::Statement select(
+        db,
+        "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
+        "sample_count, samples FROM strokes ORDER BY ordinal");
     std::vector<stroke::Stroke> strokes;
     while (select.executeStep()) {
         stroke::Stroke stroke;
@@ -101,17 +104,19 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         stroke.settings = stroke::settings_from_json(select.getColumn(5).getString());
         stroke.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
-        t.placement.laying =
-            select.getColumn(8).getString() == "project" ? stroke::Laying::project : stroke::Laying::wrap;
+        t.placement.laying = select.getColumn(8).getString() == "project" ? stroke::Laying::project
+                                                                          : stroke::Laying::wrap;
         const SQLite::Column placement = select.getColumn(9);
         std::array<double, 9> p{};
-        if (placement.getBytes() != static_cast<int>(sizeof p)) throw Error(what + " has no valid placement");
+        if (placement.getBytes() != static_cast<int>(sizeof p))
+            throw Error(what + " has no valid placement");
         std::memcpy(p.data(), placement.getBlob(), sizeof p);
         t.placement.origin = {p[0], p[1], p[2]};
         t.placement.right = {p[3], p[4], p[5]};
         t.placement.down = {p[6], p[7], p[8]};
         const std::int64_t count = select.getColumn(10).getInt64();
-        if (count < 0 || count > kMaxSamples) throw Error(what + " has an impossible number of samples");
+        if (count < 0 || count > kMaxSamples)
+            throw Error(what + " has an impossible number of samples");
         const SQLite::Column blob = select.getColumn(11);
         const auto size = static_cast<std::size_t>(blob.getBytes());
         const std::size_t numbers = kFields * static_cast<std::size_t>(count);

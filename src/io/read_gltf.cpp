@@ -1,10 +1,11 @@
 #include "io/read_gltf.h"
 
+#include <tiny_gltf.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <tiny_gltf.h>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 namespace tuft::io {
 namespace {
 
-constexpr int kMaxJsonDepth = 100;       // tinygltf and its JSON library recurse
+constexpr int kMaxJsonDepth = 100;  // tinygltf and its JSON library recurse
 constexpr int kMaxNodeDepth = 1000;
 constexpr std::size_t kMaxCorners = std::size_t{1} << 31;
 
@@ -25,8 +26,10 @@ void check_depth(const char* text, std::size_t size, const std::string& name) {
     for (std::size_t i = 0; i < size; ++i) {
         const char c = text[i];
         if (quoted) {
-            if (c == '\\') ++i;
-            else if (c == '"') quoted = false;
+            if (c == '\\')
+                ++i;
+            else if (c == '"')
+                quoted = false;
         } else if (c == '"') {
             quoted = true;
         } else if (c == '{' || c == '[') {
@@ -51,15 +54,17 @@ void check_container(const std::vector<char>& bytes, const std::string& name) {
     }
     if (bytes.size() < 20) throw Error(name, "the GLB file is cut short");
     if (u32(&bytes[4]) != 2)
-        throw Error(name, "is glTF version " + std::to_string(u32(&bytes[4])) + "; tuft reads version 2");
+        throw Error(name,
+                    "is glTF version " + std::to_string(u32(&bytes[4])) + "; tuft reads version 2");
     const std::size_t length = u32(&bytes[8]);
     if (length > bytes.size())
-        throw Error(name, "the GLB file is cut short: it has " + std::to_string(bytes.size()) + " of " +
-                              std::to_string(length) + " bytes");
+        throw Error(name, "the GLB file is cut short: it has " + std::to_string(bytes.size()) +
+                              " of " + std::to_string(length) + " bytes");
     std::size_t at = 12;
     for (int chunk = 0; at + 8 <= length; ++chunk) {
         const std::size_t size = u32(&bytes[at]);
-        if (size > length - at - 8) throw Error(name, "a chunk of the GLB file is longer than the file");
+        if (size > length - at - 8)
+            throw Error(name, "a chunk of the GLB file is longer than the file");
         if (chunk == 0) check_depth(&bytes[at + 8], size, name);
         at += 8 + size;
     }
@@ -74,7 +79,8 @@ struct Sandbox {
         std::error_code ec;
         const fs::path whole = fs::weakly_canonical(file, ec);
         const fs::path root = fs::weakly_canonical(folder, ec);
-        const auto [in_root, in_file] = std::mismatch(root.begin(), root.end(), whole.begin(), whole.end());
+        const auto [in_root, in_file] =
+            std::mismatch(root.begin(), root.end(), whole.begin(), whole.end());
         if (!ec && in_root == root.end()) return true;
         refused = file;
         return false;
@@ -86,9 +92,12 @@ bool sandbox_exists(const std::string& file, void* sandbox) {
     return static_cast<Sandbox*>(sandbox)->inside(file) && fs::is_regular_file(file, ec);
 }
 
-std::string sandbox_expand(const std::string& file, void*) { return file; }
+std::string sandbox_expand(const std::string& file, void*) {
+    return file;
+}
 
-bool sandbox_read(std::vector<unsigned char>* out, std::string* err, const std::string& file, void* sandbox) {
+bool sandbox_read(std::vector<unsigned char>* out, std::string* err, const std::string& file,
+                  void* sandbox) {
     try {
         if (!static_cast<Sandbox*>(sandbox)->inside(file)) return false;
         const std::vector<char> bytes = read_file(file);
@@ -112,7 +121,8 @@ bool skip_image(tinygltf::Image*, const int, std::string*, std::string*, int, in
 tinygltf::Model load(const std::vector<char>& bytes, const fs::path& path) {
     const std::string name = path.string();
     check_container(bytes, name);
-    if (bytes.size() > std::numeric_limits<unsigned>::max()) throw Error(name, "is larger than 4 GiB");
+    if (bytes.size() > std::numeric_limits<unsigned>::max())
+        throw Error(name, "is larger than 4 GiB");
     Sandbox sandbox{path.has_parent_path() ? path.parent_path() : fs::path("."), {}};
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(skip_image, nullptr);
@@ -127,7 +137,8 @@ tinygltf::Model load(const std::vector<char>& bytes, const fs::path& path) {
                                              reinterpret_cast<const unsigned char*>(bytes.data()),
                                              size, sandbox.folder.string());
         else
-            ok = loader.LoadASCIIFromString(&model, &err, &warn, bytes.data(), size, sandbox.folder.string());
+            ok = loader.LoadASCIIFromString(&model, &err, &warn, bytes.data(), size,
+                                            sandbox.folder.string());
     } catch (const std::bad_alloc&) {
         err = "it asks for more memory than there is";
     } catch (const std::exception& e) {
@@ -153,8 +164,10 @@ struct Rows {
     double number(std::size_t row, int column) const {
         const unsigned char* at = first + row * stride;
         switch (component) {
-            case TINYGLTF_COMPONENT_TYPE_FLOAT: return value<float>(at, column);
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return value<std::uint32_t>(at, column);
+            case TINYGLTF_COMPONENT_TYPE_FLOAT:
+                return value<float>(at, column);
+            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+                return value<std::uint32_t>(at, column);
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
                 return value<std::uint16_t>(at, column) / (normalised ? 65535.0 : 1.0);
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
@@ -189,21 +202,26 @@ Rows rows_of(const tinygltf::Model& model, int index, int type, const std::strin
     const tinygltf::Accessor* accessor = element(model.accessors, index);
     if (!accessor) fail("does not exist");
     if (accessor->type != type) fail("has the wrong type");
-    if (accessor->sparse.isSparse) fail("is sparse, which tuft does not read; export the model without");
+    if (accessor->sparse.isSparse)
+        fail("is sparse, which tuft does not read; export the model without");
     const tinygltf::BufferView* view = element(model.bufferViews, accessor->bufferView);
-    if (!view) fail("has no buffer view (compressed meshes are not read; export without compression)");
+    if (!view)
+        fail("has no buffer view (compressed meshes are not read; export without compression)");
     const tinygltf::Buffer* buffer = element(model.buffers, view->buffer);
     if (!buffer) fail("has no buffer");
-    const int component_size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor->componentType));
+    const int component_size =
+        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor->componentType));
     const int n_components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type));
-    if (component_size <= 0 || n_components <= 0 || accessor->componentType == TINYGLTF_COMPONENT_TYPE_DOUBLE)
+    if (component_size <= 0 || n_components <= 0 ||
+        accessor->componentType == TINYGLTF_COMPONENT_TYPE_DOUBLE)
         fail("has an unknown component type");
     const std::size_t row = static_cast<std::size_t>(component_size) * n_components;
     const std::size_t stride = view->byteStride > 0 ? view->byteStride : row;
     const std::size_t have = buffer->data.size();
     if (view->byteOffset > have || view->byteLength > have - view->byteOffset)
         fail("lies outside its buffer");
-    if (stride < row || stride > 4096 || accessor->byteOffset > view->byteLength) fail("lies outside its buffer");
+    if (stride < row || stride > 4096 || accessor->byteOffset > view->byteLength)
+        fail("lies outside its buffer");
     const std::size_t room = view->byteLength - accessor->byteOffset;
     if (accessor->count > 0 && (room < row || (room - row) / stride < accessor->count - 1))
         fail("lies outside its buffer view");
@@ -236,7 +254,8 @@ Mat4 local_transform(const tinygltf::Node& node) {
 
 class Gatherer {
   public:
-    Gatherer(const tinygltf::Model& model, std::string name) : model_(model), name_(std::move(name)) {}
+    Gatherer(const tinygltf::Model& model, std::string name)
+        : model_(model), name_(std::move(name)) {}
 
     mesh::PolygonSoup run() {
         soup_.polygon_start.push_back(0);
@@ -250,7 +269,8 @@ class Gatherer {
             Mat4 parent;
         };
         std::vector<Visit> stack;
-        for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, 0, Mat4(1.0)});
+        for (auto it = roots.rbegin(); it != roots.rend(); ++it)
+            stack.push_back({*it, 0, Mat4(1.0)});
         std::vector<bool> seen(model_.nodes.size(), false);
         while (!stack.empty()) {
             const Visit visit = stack.back();
@@ -266,7 +286,8 @@ class Gatherer {
                 stack.push_back({*it, visit.depth + 1, world});
         }
         if (model_.nodes.empty())
-            for (std::size_t m = 0; m < model_.meshes.size(); ++m) add_mesh(static_cast<int>(m), Mat4(1.0));
+            for (std::size_t m = 0; m < model_.meshes.size(); ++m)
+                add_mesh(static_cast<int>(m), Mat4(1.0));
         if (soup_.n_polygons() == 0) throw Error(name_, "has no triangles");
         if (!any_uv_) soup_.corner_uvs.clear();
         return std::move(soup_);
@@ -287,7 +308,8 @@ class Gatherer {
     void add_mesh(int index, const Mat4& world) {
         const tinygltf::Mesh* mesh = element(model_.meshes, index);
         if (!mesh) throw Error(name_, "mesh " + std::to_string(index) + " does not exist");
-        for (const tinygltf::Primitive& primitive : mesh->primitives) add_primitive(*mesh, primitive, world);
+        for (const tinygltf::Primitive& primitive : mesh->primitives)
+            add_primitive(*mesh, primitive, world);
     }
 
     std::uint32_t group_of(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive) {
@@ -296,10 +318,12 @@ class Gatherer {
         const auto found = std::find(soup_.group_names.begin(), soup_.group_names.end(), group);
         if (found == soup_.group_names.end()) soup_.group_names.push_back(group);
         return static_cast<std::uint32_t>(
-            std::find(soup_.group_names.begin(), soup_.group_names.end(), group) - soup_.group_names.begin());
+            std::find(soup_.group_names.begin(), soup_.group_names.end(), group) -
+            soup_.group_names.begin());
     }
 
-    void add_primitive(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive, const Mat4& world) {
+    void add_primitive(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive,
+                       const Mat4& world) {
         const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
         if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
             mode != TINYGLTF_MODE_TRIANGLE_FAN) {
@@ -308,18 +332,22 @@ class Gatherer {
         }
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) {
-            soup_.warnings.push_back("a part of mesh '" + mesh.name + "' without positions was skipped");
+            soup_.warnings.push_back("a part of mesh '" + mesh.name +
+                                     "' without positions was skipped");
             return;
         }
         const Rows points = rows_of(model_, position->second, TINYGLTF_TYPE_VEC3, name_);
         Rows uvs;
-        if (const auto uv = primitive.attributes.find("TEXCOORD_0"); uv != primitive.attributes.end()) {
+        if (const auto uv = primitive.attributes.find("TEXCOORD_0");
+            uv != primitive.attributes.end()) {
             uvs = rows_of(model_, uv->second, TINYGLTF_TYPE_VEC2, name_);
-            if (uvs.count != points.count) throw Error(name_, "TEXCOORD_0 and POSITION differ in count");
+            if (uvs.count != points.count)
+                throw Error(name_, "TEXCOORD_0 and POSITION differ in count");
             any_uv_ = true;
         }
         Rows indices;
-        if (primitive.indices >= 0) indices = rows_of(model_, primitive.indices, TINYGLTF_TYPE_SCALAR, name_);
+        if (primitive.indices >= 0)
+            indices = rows_of(model_, primitive.indices, TINYGLTF_TYPE_SCALAR, name_);
         const bool indexed = primitive.indices >= 0;
         const std::size_t n = indexed ? indices.count : points.count;
         const std::uint32_t base = add_points(points, world);
@@ -329,21 +357,23 @@ class Gatherer {
         const auto index_at = [&](std::size_t i) {
             const double index = indexed ? indices.number(i, 0) : static_cast<double>(i);
             if (!(index >= 0 && index < static_cast<double>(points.count)))
-                throw Error(name_, "index " + std::to_string(static_cast<long long>(index)) + " of mesh '" +
-                                       mesh.name + "' is out of range (there are " +
+                throw Error(name_, "index " + std::to_string(static_cast<long long>(index)) +
+                                       " of mesh '" + mesh.name + "' is out of range (there are " +
                                        std::to_string(points.count) + " vertices)");
             return static_cast<std::uint32_t>(index);
         };
         const bool list = mode == TINYGLTF_MODE_TRIANGLES;
         const std::size_t n_triangles = list ? n / 3 : (n >= 3 ? n - 2 : 0);
-        if (soup_.corners.size() + 3 * n_triangles > kMaxCorners) throw Error(name_, "has too many triangles");
+        if (soup_.corners.size() + 3 * n_triangles > kMaxCorners)
+            throw Error(name_, "has too many triangles");
         std::size_t dropped = 0;
         for (std::size_t t = 0; t < n_triangles; ++t) {
             std::array<std::size_t, 3> at{3 * t, 3 * t + 1, 3 * t + 2};
             if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) at = {t, t + 1 + t % 2, t + 2 - t % 2};
             if (mode == TINYGLTF_MODE_TRIANGLE_FAN) at = {t + 1, t + 2, 0};
             if (mirrored) std::swap(at[1], at[2]);
-            const std::array<std::uint32_t, 3> index{index_at(at[0]), index_at(at[1]), index_at(at[2])};
+            const std::array<std::uint32_t, 3> index{index_at(at[0]), index_at(at[1]),
+                                                     index_at(at[2])};
             if (bad_[base + index[0]] || bad_[base + index[1]] || bad_[base + index[2]]) {
                 ++dropped;
                 continue;
@@ -359,7 +389,8 @@ class Gatherer {
 
     std::uint32_t add_points(const Rows& points, const Mat4& world) {
         const auto base = static_cast<std::uint32_t>(soup_.points.size());
-        if (soup_.points.size() + points.count > kMaxCorners) throw Error(name_, "has too many vertices");
+        if (soup_.points.size() + points.count > kMaxCorners)
+            throw Error(name_, "has too many vertices");
         soup_.points.reserve(soup_.points.size() + points.count);
         for (std::size_t i = 0; i < points.count; ++i) {
             const Vec3 p = Vec3(world * glm::dvec4(points.number(i, 0), points.number(i, 1),
@@ -375,7 +406,8 @@ class Gatherer {
         soup_.corners.push_back(base + index);
         Vec2f uv(0);
         if (uvs.first)
-            uv = Vec2f(static_cast<float>(uvs.number(index, 0)), static_cast<float>(1 - uvs.number(index, 1)));
+            uv = Vec2f(static_cast<float>(uvs.number(index, 0)),
+                       static_cast<float>(1 - uvs.number(index, 1)));
         soup_.corner_uvs.push_back(uv);
     }
 

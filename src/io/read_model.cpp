@@ -39,7 +39,8 @@ std::optional<Format> by_extension(const std::filesystem::path& path) {
 std::optional<Format> by_content(std::string_view bytes) {
     if (bytes.starts_with("glTF")) return Format::glb;
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
-    for (const std::string_view magic : {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
+    for (const std::string_view magic :
+         {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
         if (bytes.starts_with(magic) && bytes.size() > magic.size() &&
             std::isspace(static_cast<unsigned char>(bytes[magic.size()])))
             return Format::off;
@@ -50,17 +51,24 @@ std::optional<Format> by_content(std::string_view bytes) {
 
 mesh::PolygonSoup read_model(const std::filesystem::path& path) {
     const std::vector<char> bytes = read_file(path);
-    std::optional<Format> format = by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
+    std::optional<Format> format =
+        by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
     if (!format) format = by_extension(path);
     if (!format)
-        throw Error(path.string(), "is no model format tuft knows; it reads OBJ, PLY, STL, OFF, GLB and glTF");
+        throw Error(path.string(),
+                    "is no model format tuft knows; it reads OBJ, PLY, STL, OFF, GLB and glTF");
     switch (*format) {
-        case Format::obj: return mesh::read_obj(bytes, path);
-        case Format::ply: return mesh::read_ply(bytes, path);
-        case Format::stl: return mesh::read_stl(bytes, path);
-        case Format::off: return mesh::read_off(bytes, path);
+        case Format::obj:
+            return mesh::read_obj(bytes, path);
+        case Format::ply:
+            return mesh::read_ply(bytes, path);
+        case Format::stl:
+            return mesh::read_stl(bytes, path);
+        case Format::off:
+            return mesh::read_off(bytes, path);
         case Format::glb:
-        case Format::gltf: return read_gltf(bytes, path);
+        case Format::gltf:
+            return read_gltf(bytes, path);
     }
     return {};
 }

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/parallel.h"
 #include "core/random.h"
 #include "ink/kubelka_munk.h"
+#include "mesh/repair.h"
 
 namespace tuft::ink {
 namespace {
@@ -61,9 +63,11 @@ TEST(Composite, AgreesWithTheScalarFormulas) {
                 s += w * canvas.pigments()[p].s[b];
             }
             // Single precision through a dozen operations.
-            EXPECT_NEAR(look.colour[b][t], over(layer(k, s, 1), porcelain.reflectance[b]), 2e-6) << t;
+            EXPECT_NEAR(look.colour[b][t], over(layer(k, s, 1), porcelain.reflectance[b]), 2e-6)
+                << t;
         }
-        for (int p = 0; p < 4; ++p) height += (*canvas.plane(0, p))[t] * canvas.pigments()[p].height * 1e6;
+        for (int p = 0; p < 4; ++p)
+            height += (*canvas.plane(0, p))[t] * canvas.pigments()[p].height * 1e6;
         EXPECT_NEAR(look.height[t], height, 1e-5 * height);
         EXPECT_GE(look.roughness[t], 0);
         EXPECT_LE(look.roughness[t], 1);
@@ -99,7 +103,8 @@ TEST(Composite, MapsHaveTheChartsTheirGutterAndTheBackground) {
     const Substrate porcelain = load_substrate("porcelain");
     const AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, porcelain, {.gutter = 4});
     ASSERT_EQ(image.texels.size(), 100u * 100u * 3u);
-    const TileLook look = look_of_tile(canvas, map.slot_of_tile[3 * map.tiles_per_side + 3], porcelain);
+    const TileLook look =
+        look_of_tile(canvas, map.slot_of_tile[3 * map.tiles_per_side + 3], porcelain);
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 100; ++x) {
             const double r = std::hypot(x + 0.5 - 50, y + 0.5 - 50);
@@ -119,7 +124,8 @@ TEST(Composite, RefreshingDirtyTilesEqualsComposingAnew) {
     const Substrate paper = load_substrate("rice-paper");
     AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, paper);
     for (std::uint32_t slot = 5; slot < 40; ++slot)
-        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
+        for (int t = 0; t < kN; ++t)
+            canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
     const TileSnapshot before = canvas.snapshot(2);
     canvas.touch(2, 0).fill(1);
     refresh_srgb8(image, canvas.take_dirty(), canvas, map, paper);
@@ -128,12 +134,49 @@ TEST(Composite, RefreshingDirtyTilesEqualsComposingAnew) {
     EXPECT_EQ(image.texels, compose_srgb8(canvas, map, paper).texels);
 }
 
+/// A cube of 20 mm: six faces, hence seams.
+mesh::TriangleMesh cube() {
+    mesh::PolygonSoup soup;
+    for (int i = 0; i < 8; ++i)
+        soup.points.emplace_back(i & 1 ? 20 : 0, i & 2 ? 20 : 0, i & 4 ? 20 : 0);
+    soup.corners = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
+    soup.polygon_start = {0, 4, 8, 12, 16, 20, 24};
+    return mesh::build_surface(soup).mesh;
+}
+
+TEST(Composite, GuttersContinueOverSeams) {
+    const mesh::TriangleMesh box = cube();
+    const atlas::Atlas atlas = atlas::unwrap(box, {.size = 256, .gutter = 3}).atlas;
+    const atlas::TexelMap map = build_texel_map(box, atlas);
+    const GutterPlan seams = plan_gutter(box, atlas, map);
+    const ComposeOptions options{.seams = &seams};
+    Canvas canvas(map.n_slots());
+    canvas.add_pigment(load_ink("indigo").parts[0].pigment);
+    const Substrate paper = load_substrate("rice-paper");
+    AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, paper, options);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); slot += 2)
+        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = 2 * map.tiles[slot].px[t] / 0.02f;
+    AtlasMap<float> linear = compose_linear(canvas, map, paper, options);
+    const std::vector<float> composed = linear.texels;
+    atlas::fill_gutter(seams.gutter, map, 3, linear.texels);
+    ASSERT_FALSE(seams.gutter.texels.empty());
+    // Beside unpainted texels the substrate stands as it is, not summed from taps.
+    for (std::size_t i = 0; i < composed.size(); ++i)
+        ASSERT_NEAR(linear.texels[i], composed[i], 1e-6);
+    refresh_srgb8(image, canvas.take_dirty(), canvas, map, paper, options);
+    EXPECT_EQ(image.texels, compose_srgb8(canvas, map, paper, options).texels);
+    for (std::size_t i = 0; i < image.texels.size(); i += 7)
+        EXPECT_NEAR(image.texels[i], 255 * srgb_encode(std::clamp(composed[i], 0.0f, 1.0f)), 4)
+            << "sums of at most 8 rounded taps";
+}
+
 TEST(Composite, ThreadsDoNotChangeTheMaps) {
     const atlas::TexelMap map = disc_map(300, 140);
     Canvas canvas(map.n_slots());
     canvas.add_pigment(load_ink("cobalt").parts[0].pigment);
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
-        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
+        for (int t = 0; t < kN; ++t)
+            canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
     const Substrate bisque = load_substrate("bisque");
     set_thread_count(1);
     const auto one = compose_linear(canvas, map, bisque);

@@ -47,7 +47,8 @@ TEST(Deposit, FollowsTheRateLawForAnySteps) {
     const Ink ink = plain("black");
     for (const double step : {0.05e-3, 0.1e-3, 0.5e-3, 1e-3}) {
         Canvas canvas(1);
-        DepositParams params{.mix = mix_of(canvas, ink), .target = 1.6f, .transfer_length = 0.5e-3f};
+        DepositParams params{
+            .mix = mix_of(canvas, ink), .target = 1.6f, .transfer_length = 0.5e-3f};
         for (double s = 0; s < 1e-3 - 1e-9; s += step)
             deposit(canvas, 0, constant(0.75f), kArea, step, params);
         // w(s) = c f (1 − exp(−s/s0)); float rounding per step 6e-8, at most 20 steps.
@@ -84,7 +85,8 @@ TEST(Deposit, ATexelHalfCoveredLooksHalfCovered) {
         for (int t = 0; t < kN; ++t) {
             const double bare = look.colour[1][0], full = look.colour[1][kN - 1];
             // Exact for a film that only absorbs; the tolerance is that of the scattering.
-            EXPECT_NEAR(look.colour[1][t], bare + coverage[t] * (full - bare), tolerance) << name << t;
+            EXPECT_NEAR(look.colour[1][t], bare + coverage[t] * (full - bare), tolerance)
+                << name << t;
         }
     }
 }
@@ -94,12 +96,15 @@ TEST(Deposit, GoalsFollowTheLogarithm) {
     for (const double extinction : {0.01, 1.0, 4.0, 100.0}) {
         Canvas canvas(1);
         deposit(canvas, 0, coverage, kArea, 1e6,
-                {.mix = mix_of(canvas, plain("black")), .target = 1.5f, .extinction = static_cast<float>(extinction)});
+                {.mix = mix_of(canvas, plain("black")),
+                 .target = 1.5f,
+                 .extinction = static_cast<float>(extinction)});
         const double e = std::min(extinction, 12 / 1.5);
         for (int t = 0; t < kN; ++t) {
             const double x = 1 - coverage[t] * -std::expm1(-e * 1.5);
             // Float rounding of x, magnified by the slope 1 / (ε x).
-            EXPECT_NEAR((*canvas.plane(0, 0))[t], -std::log(x) / e, 3e-7 * (1 + 1 / (e * x))) << extinction;
+            EXPECT_NEAR((*canvas.plane(0, 0))[t], -std::log(x) / e, 3e-7 * (1 + 1 / (e * x)))
+                << extinction;
         }
     }
 }
@@ -109,8 +114,8 @@ TEST(Deposit, GivenInkIsWhatTheTexelsGained) {
     const Mix mix = mix_of(canvas, plain("purple", {{"red", 0.3}, {"blue", 0.6}}));
     double given = 0;
     for (int i = 0; i < 300; ++i)
-        given += deposit(canvas, 0, random_texels(i, 0, 1), kArea, 2e-5,
-                         {.mix = mix, .target = 1.8f});
+        given +=
+            deposit(canvas, 0, random_texels(i, 0, 1), kArea, 2e-5, {.mix = mix, .target = 1.8f});
     double on_texels = 0, red = 0;
     for (int t = 0; t < kN; ++t) {
         const double area = kArea[t];
@@ -135,8 +140,8 @@ TEST(Deposit, AnotherInkGoesOnTopUpToTheCapacity) {
     EXPECT_EQ((*canvas.plane(0, 0))[5], black_before) << "what lies there stays";
     EXPECT_NEAR(black_before, 2, 1e-6);
     EXPECT_NEAR((*canvas.plane(0, 1))[5], 1, 1e-6) << "no more than the capacity in all";
-    const double more = deposit(canvas, 0, constant(1), kArea, 1e-3,
-                                {.mix = black, .target = 9, .capacity = 3});
+    const double more =
+        deposit(canvas, 0, constant(1), kArea, 1e-3, {.mix = black, .target = 9, .capacity = 3});
     EXPECT_LE(more, 1e-6 * 1e-8 * kN);
 }
 
@@ -159,7 +164,8 @@ TEST(Deposit, BitsArePinnedForEveryInstructionSet) {
     for (int i = 0; i < 40; ++i) {
         const Texels f = random_texels(i, 0, 1);
         deposit(canvas, 0, f, kArea, 7e-5, {.mix = mix, .target = 1.8f, .capacity = 1.5f});
-        const auto rate = static_cast<float>(-std::expm1(-7e-5 / static_cast<double>(DepositParams{}.transfer_length)));
+        const auto rate = static_cast<float>(
+            -std::expm1(-7e-5 / static_cast<double>(DepositParams{}.transfer_length)));
         for (int t = 0; t < kN; ++t) {
             float inverse0 = 1.0f / mix[0], inverse1 = 1.0f / mix[1];
             float all = w[0][t] + w[1][t];
@@ -182,7 +188,8 @@ TEST(Deposit, BitsArePinnedForEveryInstructionSet) {
 
 TEST(Reservoir, DippingFillsUpAndMixes) {
     Canvas canvas(1);
-    const Mix black = mix_of(canvas, plain("black")), thin = mix_of(canvas, plain("thin", {{"white", 0.5}}));
+    const Mix black = mix_of(canvas, plain("black")),
+              thin = mix_of(canvas, plain("thin", {{"white", 0.5}}));
     Reservoir tuft = make_reservoir(0.6);
     EXPECT_NEAR(tuft.capacity, 0.06, 1e-15) << "1 mL is 0.1 film·m²";
     EXPECT_NEAR(dip(tuft, black), 0.06, 1e-15);
@@ -226,7 +233,8 @@ TEST(Reservoir, ALoadedBrushWritesBlackAndAnEmptyOnePale) {
         take(tuft, tuft.remaining() - fullness * tuft.capacity);
         for (const double width : {0.3e-3, 2e-3, 6e-3, 10e-3}) {
             const DepositParams p = stamp_deposit(
-                tuft, ink, {.moment_factor = 0.5, .width = width, .area = width * width}, substrate);
+                tuft, ink, {.moment_factor = 0.5, .width = width, .area = width * width},
+                substrate);
             EXPECT_GE(p.target, 0.9 * ink.film) << fullness << " " << width;
         }
     }
@@ -253,13 +261,15 @@ TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
         const DepositParams params = stamp_deposit(tuft, ink, contact, substrate);
         double given = 0;
         for (std::uint32_t slot = 0; slot < 4; ++slot)
-            given += deposit(canvas, (i / 25 + slot) % kSlots, random_texels(i, 0, 1), area, 1e-4, params);
+            given += deposit(canvas, (i / 25 + slot) % kSlots, random_texels(i, 0, 1), area, 1e-4,
+                             params);
         take(tuft, given);
     }
     double on_texels = 0;
     for (std::uint32_t slot = 0; slot < kSlots; ++slot)
         for (int t = 0; t < kN && canvas.touched(slot); ++t)
-            on_texels += static_cast<double>(area[t]) * static_cast<double>((*canvas.plane(slot, 0))[t]);
+            on_texels +=
+                static_cast<double>(area[t]) * static_cast<double>((*canvas.plane(slot, 0))[t]);
     EXPECT_GT(on_texels, 0.9 * start) << "the test wants a brush that runs dry";
     EXPECT_GE(tuft.remaining(), 0);
     EXPECT_NEAR(on_texels + tuft.remaining(), start, 1e-6 * start);

@@ -19,7 +19,8 @@ std::vector<std::vector<double>> rows_of(const std::string& name) {
     std::vector<std::vector<double>> rows;
     std::string line;
     while (std::getline(file, line)) {
-        if (line.empty() || std::isalpha(static_cast<unsigned char>(line[0])) || line[0] == '#') continue;
+        if (line.empty() || std::isalpha(static_cast<unsigned char>(line[0])) || line[0] == '#')
+            continue;
         std::vector<double> row;
         std::stringstream cells(line);
         std::string cell;

@@ -82,7 +82,8 @@ TEST(Presets, UnknownNamesAreAnsweredWithTheNearest) {
     EXPECT_EQ(message_of([] { load_ink("carbn"); }), "unknown ink 'carbn', did you mean 'carbon'?");
     EXPECT_EQ(message_of([] { load_substrate("porcelian"); }),
               "unknown substrate 'porcelian', did you mean 'porcelain'?");
-    EXPECT_NE(message_of([] { load_ink("../../etc/passwd"); }).find("unknown ink"), std::string::npos);
+    EXPECT_NE(message_of([] { load_ink("../../etc/passwd"); }).find("unknown ink"),
+              std::string::npos);
 }
 
 TEST(Presets, BadFilesAreRefusedWithTheirLine) {
@@ -92,13 +93,16 @@ TEST(Presets, BadFilesAreRefusedWithTheirLine) {
         return message_of([&] { parse_ink(text, "x.toml"); });
     };
     EXPECT_NE(says("film = \n").find("x.toml:1: "), std::string::npos);
-    EXPECT_NE(says("film = 99\n" + good.substr(9)).find("x.toml:1: 'film' must lie in"), std::string::npos);
+    EXPECT_NE(says("film = 99\n" + good.substr(9)).find("x.toml:1: 'film' must lie in"),
+              std::string::npos);
     EXPECT_NE(says("flim = 2\n" + good.substr(9)).find("did you mean 'film'?"), std::string::npos);
     EXPECT_NE(says("film = 2\n").find("at least one [[pigment]]"), std::string::npos);
-    EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1]\nS = [1,1,1]\n").find("x.toml:8: 'K' must be 3"),
+    EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1]\nS = [1,1,1]\n")
+                  .find("x.toml:8: 'K' must be 3"),
               std::string::npos);
-    EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1,nan]\nS = [1,1,1]\n").find("x.toml:8: "),
-              std::string::npos);
+    EXPECT_NE(
+        says(good + "[[pigment]]\nname = \"q\"\nK = [1,1,nan]\nS = [1,1,1]\n").find("x.toml:8: "),
+        std::string::npos);
     EXPECT_NE(says(good + good.substr(9)).find("listed twice"), std::string::npos);
     EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1,1]\nS = [1,1,1]\n").find("sum to 2"),
               std::string::npos);

@@ -74,7 +74,8 @@ TEST(Export, GltfWithFilesReadBackIsTheSameMesh) {
     const mesh::TriangleMesh mesh = cylinder();
     const ModelMaps maps = pattern_maps(64);
     export_model(folder / "blue bowl.gltf", mesh, cylinder_atlas(mesh), maps);
-    expect_same(read_gltf(read_file(folder / "blue bowl.gltf"), folder / "blue bowl.gltf"), mesh, 1, 6e-8);
+    expect_same(read_gltf(read_file(folder / "blue bowl.gltf"), folder / "blue bowl.gltf"), mesh, 1,
+                6e-8);
     const auto files = exported_files(folder / "blue bowl.gltf", maps);
     EXPECT_EQ(files.size(), 5u);
     EXPECT_EQ(folder.n_files(), files.size());

@@ -23,7 +23,8 @@ std::string base64(const std::vector<char>& bytes) {
         std::uint32_t v = 0;
         for (std::size_t k = 0; k < 3; ++k)
             v = v << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        for (int k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : digits[v >> (18 - 6 * k) & 63];
+        for (int k = 0; k < 4; ++k)
+            out += i + k > bytes.size() ? '=' : digits[v >> (18 - 6 * k) & 63];
     }
     return out;
 }
@@ -43,7 +44,8 @@ json triangle() {
                    {"bufferView":2,"componentType":5123,"count":3,"type":"SCALAR"}],
       "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},
                      {"buffer":0,"byteOffset":60,"byteLength":6}],
-      "buffers":[{"byteLength":68,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}]})");
+      "buffers":[{"byteLength":68,"uri":"data:application/octet-stream;base64,)" +
+                       base64(bytes) + R"("}]})");
 }
 
 mesh::PolygonSoup read(const json& j, const std::filesystem::path& path = "x.gltf") {
@@ -76,11 +78,15 @@ TEST(Gltf, NodeTransformsAreComposed) {
         {"mesh":0,"scale":[2,3,-1]}])");
     const mesh::PolygonSoup soup = read(j);
     // (1,0,0) → scaled (2,0,0) → turned a quarter about z (0,2,0) → moved (0,2,5) → z up (0,−5,2).
-    const auto near = [](const Vec3& a, const Vec3& b) { EXPECT_LT(glm::distance(a, b), 1e-12) << a.x << " " << a.y << " " << a.z; };
+    const auto near = [](const Vec3& a, const Vec3& b) {
+        EXPECT_LT(glm::distance(a, b), 1e-12) << a.x << " " << a.y << " " << a.z;
+    };
     near(soup.points[1], {0, -5, 2});
     near(soup.points[2], {-3, -5, 0});
-    EXPECT_EQ(soup.corners, (std::vector<std::uint32_t>{0, 2, 1})) << "a mirrored mesh is turned round";
-    j["nodes"][0] = json::parse(R"({"children":[1],"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]})");
+    EXPECT_EQ(soup.corners, (std::vector<std::uint32_t>{0, 2, 1}))
+        << "a mirrored mesh is turned round";
+    j["nodes"][0] =
+        json::parse(R"({"children":[1],"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]})");
     near(read(j).points[1], {0, -5, 2});
 }
 
@@ -115,9 +121,11 @@ TEST(Gltf, FaultsAreNamed) {
     EXPECT_NE(with("/nodes/0/children", json::array({0})).find("tree"), std::string::npos);
     EXPECT_NE(with("/scenes/0/nodes", json::array({5})).find("node 5"), std::string::npos);
     EXPECT_NE(with("/accessors/2/count", 0).find("no triangles"), std::string::npos);
-    EXPECT_NE(with("/meshes/0/primitives/0/attributes/POSITION", 5).find("accessor 5"), std::string::npos);
+    EXPECT_NE(with("/meshes/0/primitives/0/attributes/POSITION", 5).find("accessor 5"),
+              std::string::npos);
     json j = triangle();
-    j["accessors"][2] = json::parse(R"({"bufferView":0,"componentType":5125,"count":3,"type":"SCALAR","byteOffset":12})");
+    j["accessors"][2] = json::parse(
+        R"({"bufferView":0,"componentType":5125,"count":3,"type":"SCALAR","byteOffset":12})");
     EXPECT_NE(fault(j).find("out of range"), std::string::npos);
     j = triangle();
     j["meshes"] = json::array();
@@ -131,7 +139,8 @@ TEST(Gltf, BuffersOutsideTheFolderAreRefused) {
     write_file(folder / "secret.bin", secret.data(), secret.size());
     write_file(folder / "models/own.bin", secret.data(), secret.size());
     json j = triangle();
-    for (const std::string& uri : {std::string("../secret.bin"), (folder / "secret.bin").string()}) {
+    for (const std::string& uri :
+         {std::string("../secret.bin"), (folder / "secret.bin").string()}) {
         j["buffers"][0]["uri"] = uri;
         EXPECT_THROW(read(j, folder / "models/m.gltf"), Error) << uri;
     }
@@ -173,7 +182,8 @@ TEST(Gltf, HostileBytesNeverCrash) {
         // Most faults matter in the JSON and the headers.
         const std::size_t reach = std::min<std::size_t>(bytes.size(), 2500);
         for (int k = 0; k < 1 + i % 5; ++k)
-            bytes[static_cast<std::size_t>(random.uniform() * reach)] = static_cast<char>(random.bits());
+            bytes[static_cast<std::size_t>(random.uniform() * reach)] =
+                static_cast<char>(random.bits());
         try {
             read_gltf(bytes, folder / "x.glb");
         } catch (const Error&) {

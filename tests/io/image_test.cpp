@@ -82,7 +82,8 @@ TEST(Image, BadFilesAreErrors) {
     const Folder folder("bad");
     write_image(folder / "a.png", view_of(noise<std::uint8_t>(64, 64, 3, 1)));
     std::vector<char> bytes = read_file(folder / "a.png");
-    for (const std::size_t size : {bytes.size() - 1, bytes.size() / 2, std::size_t{40}, std::size_t{9}}) {
+    for (const std::size_t size :
+         {bytes.size() - 1, bytes.size() / 2, std::size_t{40}, std::size_t{9}}) {
         write_file(folder / "cut.png", bytes.data(), size);
         // The last byte is only part of a checksum after the picture; libpng may do without.
         if (size < bytes.size() - 1) {
@@ -95,7 +96,9 @@ TEST(Image, BadFilesAreErrors) {
     write_file(folder / "text.png", text.data(), text.size());
     EXPECT_THROW(read_image8(folder / "text.png"), Error);
     EXPECT_THROW(write_image(folder / "a.bmp", view_of(noise<std::uint8_t>(4, 4, 3, 1))), Error);
-    EXPECT_THROW(write_image(folder / "no/such/folder/a.png", view_of(noise<std::uint8_t>(4, 4, 3, 1))), Error);
+    EXPECT_THROW(
+        write_image(folder / "no/such/folder/a.png", view_of(noise<std::uint8_t>(4, 4, 3, 1))),
+        Error);
     EXPECT_THROW(write_image(folder / "a.png", PixelView{}), Error);
 }
 
