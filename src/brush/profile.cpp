@@ -121,7 +121,8 @@ SectionMoment section_moment(double k1) {
 }
 
 SectionMoment section_moment(double k1, double k2) {
-    const double m = backbone(k1) - 2 * backbone((k1 - k2) / 2);
+    const bool past = std::abs(k2) > std::abs(k1);  // beyond the mirror point the first loading goes on
+    const double m = past ? backbone(k2) : backbone(k1) - 2 * backbone((k1 - k2) / 2);
     return {m, k2 - m};
 }
 

@@ -46,7 +46,7 @@ struct SectionMoment {
     double residual = 0;  ///< curvature left after elastic unloading from there
 };
 SectionMoment section_moment(double k1);
-/// Masing's rule for the reversal; |k2| <= |k1|.
+/// Masing's rule for the reversal at k1.
 SectionMoment section_moment(double k1, double k2);
 
 /// Nodes and weights of n-point Gauss–Legendre quadrature on (0, 1).

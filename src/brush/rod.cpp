@@ -30,6 +30,10 @@ Rod make_rod(const Profile& profile, std::span<const double> lengths) {
         from = to;
         node += rod.length[j];
     }
+    // The clamp joint stands for the half segment beside it, where the moment of a load at
+    // the tip is less by a quarter segment's lever; a little less than that, because yielding
+    // grows faster than the moment (set within 2 % at 16 segments).
+    if (n > 0) rod.yield[0] /= 1 - 0.225 * rod.length[0];
     return rod;
 }
 
@@ -54,11 +58,21 @@ Memory make_memory(const Rod& rod, const Clamp& clamp) {
     return memory;
 }
 
+namespace {
+
+Mat3 clamp_frame(const Clamp& c) { return {c.tangent, c.side, glm::cross(c.tangent, c.side)}; }
+
+/// How far a clamp went, turns counted at one length.
+double clamp_distance(const Clamp& a, const Clamp& b) {
+    return glm::length(b.position - a.position) + glm::length(b.tangent - a.tangent) +
+           glm::length(b.side - a.side);
+}
+
+}  // namespace
+
 void carry(Memory& memory, const Clamp& clamp) {
     const Clamp& was = memory.clamp;
-    const Mat3 from(was.tangent, was.side, glm::cross(was.tangent, was.side));
-    const Mat3 to(clamp.tangent, clamp.side, glm::cross(clamp.tangent, clamp.side));
-    const Mat3 turn = to * glm::transpose(from);
+    const Mat3 turn = clamp_frame(clamp) * glm::transpose(clamp_frame(was));
     for (Vec3& t : memory.tangent) t = glm::normalize(turn * t);
     for (Vec3& x : memory.node) x = clamp.position + turn * (x - was.position);
     memory.clamp = clamp;
@@ -161,12 +175,12 @@ Vec3 touching_point(const Obstacle& o, const Vec3& x_t0, const Vec3& x) {
     return x_t0 + std::min(1.0, z0 / (z0 - z1)) * (x - x_t0);
 }
 
-/// Friction of node i for the next pass, from the normal force and tangent known so far.
-Friction friction_of(const Rod& rod, const Law& law, int i, const Obstacle& o, double normal_force,
+/// Friction of a point for the next pass, from the normal force and tangent known so far.
+Friction friction_of(const Law& law, const Obstacle& o, double weight, double normal_force,
                      const Vec3& anchor, const Vec3& x, const Vec3& tangent) {
     Friction f;
     f.anchor = anchor;
-    f.stick = law.stick_stiffness * rod.weight[i];
+    f.stick = law.stick_stiffness * weight;
     f.cap = law.friction * normal_force;
     const Vec3 flat = tangent - glm::dot(tangent, o.normal) * o.normal;
     const double lean = glm::length(flat);
@@ -184,9 +198,6 @@ Friction friction_of(const Rod& rod, const Law& law, int i, const Obstacle& o, d
             f.cap *= 1 - law.with_hair * lean * with * with * with * with;
         }
     }
-    if (i == rod.segments()) {
-        f.pore_cap = law.pore_grip * normal_force * std::max(0.0, -glm::dot(tangent, o.normal));
-    }
     return f;
 }
 
@@ -194,14 +205,18 @@ Friction friction_of(const Rod& rod, const Law& law, int i, const Obstacle& o, d
 struct Solver {
     const Rod& rod;
     Memory& memory;
-    std::span<const Obstacle> obstacles;
+    std::span<const Obstacle> obstacles;   ///< of the nodes
     const Law& law;
+    std::vector<Obstacle> fine;            ///< of the contact points
     Frozen frozen;
     Shape shape;
     std::vector<double> normal;       ///< lagged N̂
     std::vector<Vec3> anchor;
     std::vector<char> anchored;
     Workspace& ws;
+    double moved = 0;                      ///< of the clamp since the last solve
+    std::vector<double> last_miss = {};    ///< of N̂ in the pass before
+    double relaxation = 1;
 
     int n() const { return rod.segments(); }
 
@@ -217,57 +232,131 @@ struct Solver {
         }
         frozen.rod = &rod;
         frozen.joint = &memory.joint;
-        frozen.obstacles = obstacles;
+        lay_points();
+        frozen.obstacles = fine;
         frozen.law = &law;
         frozen.load = load;
         frozen.clamp = memory.clamp;
-        frozen.friction.assign(n() + 1, {});
-        frozen.multiplier.assign(n() + 1, 0);
-        normal.assign(n() + 1, 0);
-        anchor.assign(n() + 1, Vec3{0});
-        anchored.assign(n() + 1, 0);
-        for (int i = 1; i <= n() && !obstacles.empty(); ++i) {
-            const ContactMemory& c = memory.contact[i];
-            const Obstacle& o = obstacles[i];
-            const Vec3& x = memory.node[i];
+        const std::size_t points = fine.size();
+        frozen.friction.assign(points, {});
+        frozen.multiplier.assign(points, 0);
+        normal.assign(points, 0);
+        anchor.assign(points, Vec3{0});
+        anchored.assign(points, 0);
+        memory.contact.resize(static_cast<std::size_t>(law.points_per_segment) * n() + 1);
+        for (std::size_t p = 1; p < points; ++p) {
+            const ContactMemory& c = memory.contact[p];
+            const Vec3 x = point(memory.node, p);
             if (c.touching) {
-                anchor[i] = c.anchor;
-                anchored[i] = 1;
-                normal[i] = c.force;
-                frozen.multiplier[i] = c.multiplier;
-            } else if (glm::dot(x - o.origin, o.normal) < o.radius) {
-                anchor[i] = touching_point(o, before[i], x);
-                anchored[i] = 1;
+                anchor[p] = c.anchor;
+                anchored[p] = 1;
+                normal[p] = c.force;
+                frozen.multiplier[p] = c.multiplier;
+            } else if (glm::dot(x - fine[p].origin, fine[p].normal) < fine[p].radius) {
+                anchor[p] = touching_point(fine[p], point(before, p), x);
+                anchored[p] = 1;
+            }
+        }
+    }
+
+    PointPlace place(std::size_t p) const {
+        return point_place(static_cast<int>(p), law.points_per_segment, n());
+    }
+
+    Vec3 point(const std::vector<Vec3>& x, std::size_t p) const {
+        const PointPlace at = place(p);
+        return (1 - at.s) * x[at.node] + at.s * x[at.node + 1];
+    }
+
+    /// Planes, radii and tributary lengths of the contact points.
+    void lay_points() {
+        if (obstacles.empty()) return;
+        const int per = law.points_per_segment;
+        fine.resize(static_cast<std::size_t>(per) * n() + 1);
+        frozen.weight.assign(fine.size(), 0);
+        for (std::size_t p = 0; p < fine.size(); ++p) {
+            const PointPlace at = place(p);
+            const Obstacle &a = obstacles[at.node], &b = obstacles[at.node + 1];
+            const Vec3 normal_sum = (1 - at.s) * a.normal + at.s * b.normal;
+            const double size = glm::length(normal_sum);
+            fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
+            fine[p].normal = size > 1e-6 ? normal_sum / size : a.normal;
+            fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
+            if (p + 1 < fine.size()) {
+                const double half = 0.5 * rod.length[at.node] / per;
+                frozen.weight[p] += half;
+                frozen.weight[p + 1] += half;
             }
         }
     }
 
     void freeze_friction(const std::vector<Vec3>& x) {
-        if (obstacles.empty() || law.friction <= 0) return;
-        for (int i = 1; i <= n(); ++i) {
-            frozen.friction[i] = {};
-            if (!anchored[i] || normal[i] <= 0) continue;
-            frozen.friction[i] = friction_of(rod, law, i, obstacles[i], normal[i], anchor[i], x[i],
-                                             shape.tangent[i - 1]);
+        if (fine.empty() || law.friction <= 0) return;
+        for (std::size_t p = 1; p < fine.size(); ++p) {
+            frozen.friction[p] = {};
+            if (!anchored[p] || normal[p] <= 0) continue;
+            const PointPlace at = place(p);
+            const Vec3& tangent = shape.tangent[at.s > 0 ? at.node : at.node - 1];
+            Friction f = friction_of(law, fine[p], frozen.weight[p], normal[p], anchor[p], point(x, p), tangent);
+            if (p + 1 == fine.size()) {
+                f.pore_cap = law.pore_grip * normal[p] * std::max(0.0, -glm::dot(tangent, fine[p].normal));
+            }
+            frozen.friction[p] = f;
         }
+    }
+
+    /// Starts from the shape carried on as it changed in the last solve, if Π is lower there.
+    void guess_onward() {
+        if (memory.turn.empty() || memory.moved <= 0) return;
+        const double part = std::min(2.0, moved / memory.moved);
+        const Mat3 frame = clamp_frame(memory.clamp);
+        ws.next.tangent.resize(shape.tangent.size());
+        for (std::size_t j = 0; j < shape.tangent.size(); ++j) {
+            ws.next.tangent[j] = glm::normalize(shape.tangent[j] + part * (frame * memory.turn[j]));
+        }
+        ws.next.side = transported_sides(memory.clamp, ws.next.tangent);
+        evaluate(frozen, shape, ws.at);
+        evaluate(frozen, ws.next, ws.trial);
+        if (ws.trial.value < ws.at.value) std::swap(shape, ws.next);
     }
 
     /// Takes the normal forces of the pass; true when they no longer change.
     bool take_normal_forces(int pass) {
         double change = 0, sum = 0;
-        for (int i = 1; i <= n(); ++i) {
-            const double fresh = ws.at.normal[i];
-            change += std::abs(fresh - (law.hard ? frozen.multiplier[i] : normal[i]));
+        for (std::size_t p = 1; p < fine.size(); ++p) {
+            const double fresh = ws.at.normal[p];
+            change += std::abs(fresh - (law.hard ? frozen.multiplier[p] : normal[p]));
             sum += fresh;
-            if (law.hard) frozen.multiplier[i] = fresh;
-            if (fresh > 0 && !anchored[i]) {
-                anchor[i] = ws.at.node[i];
-                anchored[i] = 1;
+            if (law.hard) frozen.multiplier[p] = fresh;
+            if (fresh > 0 && !anchored[p]) {
+                anchor[p] = point(ws.at.node, p);
+                anchored[p] = 1;
             }
-            normal[i] = pass > 6 ? 0.5 * (normal[i] + fresh) : fresh;
         }
         if (law.friction <= 0 && !law.hard) return true;
+        relax(pass);
         return change <= law.pass_tolerance * sum;
+    }
+
+    /// Moves N̂ towards the pass' normal forces, by Aitken's rule from the second pass on:
+    /// friction lifts or lowers the tuft, so that plain substitution can swing to and fro.
+    void relax(int pass) {
+        double along = 0, before = 0;
+        for (std::size_t p = 1; p < fine.size(); ++p) {
+            const double miss = ws.at.normal[p] - normal[p];
+            if (pass > 1) {
+                along += miss * last_miss[p];
+                before += last_miss[p] * last_miss[p];
+            }
+        }
+        // The last miss went in with `relaxation`: ratio = 1 - relaxation (1 - slope of the map).
+        const double ratio = before > 0 ? along / before : 0;
+        if (pass > 1) relaxation = std::clamp(relaxation / std::max(1 - ratio, 0.2), 0.2, 1.5);
+        last_miss.assign(fine.size(), 0);
+        for (std::size_t p = 1; p < fine.size(); ++p) {
+            last_miss[p] = ws.at.normal[p] - normal[p];
+            normal[p] = std::max(0.0, normal[p] + relaxation * last_miss[p]);
+        }
     }
 
     Result run() {
@@ -275,10 +364,11 @@ struct Solver {
         std::vector<Vec3> x = memory.node;
         for (out.passes = 1;; ++out.passes) {
             freeze_friction(x);
+            if (out.passes == 1) guess_onward();
             const NewtonResult r = newton(frozen, shape, ws, law.max_iterations - out.iterations);
             out.iterations += r.iterations;
             x = ws.at.node;
-            const bool settled = obstacles.empty() || take_normal_forces(out.passes);
+            const bool settled = fine.empty() || take_normal_forces(out.passes);
             out.converged = r.converged && settled;
             if (out.converged || out.passes >= law.max_passes ||
                 out.iterations >= law.max_iterations) {
@@ -293,7 +383,7 @@ struct Solver {
     void finish(Result& out) {
         const Evaluation& at = ws.at;
         out.moment.resize(n());
-        out.normal_force = at.normal;
+        out.normal_force.assign(n() + 1, 0);
         out.contact_force.assign(n() + 1, Vec3{0});
         for (int j = 0; j < n(); ++j) {
             out.moment[j] = glm::length(at.joint[j].moment + end_moment(frozen));
@@ -308,29 +398,38 @@ struct Solver {
             out.root_moment += glm::cross(at.node[i] - at.node[0], f);
         }
         out.root_moment += glm::cross(at.node[n()] - at.node[0], frozen.load.tip_force);
-        for (int i = 1; i <= n(); ++i) finish_contact(i, out);
+        for (std::size_t p = 0; p < memory.contact.size(); ++p) finish_contact(p, out);
+        const Mat3 back = glm::transpose(clamp_frame(memory.clamp));
+        memory.turn.resize(shape.tangent.size());
+        for (std::size_t j = 0; j < shape.tangent.size(); ++j) {
+            memory.turn[j] = back * (shape.tangent[j] - memory.tangent[j]);
+        }
+        memory.moved = moved;
         memory.tangent = shape.tangent;
         memory.node = at.node;
     }
 
-    void finish_contact(int i, Result& out) {
-        ContactMemory& c = memory.contact[i];
-        c.touching = !obstacles.empty() && ws.at.normal[i] > 0;
+    void finish_contact(std::size_t p, Result& out) {
+        ContactMemory& c = memory.contact[p];
+        c.touching = p < fine.size() && ws.at.normal[p] > 0;
         if (!c.touching) {
             c = {};
             return;
         }
-        c.force = ws.at.normal[i];
+        const PointPlace at = place(p);
+        c.force = ws.at.normal[p];
         c.multiplier = law.hard ? c.force : 0;
-        const Friction& f = frozen.friction[i];
-        c.anchor = anchored[i] ? anchor[i] : ws.at.node[i];
+        out.normal_force[at.node] += (1 - at.s) * c.force;
+        out.normal_force[at.node + 1] += at.s * c.force;
+        const Vec3 x = point(ws.at.node, p);
+        const Friction& f = frozen.friction[p];
+        c.anchor = anchored[p] ? anchor[p] : x;
         if (f.cap <= 0 || f.stick <= 0) {
-            if (law.friction <= 0) c.anchor = ws.at.node[i];
+            if (law.friction <= 0) c.anchor = x;
             return;
         }
-        const Vec3& normal_dir = obstacles[i].normal;
-        Vec3 d = ws.at.node[i] - c.anchor;
-        d -= glm::dot(d, normal_dir) * normal_dir;
+        Vec3 d = x - c.anchor;
+        d -= glm::dot(d, fine[p].normal) * fine[p].normal;
         const double along = glm::dot(d, f.grain);
         const Vec3 side = d - along * f.grain;
         const double q = std::sqrt(f.along * f.along * along * along +
@@ -339,7 +438,7 @@ struct Solver {
         out.contact_energy += 0.5 * f.stick * std::min(q, reach) * std::min(q, reach);
         if (q > reach) {
             out.dissipation += f.cap * (q - reach);
-            c.anchor = ws.at.node[i] - d * (reach / q);
+            c.anchor = x - d * (reach / q);
         }
     }
 };
@@ -350,8 +449,9 @@ Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
              std::span<const Obstacle> obstacles, const Law& law, const Load& load) {
     thread_local Workspace workspace;
     const std::vector<Vec3> before = memory.node;
+    const double moved = clamp_distance(memory.clamp, clamp);
     carry(memory, clamp);
-    Solver solver{rod, memory, obstacles, law, {}, {}, {}, {}, {}, workspace};
+    Solver solver{rod, memory, obstacles, law, {}, {}, {}, {}, {}, {}, workspace, moved};
     solver.begin(load, before);
     return solver.run();
 }
@@ -360,9 +460,9 @@ Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacl
                    const Law& law, const Load& load, std::span<const double> x) {
     Workspace ws;
     Memory copy = memory;
-    Solver solver{rod, copy, obstacles, law, {}, {}, {}, {}, {}, ws};
+    Solver solver{rod, copy, obstacles, law, {}, {}, {}, {}, {}, {}, ws, 0};
     solver.begin(load, memory.node);
-    for (std::size_t i = 0; i < memory.contact.size(); ++i) {
+    for (std::size_t i = 0; i < solver.fine.size() && i < memory.contact.size(); ++i) {
         solver.normal[i] = memory.contact[i].force;
         if (memory.contact[i].force > 0) {
             solver.anchor[i] = memory.contact[i].anchor;

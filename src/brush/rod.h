@@ -22,7 +22,7 @@
 /// (friction as energy with lagged normal force); see README.
 namespace tuft::brush::rod {
 
-inline constexpr int kFibres = 8;
+inline constexpr int kFibres = 16;
 inline constexpr int kMaxSegments = 128;
 
 struct Rod {
@@ -60,10 +60,13 @@ struct Obstacle {
 
 /// Contact law of all nodes.
 struct Law {
+    int points_per_segment = 1; ///< contact points: the nodes, and this less one between them,
+                                ///< whose planes and radii are interpolated
     bool hard = false;          ///< exact non-penetration by an augmented Lagrangian
     double stiffness = 1e4;     ///< k_c, force per length per indentation; penalty when hard
     double core_stiffness = 0;  ///< further k beyond core_start · radius
     double core_start = 0.65;
+    double onset = 0;           ///< indentation over which a stiffness comes in, smoothing its kink
     double adhesion = 0;        ///< pull per length of a wet node that all but touches, fading
     double adhesion_range = 0;  ///< as (1 - gap/range)² to nothing at this gap
     double friction = 0;        ///< μ
@@ -100,9 +103,12 @@ struct ContactMemory {
 struct Memory {
     Clamp clamp;
     std::vector<Vec3> tangent;         ///< [n] unit
+    std::vector<Vec3> turn;            ///< [n] change of each tangent in the last solve, in the
+                                       ///< clamp's frame, for a better first guess; or none
+    double moved = 0;                  ///< of the clamp in the last solve
     std::vector<Vec3> node;            ///< [n+1]
     std::vector<JointMemory> joint;    ///< [n]
-    std::vector<ContactMemory> contact;///< [n+1]
+    std::vector<ContactMemory> contact;///< [points_per_segment n + 1]
 };
 
 struct Result {
@@ -112,7 +118,7 @@ struct Result {
     double contact_energy = 0;         ///< stored in indented and sticking contacts
     double dissipation = 0;            ///< by yielding and slip, this solve
     std::vector<double> moment;        ///< [n] |m| at the joints
-    std::vector<double> normal_force;  ///< [n+1]
+    std::vector<double> normal_force;  ///< [n+1], shares of the points beside each node
     std::vector<Vec3> contact_force;   ///< [n+1] on the rod, with friction
     Vec3 force{0};                     ///< sum of contact forces
     Vec3 root_moment{0};               ///< of all outer forces about the root

@@ -151,6 +151,13 @@ struct NormalForce {
     double energy = 0, force = 0, stiffness = 0;
 };
 
+/// Spring of stiffness k on x > 0 whose stiffness grows in over `onset`.
+NormalForce ramp(double k, double x, double onset) {
+    if (x < onset) return {k * x * x * x / (6 * onset), 0.5 * k * x * x / onset, k * x / onset};
+    const double y = x - 0.5 * onset;
+    return {0.5 * k * y * y + k * onset * onset / 24, k * y, k};
+}
+
 NormalForce normal_force(const Law& law, double weight, double radius, double depth,
                          double multiplier) {
     if (law.hard) {
@@ -159,14 +166,13 @@ NormalForce normal_force(const Law& law, double weight, double radius, double de
         return {(force * force - multiplier * multiplier) / (2 * k), force, k};
     }
     if (depth <= 0) return {};
-    const double k = law.stiffness * weight;
-    NormalForce out{0.5 * k * depth * depth, k * depth, k};
+    NormalForce out = ramp(law.stiffness * weight, depth, law.onset);
     const double packed = depth - law.core_start * radius;
     if (packed > 0) {
-        const double kc = law.core_stiffness * weight;
-        out.energy += 0.5 * kc * packed * packed;
-        out.force += kc * packed;
-        out.stiffness += kc;
+        const NormalForce core = ramp(law.core_stiffness * weight, packed, law.onset);
+        out.energy += core.energy;
+        out.force += core.force;
+        out.stiffness += core.stiffness;
     }
     return out;
 }
@@ -216,6 +222,33 @@ void add_friction(const Friction& f, const Vec3& normal, const Vec3& x, double& 
 
 }  // namespace
 
+namespace {
+
+/// Adds contact point p to the slopes and curvatures of its two nodes; returns its potential.
+double add_contact(const Frozen& frozen, int p, Evaluation& out) {
+    const Law& law = *frozen.law;
+    const Obstacle& o = frozen.obstacles[p];
+    const PointPlace at = point_place(p, law.points_per_segment, frozen.rod->segments());
+    const Vec3 x = (1 - at.s) * out.node[at.node] + at.s * out.node[at.node + 1];
+    const double depth = o.radius - glm::dot(x - o.origin, o.normal);
+    if (depth <= -law.adhesion_range && !law.hard) return 0;
+    const NormalForce f = normal_force(law, frozen.weight[p], o.radius, depth, frozen.multiplier[p]);
+    const NormalForce pull = adhesion(law, frozen.weight[p], -depth);
+    double energy = f.energy + pull.energy;
+    out.normal[p] = f.force;
+    Vec3 slope = (pull.force - f.force) * o.normal;
+    Mat3 curvature = (f.stiffness + pull.stiffness) * outer(o.normal);
+    add_friction(frozen.friction[p], o.normal, x, energy, slope, curvature);
+    out.slope[at.node] += (1 - at.s) * slope;
+    out.slope[at.node + 1] += at.s * slope;
+    out.curvature[at.node] += (1 - at.s) * (1 - at.s) * curvature;
+    out.curvature[at.node + 1] += at.s * at.s * curvature;
+    if (at.s > 0 && at.s < 1) out.coupling[at.node] += at.s * (1 - at.s) * curvature;
+    return energy;
+}
+
+}  // namespace
+
 Vec2 end_moment(const Frozen& frozen) {
     const Clamp& c = frozen.clamp;
     const Vec3& toward = frozen.load.toward;
@@ -229,7 +262,8 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     out.node.resize(n + 1);
     out.slope.assign(n + 1, Vec3{0});
     out.curvature.assign(n + 1, Mat3(0.0));
-    out.normal.assign(n + 1, 0.0);
+    out.coupling.assign(n, Mat3(0.0));
+    out.normal.assign(frozen.obstacles.size(), 0.0);
     out.joint.resize(n);
 
     double value = 0;
@@ -248,21 +282,8 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     }
     value -= glm::dot(frozen.load.tip_force, out.node[n]);
     out.slope[n] -= frozen.load.tip_force;
-    if (!frozen.obstacles.empty()) {
-        for (int i = 1; i <= n; ++i) {
-            const Obstacle& o = frozen.obstacles[i];
-            const double depth = o.radius - glm::dot(out.node[i] - o.origin, o.normal);
-            const NormalForce f =
-                normal_force(*frozen.law, rod.weight[i], o.radius, depth, frozen.multiplier[i]);
-            const NormalForce pull = adhesion(*frozen.law, rod.weight[i], -depth);
-            value += f.energy + pull.energy;
-            out.normal[i] = f.force;
-            out.slope[i] += (pull.force - f.force) * o.normal;
-            const double stiffness = f.stiffness + pull.stiffness;
-            if (stiffness != 0) out.curvature[i] += stiffness * outer(o.normal);
-            add_friction(frozen.friction[i], o.normal, out.node[i], value, out.slope[i],
-                         out.curvature[i]);
-        }
+    for (int p = 1; p < static_cast<int>(frozen.obstacles.size()); ++p) {
+        value += add_contact(frozen, p, out);
     }
     out.value = value;
 }
@@ -364,14 +385,19 @@ void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& a
     for (int b = n - 1; b >= 0; --b) {
         slope += at.slope[b + 1];
         stiffness += at.curvature[b + 1];
+        if (b + 1 < n) stiffness += 2.0 * at.coupling[b + 1];
+        // Segments inboard of b also move the node at its inner end.
+        const Mat3 inboard = stiffness + at.coupling[b];
         const double lb = rod.length[b];
         const Vec3 tb[2] = {shape.side[b], second[b]};
         const double straight = -lb * glm::dot(shape.tangent[b], slope);
         for (int k = 0; k < 2; ++k) {
             gradient[2 * b + k] += lb * glm::dot(tb[k], slope);
             h(2 * b + k, 2 * b + k) += straight;
-            const Vec3 y = lb * (stiffness * tb[k]);
-            for (int c = 0; c <= b; ++c) {
+            const Vec3 own = lb * (stiffness * tb[k]), y = lb * (inboard * tb[k]);
+            h(2 * b + k, 2 * b) += lb * glm::dot(shape.side[b], own);
+            h(2 * b + k, 2 * b + 1) += lb * glm::dot(second[b], own);
+            for (int c = 0; c < b; ++c) {
                 const double lc = rod.length[c];
                 h(2 * b + k, 2 * c) += lc * glm::dot(shape.side[c], y);
                 h(2 * b + k, 2 * c + 1) += lc * glm::dot(second[c], y);

@@ -7,7 +7,17 @@
 /// Inside of the rod solver: Π and its derivatives for frozen friction and multipliers.
 namespace tuft::brush::rod {
 
-/// Friction of one node, frozen during one Newton solve.
+/// Where contact point p lies: x = (1 - s) x_j + s x_{j+1}.
+struct PointPlace {
+    int node = 0;
+    double s = 0;
+};
+inline PointPlace point_place(int p, int per_segment, int segments) {
+    if (p == per_segment * segments) return {segments - 1, 1.0};
+    return {p / per_segment, static_cast<double>(p % per_segment) / per_segment};
+}
+
+/// Friction of one contact point, frozen during one Newton solve.
 struct Friction {
     double cap = 0;          ///< μ N̂, force at slip
     double stick = 0;        ///< force per displacement while sticking
@@ -21,12 +31,13 @@ struct Friction {
 struct Frozen {
     const Rod* rod = nullptr;
     const std::vector<JointMemory>* joint = nullptr;
-    std::span<const Obstacle> obstacles;
+    std::span<const Obstacle> obstacles;  ///< of the contact points, or none
+    std::vector<double> weight;       ///< of the contact points, tributary lengths
     const Law* law = nullptr;
     Load load;
     Clamp clamp;
-    std::vector<Friction> friction;   ///< [n+1]
-    std::vector<double> multiplier;   ///< [n+1]
+    std::vector<Friction> friction;   ///< of the contact points
+    std::vector<double> multiplier;   ///< of the contact points
 };
 
 /// Unit tangent t and unit normal s of every segment; the pair (s, t × s) moves without spin.
@@ -47,7 +58,8 @@ struct Evaluation {
     std::vector<Vec3> node;          ///< [n+1]
     std::vector<Vec3> slope;         ///< [n+1] ∂V/∂x_i of contact, friction and load
     std::vector<Mat3> curvature;     ///< [n+1] ∂²V/∂x_i²
-    std::vector<double> normal;      ///< [n+1] normal force
+    std::vector<Mat3> coupling;      ///< [n] ∂²V/∂x_i∂x_{i+1}
+    std::vector<double> normal;      ///< of the contact points, normal force
     std::vector<JointForce> joint;   ///< [n]
 };
 

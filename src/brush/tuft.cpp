@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kBranchPoint = 2.0 / 3;  ///< share of the length below which the tuft never splits
 constexpr int kTwigs = 3;
+constexpr double kOnset = 5e-5;    ///< m, fuzz of the tuft's side
+constexpr int kContactPoints = 3;  ///< per segment: a patch then grows smoothly with depth
 
 rod::Clamp clamp_of(const Preset& p, const Pose& pose) {
     return {pose.position / p.length, pose.axis(), pose.rotation * Vec3{1, 0, 0}};
@@ -21,9 +23,11 @@ rod::Clamp clamp_of(const Preset& p, const Pose& pose) {
 rod::Law law_of(const Preset& p, double wetness, double share) {
     const double unit = p.stiffness / std::pow(p.length, 4);
     rod::Law law;
+    law.points_per_segment = kContactPoints;
     law.stiffness = p.transverse_stiffness / unit / share;
     law.core_stiffness = p.core_stiffness * law.stiffness;
     law.core_start = p.core_start;
+    law.onset = kOnset / p.length;
     law.adhesion = wetness * p.adhesion / (unit * p.length) / share;
     law.adhesion_range = p.adhesion_range / p.length;
     law.friction = p.friction_dry + (p.friction_wet - p.friction_dry) * wetness;

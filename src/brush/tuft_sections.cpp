@@ -104,7 +104,7 @@ std::vector<double> lowering(const SectionInput& in, const std::vector<Section>&
         const double z = glm::dot(s.centre - o.origin * in.preset.length, o.normal);
         const double r = in.spine.rest_radius[i], upright = std::abs(glm::dot(s.m, o.normal));
         if (tail >= 0 && z >= r) {
-            down[i] = std::clamp(z - 0.98 * s.b * upright, 0.0, tail);
+            down[i] = std::clamp(z, 0.0, tail);
             continue;
         }
         const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;

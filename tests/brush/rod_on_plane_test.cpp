@@ -13,7 +13,7 @@ namespace {
 Law hard_law(double mu) {
     Law law;
     law.hard = true;
-    law.stiffness = 1e4;
+    law.stiffness = 3e5;
     law.stick_stiffness = 1e4;
     law.friction = mu;
     law.tolerance = 1e-9;
@@ -68,7 +68,7 @@ TEST(RodOnPlane, NormalForceTipAndContactLengthMatchTheReference) {
         SCOPED_TRACE(row.text("alpha") + " " + row.text("beta") + " tilt " + row.text("tilt_deg") +
                      " depth " + row.text("depth_over_L") + " " + row.text("drag") + " mu " + row.text("mu"));
         const Standing s = press_and_drag(row, 16);
-        EXPECT_TRUE(s.result.converged) << s.limited;
+        EXPECT_TRUE(s.result.converged) << s.result.passes << " passes";
         const double n = row["N_L2_E0I0"];
         EXPECT_NEAR(s.normal, n, 0.02 * n);
         EXPECT_NEAR(1 - s.reach, row["contact_len_over_L"], 0.03 * std::max(0.3, row["contact_len_over_L"]));
@@ -77,7 +77,7 @@ TEST(RodOnPlane, NormalForceTipAndContactLengthMatchTheReference) {
         EXPECT_NEAR(tip.y, row["tip_y"], 0.002);
         EXPECT_NEAR(s.result.moment.front(), row["root_moment_ML_E0I0"], 0.02 * row["root_moment_ML_E0I0"]);
         if (row["mu"] > 0) {
-            EXPECT_LT(s.max_change, 1e-4 * n);
+            EXPECT_LT(s.max_change, 2e-4 * n);  // twice what a pass may leave
         }
     }
 }
