@@ -25,9 +25,9 @@ constexpr std::array kFree = {
     Free{&Preset::radius, 0.5e-3, 30e-3, 0, 0.15},
     Free{&Preset::tip_power, 0.6, 2.5, 0, 0.2},
     Free{&Preset::alpha, -6, 1, -2, 0.3},         // of 2 - α
-    Free{&Preset::beta, -0.97, 0, 1, 0.4},      // of 1 + β
+    Free{&Preset::beta, -0.995, 0, 1, 0.4},      // of 1 + β
     Free{&Preset::transverse_stiffness, 200, 2e5, 0, 0.5},
-    Free{&Preset::adhesion_range, 1e-5, 3e-3, 0, 0.7},
+    Free{&Preset::friction_wet, 0.05, 0.8, 0, 0.4},
     Free{&Preset::flatten_contact, 0.05, 6, 0, 0.4},
 };
 
@@ -40,6 +40,8 @@ void from_search(const Free& f, double x, Preset& p) {
     const double v = f.shift < 0 ? -f.shift - std::exp(x) : std::exp(x) - f.shift;
     p.*f.member = std::clamp(v, f.lo, f.hi);
 }
+
+constexpr double kNorm = 12; ///< of the three columns: the worst one counts most
 
 using Point = std::array<double, kFree.size()>;
 
@@ -79,8 +81,9 @@ Fit compare(const Preset& p, std::span<const SweepRow> measured, const SweepRow&
     for (double SweepRow::*column : columns) {
         fit.rms.*column = std::sqrt(fit.rms.*column / n);
         const double part = fit.rms.*column / (spread.*column);
-        fit.cost += part * part / 3;
+        fit.cost += std::pow(part, kNorm) / 3;
     }
+    fit.cost = std::pow(fit.cost, 1 / kNorm);
     return fit;
 }
 

@@ -37,7 +37,7 @@ constexpr std::array kFields = {
     Field{"shape", "hardness", &Preset::hardness, 1, 0, 1},
     Field{"bending", "stiffness_n_m2", &Preset::stiffness, 1, 1e-8, 1},
     Field{"bending", "alpha", &Preset::alpha, 1, -6, 3},
-    Field{"bending", "beta", &Preset::beta, 1, -0.97, 1},
+    Field{"bending", "beta", &Preset::beta, 1, -0.995, 1},
     Field{"bending", "yield", &Preset::yield, 1, 0, 100},
     Field{"bending", "gamma", &Preset::gamma, 1, -6, 3},
     Field{"bending", "plastic_share", &Preset::plastic_share, 1, 0, 1},

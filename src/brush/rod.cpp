@@ -1,6 +1,7 @@
 #include "brush/rod.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -96,28 +97,35 @@ struct Workspace {
     std::vector<double> gradient, hessian, step;
     DenseMatrix matrix;
     Eigen::LLT<DenseMatrix> factor;
+    Eigen::SelfAdjointEigenSolver<DenseMatrix> eigen;
 };
 
-/// Solves (H + shift) u = -g into ws.step; raises the shift until H is positive definite.
-bool newton_step(Workspace& ws, double& shift) {
+constexpr int kEigenCost = 12;  ///< iterations that a step by eigenvectors counts for
+
+/// Solves H u = -g into ws.step by Cholesky; where H is indefinite, by its eigenvectors with
+/// |λ| in place of λ, which still points downhill. Returns what it cost, 0 when it failed.
+int newton_step(Workspace& ws) {
     const auto size = static_cast<Eigen::Index>(ws.gradient.size());
-    const Eigen::Map<const DenseMatrix> h(ws.hessian.data(), size, size);
-    const double scale = h.diagonal().cwiseAbs().maxCoeff();
-    for (int attempt = 0; attempt < 12; ++attempt) {
-        ws.matrix = h;
-        ws.matrix.diagonal().array() += shift;
-        ws.factor.compute(ws.matrix);
-        if (ws.factor.info() == Eigen::Success) {
-            ws.step.resize(ws.gradient.size());
-            Eigen::Map<Eigen::VectorXd> u(ws.step.data(), size);
-            u = -ws.factor.solve(Eigen::Map<const Eigen::VectorXd>(ws.gradient.data(), size));
-            return u.allFinite();
-        }
-        shift = std::max(4 * shift, 1e-3 * scale);
+    ws.matrix = Eigen::Map<const DenseMatrix>(ws.hessian.data(), size, size);
+    const Eigen::Map<const Eigen::VectorXd> g(ws.gradient.data(), size);
+    ws.step.resize(ws.gradient.size());
+    Eigen::Map<Eigen::VectorXd> u(ws.step.data(), size);
+    ws.factor.compute(ws.matrix);
+    if (ws.factor.info() == Eigen::Success) {
+        u = -ws.factor.solve(g);
+        if (u.allFinite()) return 1;
     }
-    return false;
+    if (!ws.matrix.allFinite()) return 0;
+    ws.eigen.compute(ws.matrix);
+    if (ws.eigen.info() != Eigen::Success) return 0;
+    const Eigen::ArrayXd lambda = ws.eigen.eigenvalues().array().abs();
+    const double least = 1e-8 * lambda.maxCoeff();
+    const Eigen::VectorXd along = ws.eigen.eigenvectors().transpose() * g;
+    u = -(ws.eigen.eigenvectors() * (along.array() / lambda.max(least)).matrix());
+    return u.allFinite() ? kEigenCost : 0;
 }
 
+constexpr double kFaint = 0.02;       ///< B0/L²: normal force below which relative accuracy is no aim
 constexpr double kLongestStep = 0.3;  ///< radians any segment turns in one iteration
 
 struct NewtonResult {
@@ -129,7 +137,6 @@ struct NewtonResult {
 NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit) {
     const double tolerance = frozen.law->tolerance;
     NewtonResult out;
-    double shift = 0;
     evaluate(frozen, shape, ws.at);
     while (true) {
         differentiate(frozen, shape, ws.at, ws.gradient, ws.hessian);
@@ -140,8 +147,9 @@ NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit
             return out;
         }
         if (out.iterations >= limit || !std::isfinite(residual)) return out;
-        ++out.iterations;
-        if (!newton_step(ws, shift)) return out;
+        const int cost = newton_step(ws);
+        if (cost == 0) return out;
+        out.iterations += cost;
         double longest = 0, slope = 0;
         for (std::size_t j = 0; 2 * j < ws.step.size(); ++j) {
             longest = std::max(longest, std::hypot(ws.step[2 * j], ws.step[2 * j + 1]));
@@ -162,8 +170,6 @@ NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit
         }
         std::swap(shape, ws.next);
         std::swap(ws.at, ws.trial);
-        shift = scale >= 0.5 ? 0.25 * shift : shift;
-        if (shift < 1e-9) shift = 0;
     }
 }
 
@@ -335,7 +341,7 @@ struct Solver {
         }
         if (law.friction <= 0 && !law.hard) return true;
         relax(pass);
-        return change <= law.pass_tolerance * sum;
+        return change <= law.pass_tolerance * (sum + kFaint);
     }
 
     /// Moves N̂ towards the pass' normal forces, by Aitken's rule from the second pass on:

@@ -36,7 +36,7 @@ struct CalibrateOptions {
 struct Calibration {
     Preset preset;
     SweepRow rms;        ///< root mean square residual of each column (depth unused)
-    double cost = 0;     ///< mean square of residual over repeatability
+    double cost = 0;     ///< twelfth-power mean of the columns' rms over repeatability
     int evaluations = 0;
 };
 

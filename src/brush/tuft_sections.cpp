@@ -104,7 +104,9 @@ std::vector<double> lowering(const SectionInput& in, const std::vector<Section>&
         const double z = glm::dot(s.centre - o.origin * in.preset.length, o.normal);
         const double r = in.spine.rest_radius[i], upright = std::abs(glm::dot(s.m, o.normal));
         if (tail >= 0 && z >= r) {
-            down[i] = std::clamp(z, 0.0, tail);
+            // Comes to lie without a kink, so that the patch's end moves evenly with depth.
+            const double h = z - tail;
+            down[i] = std::max(0.0, z - 0.5 * (h + std::hypot(h, s.b)));
             continue;
         }
         const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;

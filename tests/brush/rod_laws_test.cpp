@@ -1,0 +1,251 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "brush/rod.h"
+#include "core/random.h"
+
+namespace tuft::brush::rod {
+namespace {
+
+const Clamp kClamp{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+
+double tip_error(const Profile& profile, int n, const Vec3& load, const Vec3& exact) {
+    const Rod rod = make_rod(profile, n, 0.6);
+    Memory memory = make_memory(rod, kClamp);
+    Law law;
+    law.tolerance = 1e-11;
+    law.max_iterations = 300;
+    for (int i = 1; i <= 4; ++i) solve(rod, memory, kClamp, {}, law, {(0.25 * i) * load});
+    return glm::length(memory.node.back() - exact);
+}
+
+TEST(RodLaws, TipErrorFallsFourfoldWhenSegmentsDouble) {
+    const Profile profile{-1, -0.8};
+    // The exact tip of this load by Richardson from the two finest rods (order 2).
+    const Rod fine = make_rod(profile, 128, 0.6);
+    const Vec3 load{0, 0.6, 0};
+    const auto tip = [&](int n) {
+        const Rod rod = make_rod(profile, n, 0.6);
+        Memory memory = make_memory(rod, kClamp);
+        Law law;
+        law.tolerance = 1e-11;
+        law.max_iterations = 300;
+        for (int i = 1; i <= 4; ++i) solve(rod, memory, kClamp, {}, law, {(0.25 * i) * load});
+        return memory.node.back();
+    };
+    const Vec3 exact = (4.0 * tip(128) - tip(64)) / 3.0;
+    double before = tip_error(profile, 8, load, exact);
+    for (const int n : {16, 32, 64}) {
+        const double error = tip_error(profile, n, load, exact);
+        EXPECT_NEAR(before / error, 4, 0.6) << n;  // second order, not yet quite asymptotic at 8
+        before = error;
+    }
+}
+
+TEST(RodLaws, SmallLoadsReduceToLinearTheory) {
+    for (const Profile& profile : {Profile{0, 0}, Profile{-1, -0.8}, Profile{-2.5, -0.9}}) {
+        const double load = 1e-4;
+        const Rod rod = make_rod(profile, 64, 0.6);
+        Memory memory = make_memory(rod, kClamp);
+        Law law;
+        law.tolerance = 1e-13;
+        solve(rod, memory, kClamp, {}, law, {{0, load, 0}});
+        const double w = small_deflection(profile, 1).w;
+        // 64 segments: error of second order, below 0.1 % for these profiles.
+        EXPECT_NEAR(memory.node.back().y / load, w, 2e-3 * w);
+    }
+}
+
+/// A bent, yielded rod that presses on a tilted plane and sticks and slips on it.
+struct Scene {
+    Rod rod;
+    Memory memory;
+    Law law;
+    std::vector<Obstacle> plane;
+};
+
+Scene rough_scene(bool hard) {
+    Scene s;
+    s.rod = make_rod({-1, -0.8, 0.3, -1}, 8, 0.5);
+    s.rod.plastic_share = 0.6;
+    const Clamp high{{0, 0, 0.95}, glm::normalize(Vec3{0.2, 0.1, -1}), {}};
+    Clamp clamp = high;
+    clamp.side = glm::normalize(glm::cross(clamp.tangent, Vec3{0.3, 1, 0.2}));
+    s.memory = make_memory(s.rod, clamp);
+    s.law.hard = hard;
+    s.law.stiffness = hard ? 1e3 : 60;
+    s.law.core_stiffness = 600;
+    s.law.core_start = 0.5;
+    s.law.onset = 0.01;
+    s.law.adhesion = 0.2;
+    s.law.adhesion_range = 0.03;
+    s.law.points_per_segment = 2;
+    s.law.friction = 0.4;
+    s.law.grain = 0.35;
+    s.law.pore_grip = 0.5;
+    s.law.stick_stiffness = 800;
+    s.law.max_iterations = 200;
+    Obstacle o;
+    o.normal = glm::normalize(Vec3{0.1, -0.05, 1});
+    s.plane.assign(9, o);
+    for (int i = 0; i <= 8; ++i) s.plane[i].radius = 0.08 * (1 - i / 8.5);
+    for (int i = 0; i < 30; ++i) {
+        clamp.position += Vec3{0.01 * std::sin(0.4 * i), 0.012, -0.008};
+        solve(s.rod, s.memory, clamp, s.plane, s.law);
+    }
+    return s;
+}
+
+TEST(RodLaws, GradientMatchesFiniteDifferences) {
+    for (const bool hard : {false, true}) {
+        const Scene s = rough_scene(hard);
+        ASSERT_TRUE(s.memory.joint[2].yielded);
+        const Load load{{0.01, -0.02, 0.03}, 0, {}};
+        const std::size_t size = 16;
+        std::vector<double> x(size, 0.0);
+        const Probe at = probe_energy(s.rod, s.memory, s.plane, s.law, load, x);
+        double largest = 0;
+        for (const double g : at.gradient) largest = std::max(largest, std::abs(g));
+        for (std::size_t i = 0; i < size; ++i) {
+            constexpr double h = 1e-5;
+            x[i] = h;
+            const double up = probe_energy(s.rod, s.memory, s.plane, s.law, load, x).value;
+            x[i] = -h;
+            const double down = probe_energy(s.rod, s.memory, s.plane, s.law, load, x).value;
+            x[i] = 0;
+            // Central difference: h² times third derivatives, and round-off 1e-16/h.
+            EXPECT_NEAR((up - down) / (2 * h), at.gradient[i], 1e-6 * (1 + largest)) << i << " hard " << hard;
+        }
+    }
+}
+
+TEST(RodLaws, GradientMatchesAtRandomShapesToo) {
+    Scene s = rough_scene(false);
+    Random random(3);
+    for (int trial = 0; trial < 20; ++trial) {
+        for (Vec3& t : s.memory.tangent) {
+            t = glm::normalize(t + 0.3 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        }
+        s.memory.node = nodes(s.rod, s.memory);
+        std::vector<double> x(16, 0.0);
+        const Probe at = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x);
+        // One random direction sums all components.
+        std::vector<double> d(16);
+        double slope = 0, scale = 0;
+        for (std::size_t i = 0; i < 16; ++i) {
+            d[i] = random.uniform(-1, 1);
+            slope += d[i] * at.gradient[i];
+            scale += std::abs(at.gradient[i]);
+        }
+        constexpr double h = 1e-6;
+        for (std::size_t i = 0; i < 16; ++i) x[i] = h * d[i];
+        const double up = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x).value;
+        for (std::size_t i = 0; i < 16; ++i) x[i] = -h * d[i];
+        const double down = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x).value;
+        EXPECT_NEAR((up - down) / (2 * h), slope, 1e-5 * (1 + scale));
+    }
+}
+
+TEST(RodLaws, RootCarriesWhatTheContactsGiveAndFrictionStaysInItsCone) {
+    const Rod rod = make_rod({-1, -0.8}, 16, 0.5);
+    Law law;
+    law.stiffness = 60;
+    law.core_stiffness = 3000;
+    law.friction = 0.35;
+    law.stick_stiffness = 2000;
+    law.onset = 2e-3;
+    law.tolerance = 1e-8;
+    law.pass_tolerance = 1e-3;
+    law.max_iterations = 300;
+    std::vector<Obstacle> plane(17);
+    for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
+    Clamp clamp{{0, 0, 0.98}, glm::normalize(Vec3{0.1, 0, -1}), {0, 1, 0}};
+    Memory memory = make_memory(rod, clamp);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 v = i < 50 ? Vec3{0.002, 0, -0.006} : Vec3{0.01 * std::cos(0.02 * i), 0.01 * std::sin(0.02 * i), 0};
+        clamp.position += v;
+        const std::vector<Vec3> before = memory.node;
+        const Result r = solve(rod, memory, clamp, plane, law);
+        ASSERT_TRUE(r.converged) << i;
+        // The clamp joint's moment balances all contact forces about the root.
+        Vec3 moment{0};
+        for (int k = 1; k <= 16; ++k) {
+            moment += glm::cross(memory.node[k] - memory.node[0], r.contact_force[k]);
+            EXPECT_GE(r.normal_force[k], 0);
+            const Vec3 f = r.contact_force[k];
+            const double tangential = std::hypot(f.x, f.y);
+            // N̂ lags by at most the pass tolerance of the whole force.
+            EXPECT_LE(tangential, law.friction * r.normal_force[k] + 1e-3 * r.force.z);
+            if (tangential > 0.99 * law.friction * r.normal_force[k] && i > 60) {
+                EXPECT_LE(f.x * (memory.node[k] - before[k]).x + f.y * (memory.node[k] - before[k]).y, 1e-9);
+            }
+        }
+        const Vec3 bending = moment - glm::dot(moment, clamp.tangent) * clamp.tangent;
+        EXPECT_NEAR(glm::length(bending), r.moment[0], 1e-6 + 1e-3 * r.moment[0]);
+        EXPECT_GE(r.dissipation, 0);
+    }
+}
+
+TEST(RodLaws, WorkOfTheHandEqualsStoredPlusLostEnergy) {
+    // Closed press, drag and lift: everything the hand put in was lost by slip and yielding.
+    Rod rod = make_rod({-1, -0.8, 0.6, -1}, 16, 0.5);
+    rod.plastic_share = 0.3;
+    Law law;
+    law.stiffness = 60;
+    law.core_stiffness = 3000;
+    law.friction = 0.3;
+    law.stick_stiffness = 4000;
+    law.pass_tolerance = 1e-4;
+    law.tolerance = 1e-9;
+    law.max_iterations = 300;
+    law.max_passes = 40;
+    std::vector<Obstacle> plane(17);
+    for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
+    Clamp clamp{{0, 0, 1.01}, glm::normalize(Vec3{0.15, 0, -1}), {0, 1, 0}};
+    Memory memory = make_memory(rod, clamp);
+    double work = 0, lost = 0;
+    Vec3 force{0};
+    Result r;
+    const auto go = [&](const Vec3& d) {
+        clamp.position += d;
+        r = solve(rod, memory, clamp, plane, law);
+        // The hand holds against the contact force: work is -F·d, by the trapezoidal rule.
+        work -= 0.5 * glm::dot(force + r.force, d);
+        force = r.force;
+        lost += r.dissipation;
+    };
+    for (int i = 0; i < 400; ++i) go({-0.0002, 0, -0.0008});
+    for (int i = 0; i < 600; ++i) go({-0.001, 0, 0});
+    for (int i = 0; i < 450; ++i) go({-0.0002, 0, 0.0008});
+    EXPECT_EQ(glm::length(r.force), 0);
+    EXPECT_NEAR(work, lost + r.bend_energy, 0.02 * work);
+    EXPECT_GT(lost, 0);
+}
+
+TEST(RodLaws, ElasticFrictionlessCycleReturnsExactly) {
+    const Rod rod = make_rod({-1, -0.8}, 16, 0.5);
+    Law law;
+    law.stiffness = 60;
+    law.core_stiffness = 3000;
+    law.tolerance = 1e-11;
+    std::vector<Obstacle> plane(17);
+    for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
+    Clamp clamp{{0, 0, 0.8}, glm::normalize(Vec3{0.3, 0, -1}), {0, 1, 0}};
+    Memory memory = make_memory(rod, clamp);
+    solve(rod, memory, clamp, plane, law);
+    const std::vector<Vec3> start = memory.node;
+    for (int i = 1; i <= 40; ++i) {
+        Clamp c = clamp;
+        const double a = 2 * 3.14159265358979 * i / 40;
+        c.position += Vec3{0.2 * (1 - std::cos(a)), 0.15 * std::sin(a), 0.1 * std::sin(a)};
+        if (i == 40) c = clamp;
+        solve(rod, memory, c, plane, law);
+    }
+    for (std::size_t i = 0; i < start.size(); ++i) {
+        EXPECT_LT(glm::length(memory.node[i] - start[i]), 1e-8);  // solver tolerance over the softest joint
+    }
+}
+
+}  // namespace
+}  // namespace tuft::brush::rod

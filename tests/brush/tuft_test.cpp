@@ -1,0 +1,315 @@
+#include "brush/tuft.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/random.h"
+
+namespace tuft::brush {
+namespace {
+
+Preset plain(const std::string& name = "mixed-medium") {
+    Preset p = load_preset(name);
+    p.yield = 0;
+    return p;
+}
+
+/// A short stroke: press while moving along `direction`, drag, maybe lift. All inputs can be
+/// turned by a rigid motion.
+struct Motion {
+    Quat rotation{1, 0, 0, 0};
+    Vec3 shift{0};
+    Vec3 apply(const Vec3& p) const { return rotation * p + shift; }
+};
+
+struct Stroke {
+    Vec3 direction{1, 0, 0};
+    double depth = 0.25;       // of the length
+    double lean = 0.12;        // radians, of the axis towards -x
+    int press = 80, drag = 120, lift = 0;
+    Motion motion;
+};
+
+TuftState draw(Tuft& tuft, const Stroke& s) {
+    const double length = tuft.preset.length;
+    ContactPlane plane{s.motion.apply({0, 0, 0}), s.motion.rotation * Vec3{0, 0, 1}};
+    const Quat lean = glm::angleAxis(s.lean, Vec3{0, 1, 0});
+    Pose pose;
+    TuftState state;
+    Vec3 at{0, 0, 0};
+    for (int i = 1; i <= s.press + s.drag + s.lift; ++i) {
+        at += 0.01 * length * s.direction;
+        double depth = s.depth * std::min(1.0, static_cast<double>(i) / s.press);
+        if (i > s.press + s.drag) depth *= 1 - 1.3 * (i - s.press - s.drag) / s.lift;
+        pose.position = s.motion.apply(at + Vec3{0, 0, length * (std::cos(s.lean) - depth)});
+        pose.rotation = s.motion.rotation * lean;
+        pose.time = 0.005 * i;
+        state = step(tuft, pose, {&plane, 1}, 0.005);
+    }
+    return state;
+}
+
+TEST(Tuft, SegmentsKeepTheirLengthAndSectionsTheirArea) {
+    Tuft tuft = make_tuft(load_preset("goat-medium"));
+    const TuftState state = draw(tuft, {});
+    const std::vector<Vec3>& x = tuft.spine.memory.node;
+    for (int j = 0; j < tuft.spine.rod.segments(); ++j) {
+        EXPECT_NEAR(glm::length(x[j + 1] - x[j]), tuft.spine.rod.length[j], 1e-12);
+    }
+    const std::vector<Section>& sections = state.branches.front().sections;
+    ASSERT_EQ(sections.size(), x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double r = tuft.spine.rest_radius[x.size() - 1 - i];
+        EXPECT_NEAR(sections[i].a * sections[i].b, r * r, 1e-12 * r * r);
+        EXPECT_LE(sections[i].a, tuft.preset.flatten_max * r * (1 + 1e-12));
+        EXPECT_NEAR(glm::dot(sections[i].e, sections[i].tangent), 0, 1e-12);
+        EXPECT_NEAR(glm::length(sections[i].e), 1, 1e-12);
+        EXPECT_LT(glm::length(glm::cross(sections[i].e, sections[i].tangent) - sections[i].m), 1e-12);
+    }
+}
+
+TEST(Tuft, PressAndLiftReturnsToRestWhenElastic) {
+    Tuft tuft = make_tuft(plain());
+    Stroke s;
+    s.lift = 100;
+    const TuftState state = draw(tuft, s);
+    EXPECT_FALSE(state.touching);
+    for (const Vec3& t : tuft.spine.memory.tangent) {
+        // Residual moment 1e-6 over the softest joint of about 1e-3.
+        EXPECT_GT(glm::dot(t, tuft.pose.axis()), 1 - 1e-6);
+    }
+}
+
+TEST(Tuft, AWetSoftTuftKeepsASetThatReshapingTakesOut) {
+    Preset p = load_preset("goat-medium");
+    p.yield = 0.4;
+    p.plastic_share = 0.5;
+    Tuft tuft = make_tuft(p);
+    Stroke s;
+    s.depth = 0.4;
+    s.lift = 150;
+    TuftState state = draw(tuft, s);
+    EXPECT_FALSE(state.touching);
+    const auto tip_angle = [&] { return std::acos(std::min(1.0, glm::dot(tuft.spine.memory.tangent.back(), tuft.pose.axis()))); };
+    EXPECT_GT(tip_angle(), 0.05);
+    reshape(tuft);
+    state = step(tuft, tuft.pose, {}, 0.01);
+    EXPECT_LT(tip_angle(), 1e-7);
+}
+
+TEST(Tuft, RigidMotionOfAllInputsMovesTheOutputs) {
+    const Stroke plain_stroke;
+    Tuft reference = make_tuft(load_preset("mixed-medium"));
+    const TuftState expected = draw(reference, plain_stroke);
+    Random random(11);
+    for (int trial = 0; trial < 4; ++trial) {
+        Stroke s = plain_stroke;
+        s.motion.rotation = glm::angleAxis(random.uniform(0, 3), glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}));
+        s.motion.shift = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        Tuft tuft = make_tuft(load_preset("mixed-medium"));
+        const TuftState state = draw(tuft, s);
+        // Round-off in the inputs is 1e-16 m; 200 solves to a tolerance of 1e-6 of the root moment.
+        for (std::size_t i = 0; i < expected.branches[0].sections.size(); ++i) {
+            const Section &a = expected.branches[0].sections[i], &b = state.branches[0].sections[i];
+            EXPECT_LT(glm::length(s.motion.apply(a.centre) - b.centre), 2e-6);
+            EXPECT_NEAR(a.a, b.a, 1e-2 * a.a);
+        }
+        EXPECT_LT(glm::length(s.motion.rotation * expected.force - state.force), 1e-2 * glm::length(expected.force));
+    }
+}
+
+TEST(Tuft, TurningTheHolderAboutItsAxisChangesNothing) {
+    Tuft a = make_tuft(plain()), b = make_tuft(plain());
+    const ContactPlane plane;
+    TuftState sa, sb;
+    for (int i = 1; i <= 150; ++i) {
+        const Quat lean = glm::angleAxis(0.15, Vec3{0, 1, 0});
+        Pose pose{{3e-4 * i, 0, 0.0317 - 5e-5 * i}, lean, 0.01 * i};
+        sa = step(a, pose, {&plane, 1}, 0.01);
+        pose.rotation = lean * glm::angleAxis(1.1, Vec3{0, 0, 1});
+        sb = step(b, pose, {&plane, 1}, 0.01);
+    }
+    EXPECT_LT(glm::length(sa.branches[0].sections[0].centre - sb.branches[0].sections[0].centre), 1e-6);
+    EXPECT_LT(glm::length(sa.force - sb.force), 1e-2 * glm::length(sa.force));
+}
+
+TEST(Tuft, ASymmetricStrokeStaysInItsPlane) {
+    Tuft tuft = make_tuft(load_preset("mixed-medium"));
+    const TuftState state = draw(tuft, {});
+    for (const Section& s : state.branches[0].sections) {
+        EXPECT_NEAR(s.centre.y, 0, 1e-9);
+        EXPECT_NEAR(std::abs(s.e.y), 1, 1e-9);
+    }
+    EXPECT_NEAR(state.force.y, 0, 1e-9);
+}
+
+TEST(Tuft, DragInEightDirectionsGivesTheTurnedResult) {
+    Stroke s;
+    s.lean = 0;
+    double width = 0;
+    for (int k = 0; k < 8; ++k) {
+        const double angle = k * std::numbers::pi / 4;
+        s.direction = {std::cos(angle), std::sin(angle), 0};
+        Tuft tuft = make_tuft(load_preset("mixed-medium"));
+        const TuftState state = draw(tuft, s);
+        const Vec3 tip = state.branches[0].sections.front().centre - tuft.pose.position;
+        const double behind = -glm::dot(tip, s.direction);
+        EXPECT_GT(behind, 0.2 * tuft.preset.length);
+        EXPECT_LT(std::abs(tip.x * s.direction.y - tip.y * s.direction.x), 0.01 * tuft.preset.length);
+        if (k == 0) width = behind;
+        EXPECT_NEAR(behind, width, 0.01 * width);
+    }
+}
+
+TEST(Tuft, SteadyDragIsSteady) {
+    for (const std::string name : {"wolf-small", "mixed-medium", "goat-large"}) {
+        Tuft tuft = make_tuft(load_preset(name));
+        Stroke s;
+        s.drag = 300;
+        draw(tuft, s);
+        const double length = tuft.preset.length;
+        const ContactPlane plane;
+        Pose pose = tuft.pose;
+        Vec3 tip_t0 = tuft.spine.memory.node.back() * length - pose.position;
+        for (int i = 0; i < 100; ++i) {
+            pose.position.x += 0.01 * length;
+            const TuftState state = step(tuft, pose, {&plane, 1}, 0.005);
+            const Vec3 tip = tuft.spine.memory.node.back() * length - pose.position;
+            EXPECT_LT(glm::length(tip - tip_t0), 1e-6) << name;  // a micrometre: far below a texel
+            EXPECT_TRUE(state.converged);
+            tip_t0 = tip;
+        }
+    }
+}
+
+TEST(Tuft, HalfTheStepGivesTheSameEnd) {
+    const auto end = [](int parts) {
+        Tuft tuft = make_tuft(load_preset("mixed-medium"));
+        const ContactPlane plane;
+        TuftState state;
+        for (int i = 1; i <= 200 * parts; ++i) {
+            const double t = static_cast<double>(i) / parts;
+            const Pose pose{{2.5e-4 * t, 2e-3 * std::sin(0.02 * t), 0.032 - 0.007 * std::min(1.0, t / 80)}, {1, 0, 0, 0}, 0.01 * t};
+            state = step(tuft, pose, {&plane, 1}, 0.01 / parts);
+        }
+        return state;
+    };
+    const TuftState coarse = end(1), fine = end(2);
+    EXPECT_LT(glm::length(coarse.branches[0].sections[0].centre - fine.branches[0].sections[0].centre), 0.01 * 0.032);
+    EXPECT_NEAR(coarse.normal_force, fine.normal_force, 0.01 * fine.normal_force);
+}
+
+TEST(Tuft, ScalesWithLengthAndStiffness) {
+    const double s = 1.7, c = 2.3;
+    Preset small = plain(), large = small;
+    large.length *= s;
+    large.radius *= s;
+    large.tip_radius *= s;
+    large.stiffness *= c;
+    large.transverse_stiffness *= c / std::pow(s, 4);
+    large.adhesion *= c / std::pow(s, 3);
+    large.adhesion_range *= s;
+    Tuft a = make_tuft(small), b = make_tuft(large);
+    const TuftState sa = draw(a, {}), sb = draw(b, {});
+    // Only the fuzz of 0.05 mm is a fixed length.
+    EXPECT_LT(glm::length(sa.branches[0].sections[0].centre * s - sb.branches[0].sections[0].centre), 1e-2 * large.length);
+    EXPECT_NEAR(sb.normal_force, sa.normal_force * c / (s * s), 0.03 * sb.normal_force);
+    EXPECT_NEAR(sb.root_moment, sa.root_moment * c / s, 0.03 * sb.root_moment);
+}
+
+TEST(Tuft, ForceGrowsWithDepth) {
+    double before = 0;
+    for (const double depth : {0.05, 0.1, 0.2, 0.3, 0.4}) {
+        Tuft tuft = make_tuft(load_preset("wolf-medium"));
+        Stroke s;
+        s.depth = depth;
+        const TuftState state = draw(tuft, s);
+        EXPECT_GT(state.normal_force, before);
+        before = state.normal_force;
+        const Vec3 felt = hand_force(tuft.preset, state);
+        EXPECT_LE(glm::length(felt), tuft.preset.force_limit * (1 + 1e-12));
+        EXPECT_GT(glm::dot(felt, state.force), 0);
+    }
+}
+
+TEST(Tuft, OnePlanePerNodeOfTheSamePlaneIsOnePlane) {
+    Tuft a = make_tuft(load_preset("mixed-medium")), b = a;
+    const ContactPlane plane;
+    const std::vector<ContactPlane> planes(17, plane);
+    for (int i = 1; i <= 100; ++i) {
+        const Pose pose{{2e-4 * i, 0, 0.032 - 7e-5 * i}, {1, 0, 0, 0}, 0.01 * i};
+        const TuftState sa = step(a, pose, {&plane, 1}, 0.01), sb = step(b, pose, planes, 0.01);
+        EXPECT_NEAR(sa.normal_force, sb.normal_force, 1e-9);
+    }
+    EXPECT_THROW(step(a, a.pose, std::span(planes).first(5), 0.01), Error);
+}
+
+TEST(Tuft, SplitsWhenBentAndDryAndMergesWhenWetAgain) {
+    Tuft tuft = make_tuft(load_preset("mixed-medium"));
+    tuft.ink_left = 0.02;
+    Stroke s;
+    s.depth = 0.42;
+    TuftState state = draw(tuft, s);
+    ASSERT_TRUE(tuft.split);
+    ASSERT_EQ(state.branches.size(), 3u);
+    double shares = 0;
+    for (const Branch& b : state.branches) shares += b.ink_share;
+    EXPECT_NEAR(shares, 1, 1e-12);
+    // The tips have the tuft's tip area between them and lie apart.
+    double area = 0;
+    for (const Branch& b : state.branches) area += b.sections[1].a * b.sections[1].b;
+    const double r = tuft.spine.rest_radius[15];
+    EXPECT_NEAR(area, r * r, 1e-9 * r * r);
+    EXPECT_GT(glm::length(state.branches[0].sections[0].centre - state.branches[2].sections[0].centre), 5e-4);
+    EXPECT_EQ(predicted_nodes(tuft, tuft.pose).size(), 17 + 3 * tuft.twigs[0].rest_radius.size());
+    tuft.ink_left = 1;
+    const ContactPlane plane;
+    step(tuft, tuft.pose, {&plane, 1}, 0.01);
+    state = step(tuft, tuft.pose, {&plane, 1}, 0.01);
+    EXPECT_EQ(state.branches.size(), 1u);
+}
+
+TEST(Tuft, TenThousandRandomPosesStayFiniteAndBounded) {
+    Random random(2024);
+    for (const std::string name : {"wolf-medium", "goat-small"}) {
+        Tuft tuft = make_tuft(load_preset(name));
+        const double length = tuft.preset.length;
+        for (int i = 0; i < 5000; ++i) {
+            if (i % 500 == 0) reset(tuft);
+            tuft.ink_left = random.uniform();
+            Pose pose;
+            const double reach = i % 3 == 0 ? 3 * length : 0.5 * length;  // jumps of up to 10 m/s at 100 Hz
+            pose.position = {random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, 1.2 * length)};
+            const Vec3 axis{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+            pose.rotation = glm::angleAxis(random.uniform(0, i % 2 == 0 ? 3.14 : 0.5), glm::normalize(axis + Vec3{1e-9, 0, 0}));
+            ContactPlane plane;
+            plane.normal = glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), 1.2});
+            std::vector<ContactPlane> planes(predicted_nodes(tuft, pose).size(), plane);
+            for (ContactPlane& p : planes) p.origin.z += 1e-3 * random.uniform();
+            const TuftState state = step(tuft, pose, planes, 0.01);
+            ASSERT_TRUE(std::isfinite(state.normal_force) && std::isfinite(glm::length(state.force)));
+            ASSERT_LE(state.iterations, 4 * 72);  // the rod and three sub-spines
+            for (const Branch& b : state.branches) {
+                for (const Section& s : b.sections) {
+                    ASSERT_TRUE(std::isfinite(glm::length(s.centre)) && std::isfinite(s.a) && std::isfinite(glm::length(s.e)));
+                }
+            }
+            for (std::size_t j = 0; j < tuft.spine.memory.tangent.size(); ++j) {
+                ASSERT_NEAR(glm::length(tuft.spine.memory.tangent[j]), 1, 1e-9);
+            }
+        }
+    }
+}
+
+TEST(Tuft, TheSameStrokeGivesTheSameBits) {
+    Tuft a = make_tuft(load_preset("goat-medium")), b = make_tuft(load_preset("goat-medium"));
+    const TuftState sa = draw(a, {}), sb = draw(b, {});
+    EXPECT_EQ(sa.force, sb.force);
+    EXPECT_EQ(sa.branches[0].sections[0].centre, sb.branches[0].sections[0].centre);
+}
+
+}  // namespace
+}  // namespace tuft::brush
