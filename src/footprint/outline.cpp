@@ -360,6 +360,11 @@ Outline stretch_outline(const Skin& skin, const Stretch& stretch, int points) {
 std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
                                     std::span<const brush::ContactPlane> planes) {
     const auto& branches = tuft.branches;
+    if (planes.size() == 1) {
+        std::vector<NodePlanes> same;
+        for (const brush::Branch& b : branches) same.emplace_back(b.sections.size(), planes[0]);
+        return same;
+    }
     if (branches.size() == 1 && planes.size() >= branches[0].sections.size())
         return {NodePlanes(planes.begin(), planes.begin() + branches[0].sections.size())};
     if (branches.size() < 2) return {};

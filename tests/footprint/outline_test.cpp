@@ -244,6 +244,8 @@ TEST(Outline, FollowsNodePlanesRoundACylinder) {
     }
     const std::vector<NodePlanes> by_branch = node_planes(tuft, planes);
     ASSERT_EQ(by_branch.size(), 1u);
+    EXPECT_EQ(node_planes(tuft, {planes.data(), 1}).at(0).size(), 17u);  // one serves all
+    EXPECT_TRUE(node_planes(tuft, {planes.data(), 5}).empty());
     const auto outlines = outline(tuft, kFlat, by_branch, dry());
     ASSERT_EQ(outlines.size(), 1u);
     EXPECT_NEAR(outlines[0].tail.x, -0.5 * length, 1e-5);

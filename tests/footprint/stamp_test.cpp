@@ -214,6 +214,51 @@ TEST(Stamp, UnfoldsARightAngle) {
     }
 }
 
+TEST(Stamp, RollsOverAFillet) {
+    // Two leaves at a right angle with a fillet of ρ = 0.2 r between, rounded out or in: the
+    // way over it is ρ π/2 longer. Contact 0.3 r before it.
+    const double r = 0.01, rho = 0.2 * r, a = 0.3 * r, side = 0.03, texels = 400;
+    for (const double sense : {1.0, -1.0}) {
+        testing::Patch level =
+            testing::flat({-side, -0.5 * side, 0}, {side, 0, 0}, {0, side, 0}, 8, 8);
+        testing::Patch bend;
+        bend.position = [=](double s, double t) {
+            const double angle = s * kPi / 2;
+            return Vec3{rho * std::sin(angle), (t - 0.5) * side,
+                        -sense * rho * (1 - std::cos(angle))};
+        };
+        bend.normal = [=](double s, double) {
+            return Vec3{sense * std::sin(s * kPi / 2), 0, std::cos(s * kPi / 2)};
+        };
+        bend.ns = 48;
+        bend.nt = 8;
+        const Vec3 down{0, 0, -sense * side};
+        testing::Patch wall =
+            testing::flat({rho, -0.5 * side, -sense * rho}, down, {0, side, 0}, 8, 8);
+        const double width = texels / side * rho * kPi / 2;
+        testing::place(level, {8.3, 8.3}, {texels, 0}, {0, texels});
+        testing::place(bend, {8.3 + texels + 9.2, 8.3}, {width, 0}, {0, texels});
+        testing::place(wall, {8.3 + texels + width + 18.7, 8.3}, {texels, 0}, {0, texels});
+        Stage stage(testing::build({level, bend, wall},
+                                   static_cast<std::uint32_t>(2 * texels + width + 40)));
+        const Vec3 at{-a, 0.0007, 0};
+        const Footprint f = disc(make_frame(at, {0, 0, 1}), stage.triangle_at(at), r, r / 128);
+        const StampJobs jobs = stage.plan(f);
+        const Errors e = errors(stage, jobs, f, r, [&](const Vec3& p) {
+            const double below = -sense * p.z;
+            double u = p.x;
+            if (p.x > 0)
+                u = below > rho ? rho * kPi / 2 + below - rho : rho * std::atan2(p.x, rho - below);
+            return Vec2{u + a, p.y - at.y};
+        });
+        // Target for fillets is 0.5 % at most.
+        EXPECT_LT(e.mean, 1e-3) << sense;
+        EXPECT_LT(e.max, 5e-3) << sense;
+        // Two seams of 250 texels, each counted by centres to half a texel, in a disc of 55 000.
+        EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f), 1, 8e-3) << sense;
+    }
+}
+
 TEST(Stamp, DoesNotBleedThroughAPlate) {
     const double thickness = 0.0002;
     Stage stage(testing::plate(0.04, thickness, 300));
