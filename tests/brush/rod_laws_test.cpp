@@ -157,7 +157,7 @@ TEST(RodLaws, RootCarriesWhatTheContactsGiveAndFrictionStaysInItsCone) {
     law.onset = 2e-3;
     law.tolerance = 1e-8;
     law.pass_tolerance = 1e-3;
-    law.max_iterations = 300;
+    law.max_iterations = 2000;
     std::vector<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     Clamp clamp{{0, 0, 0.98}, glm::normalize(Vec3{0.1, 0, -1}), {0, 1, 0}};
@@ -229,6 +229,7 @@ TEST(RodLaws, ElasticFrictionlessCycleReturnsExactly) {
     law.stiffness = 60;
     law.core_stiffness = 3000;
     law.tolerance = 1e-11;
+    law.max_iterations = 2000;
     std::vector<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     Clamp clamp{{0, 0, 0.8}, glm::normalize(Vec3{0.3, 0, -1}), {0, 1, 0}};
