@@ -37,8 +37,9 @@ std::vector<Vec3> centres(const brush::Branch& branch) {
 }
 
 /// Stands of the tuft's nodes, tip first; sub-spines, which follow in the list, start from the trunk.
-std::vector<Stand> stand_nodes(const Work& w, std::span<const Vec3> nodes, std::size_t trunk) {
-    std::vector<Stand> out = stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand);
+std::vector<Stand> stand_nodes(const Work& w, std::span<const Vec3> nodes, std::size_t trunk,
+                               std::span<const Stand> before = {}) {
+    std::vector<Stand> out = stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand, before);
     if (nodes.size() == trunk) return out;
     const std::size_t twig = (nodes.size() - trunk) / 3;
     for (std::size_t first = trunk; first < nodes.size(); first += twig) {
@@ -66,20 +67,23 @@ ContactPlane refreshed(const ContactPlane& old, const Stand& now, const Vec3& p,
 }
 
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
-brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes) {
+/// `planes`: those of the last solve. `rest`: stands of the trunk where it lies now, or empty.
+brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes,
+                       std::vector<Stand>& rest) {
     const std::size_t trunk = tuft.spine.rest_radius.size();
     const bool was_split = tuft.split;
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
-    for (const Stand& s : stand_nodes(w, nodes, trunk)) planes.push_back(s.plane);
+    const std::vector<Stand> predicted = stand_nodes(w, nodes, trunk);
+    for (const Stand& s : predicted) planes.push_back(s.plane);
     if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt);
 
     const brush::Tuft before = tuft;
     brush::TuftState state = brush::step(tuft, w.pose, planes, dt);
     for (int pass = 0; pass < w.options.max_refreshes && state.touching; ++pass) {
-        const std::vector<Vec3> rest = brush::predicted_nodes(tuft, w.pose);
-        if (tuft.split != was_split && rest.size() < nodes.size()) break;
-        const auto compared = std::span(rest).first(nodes.size());
-        const std::vector<Stand> stands = stand_nodes(w, compared, trunk);
+        const std::vector<Vec3> now = brush::predicted_nodes(tuft, w.pose);
+        if (tuft.split != was_split && now.size() < nodes.size()) break;
+        const auto compared = std::span(now).first(nodes.size());
+        const std::vector<Stand> stands = stand_nodes(w, compared, trunk, predicted);
         double worst = 0;
         std::vector<ContactPlane> fresh = planes;
         for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -89,7 +93,11 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<
             worst = std::max(worst, std::abs(z - stands[i].height));
             fresh[i] = refreshed(planes[i], stands[i], compared[i], radius);
         }
-        if (worst < w.options.refresh_error) break;
+        if (worst < w.options.refresh_error) {
+            rest = stands;
+            rest.resize(trunk);
+            break;
+        }
         planes = std::move(fresh);
         tuft = before;
         const int iterations = state.iterations;
@@ -112,9 +120,20 @@ brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, 
     return state;
 }
 
-/// Stands of every section of every branch of the solved tuft.
-std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::TuftState& tuft) {
+/// Stands of every section of every branch of the solved tuft. Of a whole tuft these are the stands of
+/// the rod's nodes, from which the sections' centres differ along the planes' normals only;
+/// `trunk` holds them if they are known.
+std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft& solved, const brush::TuftState& tuft,
+                                               std::vector<Stand> trunk) {
     std::vector<std::vector<Stand>> out;
+    if (tuft.branches.size() == 1) {
+        const std::vector<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
+        const std::size_t count = tuft.branches[0].sections.size();
+        if (trunk.size() != count && nodes.size() >= count)
+            trunk = stand_along(w.surface, w.root, std::span(nodes).first(count), w.near, w.stand);
+        out.push_back(std::move(trunk));
+        return out;
+    }
     // The branch that reaches the ferrule first; the others start where it is nearest.
     std::vector<std::size_t> order;
     for (std::size_t b = 0; b < tuft.branches.size(); ++b) order.push_back(b);
@@ -126,19 +145,35 @@ std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::TuftS
         const std::vector<Vec3> points = centres(tuft.branches[b]);
         Stand start = w.root;
         if (b != order.front() && !points.empty()) {
-            const std::vector<Stand>& trunk = out[order.front()];
-            const std::size_t at = std::min(points.size(), trunk.size());
-            if (at > 0) start = trunk[at - 1];
+            const std::vector<Stand>& first = out[order.front()];
+            const std::size_t at = std::min(points.size(), first.size());
+            if (at > 0) start = first[at - 1];
         }
         out[b] = stand_along(w.surface, start, points, w.near, w.stand);
     }
     return out;
 }
 
+/// Metres between the surface and a tuft that hangs free, sections taken for balls.
+double skin_distance(const Work& w, const brush::TuftState& tuft) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const brush::Branch& branch : tuft.branches)
+        for (const brush::Section& s : branch.sections) {
+            const double r = std::sqrt(s.a * s.b);
+            if (const auto q = w.surface.closest_point(s.centre, best + r)) best = std::min(best, q->distance - r);
+        }
+    return std::max(best, 0.0);
+}
+
 /// The contact frame under the middle of the touching sections, and the distance to touch.
 /// Sections weigh as deep as they reach into the surface, so that it moves continuously.
 void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, Memory& memory, Result& result) {
-    Vec3 sum{0};
+    Vec3 sum{0}, travel{0};
+    std::vector<Vec3> centres;
+    for (const brush::Branch& branch : result.tuft.branches)
+        for (const brush::Section& s : branch.sections) centres.push_back(s.centre);
+    const bool followed = memory.touching && memory.centres.size() == centres.size();
+    std::size_t at_centre = 0;
     double total = 0, heaviest = 0, gap = std::numeric_limits<double>::infinity();
     const Stand* from = nullptr;
     const Stand* lowest = nullptr;
@@ -146,6 +181,7 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
         const std::vector<brush::Section>& sections = result.tuft.branches[b].sections;
         for (std::size_t i = 0; i < sections.size(); ++i) {
             const Stand& s = stands[b][i];
+            const std::size_t k = at_centre++;
             if (s.triangle == kNone) continue;
             const double under = s.height - std::sqrt(sections[i].a * sections[i].b);  // as the rod's contacts
             if (under < gap) {
@@ -156,6 +192,7 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
             const double share = 0.5 * glm::length(sections[next].centre - sections[prev].centre);
             const double weight = std::max(0.0, 1e-5 - under) * share;
             sum += weight * s.plane.origin;
+            if (followed) travel += weight * (centres[k] - memory.centres[k]);
             total += weight;
             if (weight > heaviest) {
                 heaviest = weight;
@@ -163,8 +200,11 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
             }
         }
     }
+    if (memory.touching && total > 0) result.travel = followed ? travel / total : w.pose.position - memory.root;
+    memory.centres = std::move(centres);
     if (!lowest) return;
     result.distance = result.tuft.touching ? 0 : std::max(0.0, gap);
+    if (gap > w.options.tolerance) result.distance = skin_distance(w, result.tuft);
     Stand at = *lowest;
     if (total > 0) {
         const Stand middle = stand_from(w.surface, from->outside, from->side, sum / total, w.stand);
@@ -197,7 +237,7 @@ Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery
 
     Work w{surface, pose, options, {}, 0, {}};
     w.stand.reach = 2 * preset.length + thick;
-    w.near = thick + options.tolerance;
+    w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (meets) w.root = stand_of_root(w, memory, preset.length);
     const bool reachable = meets && w.root.triangle != kNone && w.root.height < preset.length + w.near;
     if (!reachable) {
@@ -208,9 +248,10 @@ Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery
         return result;
     }
 
-    result.tuft = options.method == Method::exact ? solve(w, tuft, dt, result.planes)
+    std::vector<Stand> rest;
+    result.tuft = options.method == Method::exact ? solve(w, tuft, dt, result.planes, rest)
                                                  : solve_by_vertices(w, tuft, dt, result);
-    const std::vector<std::vector<Stand>> stands = stand_sections(w, result.tuft);
+    const std::vector<std::vector<Stand>> stands = stand_sections(w, tuft, result.tuft, std::move(rest));
     for (const std::vector<Stand>& branch : stands) {
         result.branch_planes.emplace_back();
         for (const Stand& s : branch) result.branch_planes.back().push_back(s.plane);

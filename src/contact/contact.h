@@ -32,6 +32,7 @@ struct Memory {
     Vec3 outside{0};                ///< the same, or where it came out in front of the surface
     double side = 1;                ///< -1: on the back of an open sheet
     Vec3 heading{1, 0, 0};          ///< t of the last contact frame
+    std::vector<Vec3> centres;      ///< of all sections at the last sample, metres
 };
 
 /// The tuft against the model at one pose.
@@ -43,6 +44,8 @@ struct Result {
     Frame frame;                ///< on the surface under the contact patch, n outward; t carried
                                 ///< along from the stamp before
     std::uint32_t triangle = kNone;  ///< under frame.origin; kNone when nothing is near
+    Vec3 travel{0};             ///< metres, world: way of the touching hair since the last sample; the
+                                ///< frame's origin may go another way over a crease. 0 at first touch
     double distance = 0;        ///< metres from the tuft's skin to the surface; 0 when touching
     Vec3 hand_force{0};         ///< N, to a haptic device: gain, clamp and proximity applied
     Sphere sphere;              ///< Method::vertices: round the bent tuft

@@ -28,7 +28,7 @@ Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, dou
 }  // namespace
 
 Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double side, const Vec3& p,
-                 const StandOptions& options) {
+                 const StandOptions& options, const Vec3* known) {
     Stand out;
     out.outside = p;
     out.side = side;
@@ -44,7 +44,8 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
             behind = true;
         }
     }
-    const auto q = surface.closest_point(front, options.reach);
+    const double within = known ? 1.000001 * glm::length(front - *known) + 1e-9 : options.reach;
+    const auto q = surface.closest_point(front, std::min(within, options.reach));
     if (!q) return out;
     const Vec3 off = p - q->position;
     if (!behind) {
@@ -61,7 +62,7 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
 }
 
 std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root, std::span<const Vec3> points,
-                               double near, const StandOptions& options) {
+                               double near, const StandOptions& options, std::span<const Stand> before) {
     std::vector<Stand> out(points.size());
     Stand last = root;
     Vec3 looked_up = root.outside;
@@ -75,7 +76,9 @@ std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& r
             out[i].height = free;
             continue;
         }
-        last = stand_from(surface, i + 1 < points.size() ? out[i + 1].outside : root.outside, last.side, p, options);
+        const Stand& hint = i < before.size() ? before[i] : last;
+        const Vec3& from = i + 1 < points.size() ? out[i + 1].outside : root.outside;
+        last = stand_from(surface, from, last.side, p, options, hint.triangle != kNone ? &hint.plane.origin : nullptr);
         out[i] = last;
         looked_up = last.outside;
         clear = last.triangle == kNone ? options.reach : last.height;
