@@ -13,6 +13,8 @@ namespace tuft::stroke {
 namespace {
 
 constexpr std::size_t kPosesPerReport = 16;
+// Bending moment of a firm press over B0/L: what a hand reaches at the working depth.
+constexpr double kFirmPress = 0.1;
 
 footprint::StampOptions stamp_options(const Settings& settings) {
     footprint::StampOptions o;
@@ -156,7 +158,7 @@ void Painting::draw_poses() {
         h.was_touching = true;
         h.last_frame = contact.frame;
         const double area = footprint_area(stamp.footprint);
-        const double moment_limit = h.tuft.preset.stiffness / h.tuft.preset.length;
+        const double moment_limit = kFirmPress * h.tuft.preset.stiffness / h.tuft.preset.length;
         const ink::StampContact touch{
             .moment_factor = std::min(1.0, std::abs(contact.tuft.root_moment) / moment_limit),
             .width = std::sqrt(area),
