@@ -71,6 +71,8 @@ struct HoldOptions {
     double working_depth = 0.010;   ///< metres of the unbent tip below the surface at pressure 1
     double hover = 0.002;           ///< metres of the tip above the surface when not pressed
     double max_tilt = 1.2;          ///< radians; more lean than this is cut
+    double steady = 0.008;          ///< metres of travel, to both sides, over which the hand levels
+                                    ///< out height and normal: it does not dip into narrow grooves
     std::vector<Lead> lead;         ///< rising in depth, linear between, constant outside; empty: none
     double lead_turn = 0.0015;      ///< metres of travel in which the lead follows a turn
 };
@@ -96,6 +98,9 @@ Trace lead_hand(Trace trace, const HoldOptions& options);
 /// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the
 /// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
 /// pressure · working depth below the sample (hover above it where the pressure is 0).
+/// Normal and height are those of a steady hand: the mean of the normals within `steady` of
+/// travel that lie near it, and the median height of those samples over the plane it spans.
+/// On a surface of curvature κ along the path that shifts the height by κ steady² / 8.
 std::vector<brush::Pose> hold(std::span<const LaidSample> samples, const HoldOptions& options);
 
 /// Poses of a trace in space: its samples as they are, rotations of unit length.

@@ -261,6 +261,39 @@ TEST(Placement, HeldTuftReachesThePressedDepth) {
     }
 }
 
+TEST(Placement, SteadyHandPassesOverAGroove) {
+    // A slot 2.5 mm wide and deep across the way: one sample in each wall, the rest on its floor.
+    std::vector<LaidSample> samples(401);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double x = 1e-4 * (double(i) - 200);
+        const bool inside = std::abs(x) < 1.25e-3;
+        samples[i].position = {x, 0, inside ? -2.5e-3 : 0};
+        samples[i].pressure = 0.5;
+        if (std::abs(std::abs(x) - 1.2e-3) < 5e-5) samples[i].normal = {x > 0 ? -1 : 1, 0, 0};
+    }
+    const HoldOptions options{.lead = {}};
+    for (const brush::Pose& pose : hold(samples, options)) {
+        EXPECT_NEAR(pose.position.z, options.tuft_length - 0.5 * options.working_depth, 1e-12);
+        EXPECT_NEAR(pose.axis().z, -1, 1e-12);
+    }
+}
+
+TEST(Placement, SteadyHandKeepsItsHeightOnCurvedSurfaces) {
+    const TriangleMesh cylinder = make_cylinder();
+    const SurfaceQuery query(cylinder);
+    std::vector<Vec2> points;
+    for (int i = 0; i <= 400; ++i) points.push_back({1e-4 * i, 0});
+    Trace trace = make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, Laying::wrap}, points);
+    const HoldOptions options{.lead = {}};
+    const double shift = options.steady * options.steady / (8 * kCylinderRadius);
+    for (const brush::Pose& pose : hand_path(query, trace, options).poses) {
+        const double r = std::hypot(pose.position.x, pose.position.y);
+        const double want = kCylinderRadius + options.tuft_length - 0.5 * options.working_depth;
+        EXPECT_LT(r, want + 2e-5);                // facets lie inside the circle
+        EXPECT_GT(r, want - 1.1 * shift - 2e-5);  // as the header says
+    }
+}
+
 TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     // Straight: ahead by the length for the depth, from the first touch.
     std::vector<Vec2> points;
