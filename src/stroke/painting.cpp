@@ -47,7 +47,7 @@ struct Painting::Hand {
     brush::TuftState state;
     double last_time = 0;
     bool moved = false, was_touching = false;
-    Frame last_frame;
+    Vec3 last_position{0};
 
     Hand(Stroke s, const brush::Preset& preset, const ink::Ink& i, const Model& model,
          ink::Canvas& canvas, double step_, double texel)
@@ -143,7 +143,8 @@ void Painting::draw_poses() {
         if (!contact.tuft.converged) ++h.report.unconverged;
 
         const std::vector<footprint::Outline> outlines =
-            footprint::outline(contact.tuft, contact.frame);
+            footprint::outline(contact.tuft, contact.frame,
+                               footprint::node_planes(contact.tuft, contact.planes));
         Stamp stamp;
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, h.cell);
         if (stamp.footprint.empty()) {
@@ -152,11 +153,12 @@ void Painting::draw_poses() {
         }
         ++h.report.stamps;
         if (h.was_touching) {
-            const Vec3 d = contact.frame.origin - h.last_frame.origin;
+            // The hand's way, not the frame's: the patch also grows and shrinks.
+            const Vec3 d = pose.position - h.last_position;
             stamp.motion.shift = {glm::dot(d, contact.frame.t), glm::dot(d, contact.frame.b)};
         }
         h.was_touching = true;
-        h.last_frame = contact.frame;
+        h.last_position = pose.position;
         const double area = footprint_area(stamp.footprint);
         const double moment_limit = kFirmPress * h.tuft.preset.stiffness / h.tuft.preset.length;
         const ink::StampContact touch{

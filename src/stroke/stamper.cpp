@@ -8,7 +8,7 @@
 namespace tuft::stroke {
 
 Stamper::Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options)
-    : model_(model), canvas_(canvas), options_(options), scratch_(kBatch) {
+    : model_(model), canvas_(canvas), options_(options), scratch_(kBatch), jobs_(kBatch) {
     batch_.reserve(kBatch);
 }
 
@@ -20,11 +20,10 @@ bool Stamper::add(Stamp stamp) {
 double Stamper::flush() {
     if (batch_.empty()) return 0;
     const footprint::Surface surface = model_.surface();
-    std::array<footprint::StampJobs, kBatch> jobs;
     parallel_for(batch_.size(), 2, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            jobs[i] = footprint::plan_stamp(surface, batch_[i].footprint, batch_[i].motion, options_,
-                                            scratch_[i]);
+            jobs_[i] = footprint::plan_stamp(surface, batch_[i].footprint, batch_[i].motion, options_,
+                                             scratch_[i], std::move(jobs_[i]));
     });
 
     struct Job {
@@ -32,10 +31,10 @@ double Stamper::flush() {
     };
     std::vector<Job> order;
     for (std::uint32_t i = 0; i < batch_.size(); ++i) {
-        if (jobs[i].empty()) continue;
-        piecewise_ = footprint::choose_mode(jobs[i], piecewise_, options_);
-        for (std::uint32_t k = 0; k < jobs[i].tiles.size(); ++k)
-            order.push_back({jobs[i].tiles[k].slot, i, k});
+        if (jobs_[i].empty()) continue;
+        piecewise_ = footprint::choose_mode(jobs_[i], piecewise_, options_);
+        for (std::uint32_t k = 0; k < jobs_[i].tiles.size(); ++k)
+            order.push_back({jobs_[i].tiles[k].slot, i, k});
     }
     std::sort(order.begin(), order.end(), [](const Job& a, const Job& b) {
         return a.slot != b.slot ? a.slot < b.slot : a.stamp < b.stamp;
@@ -56,7 +55,7 @@ double Stamper::flush() {
             for (std::uint32_t k = runs[r]; k < runs[r + 1]; ++k) {
                 const Job& job = order[k];
                 const atlas::TexelTile& tile = model_.texels.tiles[job.slot];
-                const footprint::StampJobs& plan = jobs[job.stamp];
+                const footprint::StampJobs& plan = jobs_[job.stamp];
                 if (!footprint::evaluate_tile(tile, plan, plan.tiles[job.tile], exposure)) continue;
                 const Stamp& stamp = batch_[job.stamp];
                 given[k] = ink::deposit(canvas_, job.slot, exposure, tile.area, stamp.ds, stamp.ink);

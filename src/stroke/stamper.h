@@ -40,6 +40,7 @@ class Stamper {
     footprint::StampOptions options_;
     std::vector<Stamp> batch_;
     std::vector<footprint::PlanScratch> scratch_;  ///< one per place in the batch
+    std::vector<footprint::StampJobs> jobs_;       ///< likewise; their memory is used again
     bool piecewise_ = false;
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
 };
