@@ -56,7 +56,7 @@ MaterialReader::MaterialReader(const mesh::TriangleMesh& mesh, const Appearance&
         throw Error("the texture has " + std::to_string(maps.corner_uvs.size()) +
                     " corner coordinates for a mesh of " + std::to_string(mesh.n_triangles()) + " triangles");
     const bool porcelain = appearance.finish == Finish::porcelain;
-    body_ = appearance.body_colour.value_or(porcelain ? Vec3f{0.86f, 0.855f, 0.84f}
+    body_ = appearance.body_colour.value_or(porcelain ? Vec3f{0.86f, 0.857f, 0.845f}
                                                       : Vec3f{0.37f, 0.275f, 0.21f});
     roughness_ = porcelain ? 0.02f : 0.6f;
     for (int i = 0; i < 256; ++i) srgb_[i] = decode_srgb(static_cast<float>(i) / 255);

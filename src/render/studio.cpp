@@ -54,7 +54,7 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
     const Vec3f to_key = glm::normalize(s.boxes[0].centre - s.centre);
     const Vec3f light = open_light(s, s.centre, glm::normalize(to_key + up));
     const float mean = (light.x + light.y + light.z) / 3;
-    s.scale = static_cast<float>(exposure) * 0.92f / mean;
+    s.scale = static_cast<float>(exposure) * 1.06f / mean;
     for (SoftBox& box : s.boxes) box.radiance *= s.scale;
     return s;
 }
