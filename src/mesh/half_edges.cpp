@@ -155,6 +155,7 @@ PairingReport pair_half_edges(RawMesh& mesh) {
         report.duplicates_dropped = duplicates.count;
         return report;
     }
+    report.needs_settling = !crowded.empty();
     const bool trust_direction = 20 * disagreeing < agreeing;
     for (std::vector<std::uint32_t>& group : crowded) {
         // Triangles without an area have no say where others meet.

@@ -15,21 +15,27 @@ namespace tuft::mesh {
 
 /// Triangles on their way to a `TriangleMesh`.
 struct RawMesh {
-    std::vector<Vec3f> positions;                          ///< metres
+    std::vector<Vec3f> positions;  ///< metres
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Vec2f> uvs;                                ///< [3 n_triangles] or empty
-    std::vector<std::uint32_t> groups;                     ///< [n_triangles] or empty
-    std::vector<std::array<std::uint8_t, 4>> colours;      ///< [n_vertices] or empty
+    std::vector<Vec2f> uvs;                            ///< [3 n_triangles] or empty
+    std::vector<std::uint32_t> groups;                 ///< [n_triangles] or empty
+    std::vector<std::array<std::uint8_t, 4>> colours;  ///< [n_vertices] or empty
     std::vector<std::uint32_t> opposite;  ///< [3 n_triangles] half-edge over the edge, or kNone
-    std::vector<bool> at_split_edge;      ///< [n_vertices] lies on an edge that was opened, or empty
+    std::vector<bool> at_split_edge;  ///< [n_vertices] lies on an edge that was opened, or empty
 
     std::uint32_t start(std::uint32_t h) const { return triangles[h / 3][h % 3]; }
-    std::uint32_t end(std::uint32_t h) const { return triangles[h / 3][(h + 1) % 3 ? h % 3 + 1 : 0]; }
+    std::uint32_t end(std::uint32_t h) const {
+        return triangles[h / 3][(h + 1) % 3 ? h % 3 + 1 : 0];
+    }
 };
 
 /// The half-edge after and before h in its triangle.
-constexpr std::uint32_t next_in_face(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-constexpr std::uint32_t previous_in_face(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+constexpr std::uint32_t next_in_face(std::uint32_t h) {
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+constexpr std::uint32_t previous_in_face(std::uint32_t h) {
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
 
 /// Height of a triangle over its longest side, metres; that side runs from corner
 /// `longest_side` to the next.
@@ -52,7 +58,8 @@ void mark_opened(RawMesh& mesh, std::uint32_t h);
 
 struct PairingReport {
     std::size_t duplicates_dropped = 0;
-    std::size_t edges_split = 0;  ///< shared by three or more triangles
+    std::size_t edges_split = 0;  ///< shared by three or more triangles with an area
+    bool needs_settling = false;  ///< some edge lost a triangle, with or without an area
 };
 
 /// Drops every triangle that has the same three vertices as an earlier one, whichever way round,

@@ -14,7 +14,8 @@ namespace {
 std::string short_number(double x) {
     const double size = std::abs(x);
     int digits = 0;
-    if (size < 100 && size > 0) digits = std::min(9, 2 - static_cast<int>(std::floor(std::log10(size))));
+    if (size < 100 && size > 0)
+        digits = std::min(9, 2 - static_cast<int>(std::floor(std::log10(size))));
     char text[32];
     if (size >= 1e7 || (size > 0 && size < 1e-6))
         std::snprintf(text, sizeof text, "%.2e", x);
@@ -36,7 +37,7 @@ std::string count_text(std::size_t n, const char* one, const char* many) {
 /// How likely a product is to measure `diagonal` metres: see guess_unit.
 double plausibility(double diagonal) {
     constexpr double kSmall = 0.06, kLarge = 6, kSpread = 0.5;  // metres; natural logarithm
-    const double beyond = diagonal < kSmall ? std::log(kSmall / diagonal)
+    const double beyond = diagonal < kSmall   ? std::log(kSmall / diagonal)
                           : diagonal > kLarge ? std::log(diagonal / kLarge)
                                               : 0;
     return std::exp(-0.5 * (beyond / kSpread) * (beyond / kSpread));
@@ -64,8 +65,8 @@ UnitGuess guess_unit(const Box& bounds) {
     std::array<double, 4> score{};
     for (std::size_t i = 0; i < kUnits.size(); ++i)
         score[i] = kUnits[i].weight * plausibility(diagonal * *metres_per(kUnits[i].name));
-    const auto best = static_cast<std::size_t>(
-        std::max_element(score.begin(), score.end()) - score.begin());
+    const auto best =
+        static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
     if (!(score[best] > 1e-12)) {  // no unit makes it a product: nothing to tell them apart
         guess.unit = "mm";
         guess.sentence = "no usual unit makes this a thing one can hold (" +
@@ -80,8 +81,8 @@ UnitGuess guess_unit(const Box& bounds) {
             second = score[i];
             guess.second = kUnits[i].name;
         }
-    guess.sentence = "numbers look like " + std::string(kUnits[best].plural) + ": the model would be " +
-                     size_text(bounds.size() * guess.metres_per_unit);
+    guess.sentence = "numbers look like " + std::string(kUnits[best].plural) +
+                     ": the model would be " + size_text(bounds.size() * guess.metres_per_unit);
     if (!guess.second.empty()) guess.sentence += "; " + guess.second + " is possible too";
     return guess;
 }
@@ -131,7 +132,8 @@ std::vector<std::string> describe_defects(const RepairReport& r) {
     };
     // Triangles without shared vertices are the way of STL, not a defect.
     if (!r.loose_triangles)
-        tell(r.vertices_welded, "vertex lay on another one: welded", "vertices lay on others: welded");
+        tell(r.vertices_welded, "vertex lay on another one: welded",
+             "vertices lay on others: welded");
     tell(r.crack_vertices_welded, "vertex lay next to another one across a crack: welded",
          "vertices lay next to others across cracks: welded");
     tell(r.unused_vertices_dropped, "vertex is used by no face: dropped",
@@ -140,7 +142,8 @@ std::vector<std::string> describe_defects(const RepairReport& r) {
          "faces without an area: dropped");
     tell(r.degenerate_faces_repaired, "face with a corner on its opposite side: mended by a flip",
          "faces with a corner on their opposite side: mended by flips");
-    tell(r.duplicate_faces_dropped, "face is there twice: dropped", "faces are there twice: dropped");
+    tell(r.duplicate_faces_dropped, "face is there twice: dropped",
+         "faces are there twice: dropped");
     tell(r.non_manifold_edges_split, "edge with more than two faces: split",
          "edges with more than two faces: split");
     tell(r.non_manifold_vertices_split, "vertex where separate surfaces touch: split",
@@ -158,9 +161,8 @@ std::vector<std::string> describe(const MeshSummary& s) {
                     count_text(s.n_vertices, "vertex", "vertices") + " (in the file " +
                     count_text(r.polygons_in_file, "face, ", "faces, ") +
                     count_text(r.points_in_file, "vertex)", "vertices)"));
-    lines.push_back("size " + size_text(s.bounds.size()) + ", area " +
-                    short_number(s.area * 1e4) + " cm²" +
-                    (r.closed ? ", volume " + short_number(s.volume * 1e6) + " cm³" : ""));
+    lines.push_back("size " + size_text(s.bounds.size()) + ", area " + short_number(s.area * 1e4) +
+                    " cm²" + (r.closed ? ", volume " + short_number(s.volume * 1e6) + " cm³" : ""));
     lines.push_back("edges: half of them below " + short_number(s.median_edge / kMillimetre) +
                     " mm, longest " + short_number(s.longest_edge / kMillimetre) + " mm");
     lines.push_back(count_text(r.components, "part, ", "parts, ") +
@@ -170,8 +172,7 @@ std::vector<std::string> describe(const MeshSummary& s) {
     std::string extras;
     if (s.has_uvs) extras += "texture coordinates, ";
     if (s.has_colours) extras += "vertex colours, ";
-    if (!s.group_names.empty())
-        extras += count_text(s.group_names.size(), "group, ", "groups, ");
+    if (!s.group_names.empty()) extras += count_text(s.group_names.size(), "group, ", "groups, ");
     if (r.loose_triangles) lines.push_back("the triangles came loose and were joined (as in STL)");
     if (!extras.empty()) lines.push_back("has " + extras.substr(0, extras.size() - 2));
     lines.push_back("unit: " + s.unit.sentence);

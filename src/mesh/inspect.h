@@ -9,10 +9,10 @@
 namespace tuft::mesh {
 
 struct UnitGuess {
-    std::string unit;             ///< "mm", "cm", "m" or "in"
+    std::string unit;  ///< "mm", "cm", "m" or "in"
     double metres_per_unit = 1e-3;
-    std::string second;           ///< another unit that is nearly as likely, or ""
-    std::string sentence;         ///< one line for people: the size in that unit, and the doubt
+    std::string second;    ///< another unit that is nearly as likely, or ""
+    std::string sentence;  ///< one line for people: the size in that unit, and the doubt
 };
 
 /// The unit in which `bounds` (the file's numbers) is most likely a product: things between
@@ -24,15 +24,15 @@ UnitGuess guess_unit(const Box& bounds);
 struct MeshSummary {
     std::size_t n_vertices = 0;
     std::size_t n_triangles = 0;
-    Box bounds;                 ///< metres
-    double area = 0;            ///< m²
-    double volume = 0;          ///< m³, signed; 0 unless closed
-    double median_edge = 0;     ///< metres
-    double longest_edge = 0;    ///< metres
+    Box bounds;               ///< metres
+    double area = 0;          ///< m²
+    double volume = 0;        ///< m³, signed; 0 unless closed
+    double median_edge = 0;   ///< metres
+    double longest_edge = 0;  ///< metres
     bool has_uvs = false;
     bool has_colours = false;
     std::vector<std::string> group_names;
-    UnitGuess unit;             ///< guessed from the file's numbers
+    UnitGuess unit;                 ///< guessed from the file's numbers
     double metres_per_unit = 1e-3;  ///< the unit it was loaded with
     RepairReport report;
 };

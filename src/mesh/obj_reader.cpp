@@ -32,8 +32,8 @@ class ObjReader {
             builder_.soup.warnings.push_back(
                 free_form_.text("lines of free-form curves or surfaces are not read", "line"));
         if (bad_uv_index_.count)
-            builder_.soup.warnings.push_back(bad_uv_index_.text(
-                "faces use texture coordinates that do not exist", "line"));
+            builder_.soup.warnings.push_back(
+                bad_uv_index_.text("faces use texture coordinates that do not exist", "line"));
         finish_colours();
         return builder_.finish();
     }

@@ -88,8 +88,8 @@ void OffReader::check_counts(std::int64_t points, std::int64_t faces, std::size_
                              std::size_t point_size, std::size_t face_size) const {
     const auto limit = [&](std::size_t size) { return static_cast<std::int64_t>(left / size); };
     if (points < 0 || faces < 0 || points > limit(point_size) || faces > limit(face_size))
-        text_.fail("promises " + std::to_string(points) + " vertices and " +
-                   std::to_string(faces) + " faces, more than the file can hold; it is cut off or "
+        text_.fail("promises " + std::to_string(points) + " vertices and " + std::to_string(faces) +
+                   " faces, more than the file can hold; it is cut off or "
                    "damaged");
 }
 
@@ -188,8 +188,8 @@ PolygonSoup OffReader::read_binary() {
     const auto points = static_cast<std::int32_t>(word());
     const auto faces = static_cast<std::int32_t>(word());
     word();
-    const std::size_t point_size = 12 + (kind_.has_normal ? 12 : 0) + (kind_.has_colour ? 16 : 0) +
-                                   (kind_.has_uv ? 8 : 0);
+    const std::size_t point_size =
+        12 + (kind_.has_normal ? 12 : 0) + (kind_.has_colour ? 16 : 0) + (kind_.has_uv ? 8 : 0);
     check_counts(points, faces, left(), point_size, 8);
     n_points_ = static_cast<std::size_t>(points);
     colour_is_real_ = true;

@@ -19,11 +19,14 @@ std::string lower(std::string_view s) {
 
 PlyType parse_type(TextCursor& text) {
     const std::string name = lower(text.word());
-    struct Name { const char *old_name, *new_name; PlyType type; };
+    struct Name {
+        const char *old_name, *new_name;
+        PlyType type;
+    };
     constexpr Name kNames[] = {
-        {"char", "int8", PlyType::kInt8},       {"uchar", "uint8", PlyType::kUint8},
-        {"short", "int16", PlyType::kInt16},    {"ushort", "uint16", PlyType::kUint16},
-        {"int", "int32", PlyType::kInt32},      {"uint", "uint32", PlyType::kUint32},
+        {"char", "int8", PlyType::kInt8},        {"uchar", "uint8", PlyType::kUint8},
+        {"short", "int16", PlyType::kInt16},     {"ushort", "uint16", PlyType::kUint16},
+        {"int", "int32", PlyType::kInt32},       {"uint", "uint32", PlyType::kUint32},
         {"float", "float32", PlyType::kFloat32}, {"double", "float64", PlyType::kFloat64}};
     for (const Name& n : kNames)
         if (name == n.old_name || name == n.new_name) return n.type;
@@ -83,15 +86,21 @@ std::size_t body_offset(const std::vector<char>& bytes, const char* after_word) 
 std::size_t size_of(PlyType type) {
     switch (type) {
         case PlyType::kInt8:
-        case PlyType::kUint8: return 1;
+        case PlyType::kUint8:
+            return 1;
         case PlyType::kInt16:
-        case PlyType::kUint16: return 2;
-        case PlyType::kFloat64: return 8;
-        default: return 4;
+        case PlyType::kUint16:
+            return 2;
+        case PlyType::kFloat64:
+            return 8;
+        default:
+            return 4;
     }
 }
 
-bool is_real(PlyType type) { return type == PlyType::kFloat32 || type == PlyType::kFloat64; }
+bool is_real(PlyType type) {
+    return type == PlyType::kFloat32 || type == PlyType::kFloat64;
+}
 
 std::size_t PlyElement::least_row_size(PlyFormat format) const {
     std::size_t size = 0;
@@ -133,8 +142,7 @@ PlyHeader read_ply_header(const std::vector<char>& bytes, const std::string& fil
             if (header.elements.empty()) text.fail("a property stands before any element");
             header.elements.back().properties.push_back(parse_property(text));
         } else if (key == "comment") {
-            if (same_word(text.word(), "TextureFile"))
-                header.textures.emplace_back(text.rest());
+            if (same_word(text.word(), "TextureFile")) header.textures.emplace_back(text.rest());
         } else if (key == "end_header") {
             if (!has_format) text.fail("the head does not say its format");
             header.body = body_offset(bytes, text.position());

@@ -10,7 +10,16 @@ namespace tuft::mesh {
 
 enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
 
-enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+enum class PlyType : std::uint8_t {
+    kInt8,
+    kUint8,
+    kInt16,
+    kUint16,
+    kInt32,
+    kUint32,
+    kFloat32,
+    kFloat64
+};
 
 /// Bytes of one value in a binary file.
 std::size_t size_of(PlyType type);
@@ -27,7 +36,7 @@ struct PlyElement {
     std::string name;  ///< in lower case
     std::uint64_t count = 0;
     std::vector<PlyProperty> properties;
-    long line = 0;     ///< where the head declares it
+    long line = 0;  ///< where the head declares it
 
     /// Fewest bytes one row can take.
     std::size_t least_row_size(PlyFormat format) const;

@@ -56,14 +56,22 @@ class PlyBody {
         at_ += size;
         if (format_ == PlyFormat::kBigEndian) std::reverse(raw, raw + size);
         switch (type) {
-            case PlyType::kInt8: return as<std::int8_t>(raw);
-            case PlyType::kUint8: return as<std::uint8_t>(raw);
-            case PlyType::kInt16: return as<std::int16_t>(raw);
-            case PlyType::kUint16: return as<std::uint16_t>(raw);
-            case PlyType::kInt32: return as<std::int32_t>(raw);
-            case PlyType::kUint32: return as<std::uint32_t>(raw);
-            case PlyType::kFloat32: return as<float>(raw);
-            case PlyType::kFloat64: return as<double>(raw);
+            case PlyType::kInt8:
+                return as<std::int8_t>(raw);
+            case PlyType::kUint8:
+                return as<std::uint8_t>(raw);
+            case PlyType::kInt16:
+                return as<std::int16_t>(raw);
+            case PlyType::kUint16:
+                return as<std::uint16_t>(raw);
+            case PlyType::kInt32:
+                return as<std::int32_t>(raw);
+            case PlyType::kUint32:
+                return as<std::uint32_t>(raw);
+            case PlyType::kFloat32:
+                return as<float>(raw);
+            case PlyType::kFloat64:
+                return as<double>(raw);
         }
         return 0;
     }
@@ -141,9 +149,9 @@ class PlyReader {
             if (e.name == "vertex") n_points_ = e.count;
         for (const PlyElement& e : header_.elements) read_element(e);
         if (texcoord_misfits_.count)
-            builder_.soup.warnings.push_back(texcoord_misfits_.text(
-                "faces have a texcoord list that does not fit their corners",
-                body_.is_text() ? "line" : "row"));
+            builder_.soup.warnings.push_back(
+                texcoord_misfits_.text("faces have a texcoord list that does not fit their corners",
+                                       body_.is_text() ? "line" : "row"));
         return builder_.finish();
     }
 
@@ -206,10 +214,9 @@ void PlyReader::read_vertices(const PlyElement& element) {
     const int xyz[3] = {element.find({"x"}), element.find({"y"}), element.find({"z"})};
     if (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0)
         throw Error(file_, element.line, "the vertices have no x, y and z");
-    const int rgba[4] = {element.find({"red", "diffuse_red", "r"}),
-                         element.find({"green", "diffuse_green", "g"}),
-                         element.find({"blue", "diffuse_blue", "b"}),
-                         element.find({"alpha", "diffuse_alpha", "a"})};
+    const int rgba[4] = {
+        element.find({"red", "diffuse_red", "r"}), element.find({"green", "diffuse_green", "g"}),
+        element.find({"blue", "diffuse_blue", "b"}), element.find({"alpha", "diffuse_alpha", "a"})};
     const int u = element.find({"s", "u", "texture_u", "texture_s"});
     const int v = element.find({"t", "v", "texture_v", "texture_t"});
     const bool has_colour = rgba[0] >= 0 && rgba[1] >= 0 && rgba[2] >= 0;
@@ -252,7 +259,8 @@ void PlyReader::read_vertices(const PlyElement& element) {
 std::uint32_t PlyReader::point_index(double written) const {
     if (!(written >= 0) || written >= static_cast<double>(n_points_) ||
         written != std::floor(written))
-        body_.fail("the face uses vertex " + std::to_string(static_cast<long long>(
+        body_.fail("the face uses vertex " +
+                   std::to_string(static_cast<long long>(
                        std::isfinite(written) ? std::clamp(written, -1e15, 1e15) : -1.0)) +
                    ", but the file has only " + std::to_string(n_points_) + " (counted from 0)");
     return static_cast<std::uint32_t>(written);
@@ -296,8 +304,10 @@ void PlyReader::read_faces(const PlyElement& element) {
             if (!p.is_list) {
                 const double value = body_.value(p.type);
                 if (i != texture || !has_groups) continue;
-                const bool named = value >= 0 && value < static_cast<double>(header_.textures.size());
-                group = builder_.group(named ? header_.textures[static_cast<std::size_t>(value)] : "");
+                const bool named =
+                    value >= 0 && value < static_cast<double>(header_.textures.size());
+                group =
+                    builder_.group(named ? header_.textures[static_cast<std::size_t>(value)] : "");
                 continue;
             }
             const std::size_t n = body_.list_size(p);

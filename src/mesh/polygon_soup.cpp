@@ -41,8 +41,9 @@ bool is_polygon_file(const std::filesystem::path& path) {
 PolygonSoup read_polygon_file(const std::filesystem::path& path) {
     const std::string extension = path.extension().string();
     if (!is_polygon_file(path))
-        throw Error(path.string(), in_quotes(extension) + " is not a known kind of model; use .obj, "
-                                   ".ply, .stl, .off or .glb");
+        throw Error(path.string(), in_quotes(extension) +
+                                       " is not a known kind of model; use .obj, "
+                                       ".ply, .stl, .off or .glb");
     const std::vector<char> bytes = read_file(path);
     if (same_word(extension, ".obj")) return read_obj(bytes, path);
     if (same_word(extension, ".ply")) return read_ply(bytes, path);
@@ -64,8 +65,9 @@ void write_ply(const std::filesystem::path& path, const PolygonSoup& soup) {
     head += "property float x\nproperty float y\nproperty float z\n";
     if (!uvs.empty()) head += "property float s\nproperty float t\n";
     if (has_colour)
-        head += "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                "property uchar alpha\n";
+        head +=
+            "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+            "property uchar alpha\n";
     const std::string list = short_lists ? "property list uchar " : "property list uint ";
     head += "element face " + std::to_string(soup.n_polygons()) + "\n";
     head += list + "int vertex_indices\n";

@@ -55,7 +55,7 @@ class Repair {
     RepairOptions options_;
     RepairReport report_;
     RawMesh mesh_;
-    std::size_t edges_split_ = 0;  ///< in the last pairing
+    PairingReport pairs_;              ///< the last pairing
     std::vector<std::uint32_t> ring_;  ///< scratch: corners of one polygon
     std::vector<Vec3> ring_points_;
     std::vector<std::array<std::uint32_t, 3>> cuts_;
@@ -154,9 +154,8 @@ void Repair::cut_polygons() {
 
 void Repair::match() {
     mesh_.at_split_edge.clear();
-    const PairingReport pairs = pair_half_edges(mesh_);
-    report_.duplicate_faces_dropped += pairs.duplicates_dropped;
-    edges_split_ = pairs.edges_split;
+    pairs_ = pair_half_edges(mesh_);
+    report_.duplicate_faces_dropped += pairs_.duplicates_dropped;
 }
 
 /// Triangles that came without shared points may miss each other by a rounding: points on the
@@ -204,10 +203,12 @@ void Repair::make_manifold() {
     const OrientationReport sides = orient(mesh_);
     report_.faces_flipped += sides.faces_flipped;
     if (sides.edges_cut)
-        report_.warnings.push_back("a part has only one side (like a Möbius strip); it was cut "
-                                   "open along " + std::to_string(sides.edges_cut) + " edges");
+        report_.warnings.push_back(
+            "a part has only one side (like a Möbius strip); it was cut "
+            "open along " +
+            std::to_string(sides.edges_cut) + " edges");
     report_.non_manifold_vertices_split += split_vertices(mesh_);
-    if (edges_split_ || sides.edges_cut) settle(mesh_);
+    if (pairs_.needs_settling || sides.edges_cut) settle(mesh_);
 }
 
 /// Drops what no flip could give an area.
@@ -271,7 +272,7 @@ Surface Repair::run() {
     tuft::report(options_.progress, "matching edges", 0);
     match();
     if (report_.loose_triangles && close_cracks()) match();
-    report_.non_manifold_edges_split = edges_split_;
+    report_.non_manifold_edges_split = pairs_.edges_split;
     for (;;) {
         make_manifold();
         compact();

@@ -10,7 +10,9 @@ namespace {
 
 constexpr std::size_t kMaxCorners = 0xfffffff0u;  // offsets are 32-bit
 
-bool is_finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool is_finite(const Vec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 }  // namespace
 
@@ -23,7 +25,8 @@ std::string Tally::text(const std::string& what, const char* unit) const {
 
 void SoupBuilder::add_point(const Vec3& p, long place) {
     // Beyond 1e30 the squares that lengths and areas are made of leave the range of float.
-    const bool fits = is_finite(p) && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 1e30;
+    const bool fits =
+        is_finite(p) && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 1e30;
     if (!fits) {
         bad_points_.push_back(static_cast<std::uint32_t>(soup.points.size()));
         bad_rows_.add(place);
@@ -109,8 +112,9 @@ void SoupBuilder::drop_bad_points() {
     soup.corners.resize(out_corner);
     soup.polygon_groups.resize(out);
     if (!soup.corner_uvs.empty()) soup.corner_uvs.resize(out_corner);
-    soup.warnings.push_back(bad_rows_.text("vertices are not finite numbers and were dropped", unit_) +
-                            ", and with them " + std::to_string(dropped) + " faces");
+    soup.warnings.push_back(
+        bad_rows_.text("vertices are not finite numbers and were dropped", unit_) +
+        ", and with them " + std::to_string(dropped) + " faces");
 }
 
 PolygonSoup SoupBuilder::finish() {
@@ -127,7 +131,8 @@ PolygonSoup SoupBuilder::finish() {
         soup.warnings.push_back(std::to_string(no_uv_.count) +
                                 " faces have no texture coordinates while others do");
     if (soup.n_polygons() == 0) {
-        if (had_polygons) throw Error(file_, "every face uses a vertex that is not a finite number");
+        if (had_polygons)
+            throw Error(file_, "every face uses a vertex that is not a finite number");
         if (n_points > 0)
             throw Error(file_, "has " + std::to_string(n_points) +
                                    " vertices but no faces; a surface is needed");

@@ -10,7 +10,7 @@
 namespace tuft::mesh {
 namespace {
 
-constexpr std::size_t kHead = 84;     // bytes before the first triangle
+constexpr std::size_t kHead = 84;      // bytes before the first triangle
 constexpr std::size_t kTriangle = 50;  // bytes: normal, three points, 16-bit attribute
 
 std::uint32_t count_in_head(const std::vector<char>& bytes) {
@@ -32,8 +32,8 @@ bool looks_like_text(const std::vector<char>& bytes, const std::string& file) {
 
 PolygonSoup read_binary(const std::vector<char>& bytes, const std::string& file) {
     if (bytes.size() < kHead)
-        throw Error(file, "is too short to be an STL file (" + std::to_string(bytes.size()) +
-                              " bytes)");
+        throw Error(file,
+                    "is too short to be an STL file (" + std::to_string(bytes.size()) + " bytes)");
     const std::size_t promised = count_in_head(bytes);
     const std::size_t held = (bytes.size() - kHead) / kTriangle;
     SoupBuilder builder(file, "triangle");
@@ -103,8 +103,7 @@ PolygonSoup read_text(const std::vector<char>& bytes, const std::string& file) {
             text.fail(in_quotes(key) + " is not an STL keyword");
         }
     }
-    if (in_loop || in_solid)
-        text.fail("the file ends inside a solid; it is cut off (no endsolid)");
+    if (in_loop || in_solid) text.fail("the file ends inside a solid; it is cut off (no endsolid)");
     PolygonSoup soup = builder.finish();
     if (solids < 2) {
         soup.polygon_groups.clear();

@@ -23,7 +23,7 @@ using OpenMesh::FaceHandle;
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-constexpr double kFloatStep = 1.2e-7;   // relative spacing of float numbers
+constexpr double kFloatStep = 1.2e-7;  // relative spacing of float numbers
 
 /// Flat as far as float coordinates can tell: a flip may make it sound.
 bool is_flat_to_rounding(const RawMesh& mesh, std::size_t t) {
@@ -38,15 +38,15 @@ bool is_flat_to_rounding(const RawMesh& mesh, std::size_t t) {
 /// One triangle's corner at a vertex, on the way round it.
 struct Spoke {
     std::size_t corner = 0;
-    Vec3 normal{0};      ///< of the triangle
-    double angle = 0;    ///< at the vertex, radians
+    Vec3 normal{0};             ///< of the triangle
+    double angle = 0;           ///< at the vertex, radians
     bool after_crease = false;  ///< a crease or the border lies before it
 };
 
 /// Gives the corners of each run of spokes between creases the run's mean normal.
 void average_runs(std::span<Spoke> spokes, std::vector<Vec3f>& normals) {
-    const auto first = std::find_if(spokes.begin(), spokes.end(),
-                                    [](const Spoke& s) { return s.after_crease; });
+    const auto first =
+        std::find_if(spokes.begin(), spokes.end(), [](const Spoke& s) { return s.after_crease; });
     if (first != spokes.end()) std::rotate(spokes.begin(), first, spokes.end());
     for (std::size_t begin = 0, end = 0; begin < spokes.size(); begin = end) {
         Vec3 sum(0);
@@ -60,9 +60,15 @@ void average_runs(std::span<Spoke> spokes, std::vector<Vec3f>& normals) {
     }
 }
 
-VertexHandle vertex(std::uint32_t v) { return VertexHandle(static_cast<int>(v)); }
-FaceHandle face(std::size_t t) { return FaceHandle(static_cast<int>(t)); }
-std::uint32_t index(const auto& handle) { return static_cast<std::uint32_t>(handle.idx()); }
+VertexHandle vertex(std::uint32_t v) {
+    return VertexHandle(static_cast<int>(v));
+}
+FaceHandle face(std::size_t t) {
+    return FaceHandle(static_cast<int>(t));
+}
+std::uint32_t index(const auto& handle) {
+    return static_cast<std::uint32_t>(handle.idx());
+}
 
 }  // namespace
 
@@ -72,8 +78,9 @@ struct SurfaceTopology::State {
     /// Half-edge from corner k to corner k + 1: a face's own half-edge starts at corner 0.
     HalfedgeHandle half_edge(std::size_t t, int k) const {
         const HalfedgeHandle first = mesh.halfedge_handle(face(t));
-        return k == 0 ? first
-                      : k == 1 ? mesh.next_halfedge_handle(first) : mesh.prev_halfedge_handle(first);
+        return k == 0   ? first
+               : k == 1 ? mesh.next_halfedge_handle(first)
+                        : mesh.prev_halfedge_handle(first);
     }
     /// Corner of its triangle at which h starts.
     std::size_t corner(HalfedgeHandle h) const {
@@ -108,9 +115,8 @@ void SurfaceTopology::State::link_faces(const RawMesh& raw) {
     std::vector<HalfedgeHandle> handle(3 * n);
     for (std::uint32_t h = 0; h < 3 * n; ++h) {
         const std::uint32_t o = raw.opposite[h];
-        handle[h] = o == kNone || o > h
-                        ? mesh.new_edge(vertex(raw.start(h)), vertex(raw.end(h)))
-                        : mesh.opposite_halfedge_handle(handle[o]);
+        handle[h] = o == kNone || o > h ? mesh.new_edge(vertex(raw.start(h)), vertex(raw.end(h)))
+                                        : mesh.opposite_halfedge_handle(handle[o]);
     }
     for (std::uint32_t t = 0; t < n; ++t) {
         const FaceHandle f = mesh.new_face();
@@ -164,7 +170,8 @@ bool SurfaceTopology::State::flip_flat(std::size_t t, RawMesh& raw) {
     const std::size_t cc = corner(over), cd = corner(mesh.prev_halfedge_handle(over));
     const std::size_t ca_over = corner(mesh.next_halfedge_handle(over));
     const auto vertex_at = [&](std::size_t c) { return raw.triangles[c / 3][c % 3]; };
-    const std::array<std::uint32_t, 4> v{vertex_at(ca), vertex_at(cb), vertex_at(cc), vertex_at(cd)};
+    const std::array<std::uint32_t, 4> v{vertex_at(ca), vertex_at(cb), vertex_at(cc),
+                                         vertex_at(cd)};
     std::array<Vec3, 4> p;
     for (int k = 0; k < 4; ++k) p[k] = Vec3(raw.positions[v[k]]);
     const Shape s1 = shape_of({p[0], p[3], p[1]}), s2 = shape_of({p[3], p[2], p[1]});
@@ -298,8 +305,7 @@ void SurfaceTopology::State::fan(std::size_t v, double cos_crease,
         spokes.push_back(s);
         h = turn_left(h);
     } while (h != start && !mesh.is_boundary(h));
-    spokes[0].after_crease =
-        open || glm::dot(spokes.back().normal, spokes[0].normal) < cos_crease;
+    spokes[0].after_crease = open || glm::dot(spokes.back().normal, spokes[0].normal) < cos_crease;
 }
 
 std::vector<Vec3f> SurfaceTopology::corner_normals(double crease_angle) const {

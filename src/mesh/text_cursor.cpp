@@ -9,10 +9,18 @@
 namespace tuft::mesh {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
-bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-bool is_space(char c) { return is_blank(c) || is_line_end(c); }
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; }
+bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+bool is_line_end(char c) {
+    return c == '\n' || c == '\r';
+}
+bool is_space(char c) {
+    return is_blank(c) || is_line_end(c);
+}
+char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+}
 
 }  // namespace
 
@@ -21,7 +29,9 @@ TextCursor::TextCursor(std::span<const char> text, std::string file, Syntax synt
     if (text.size() >= 3 && std::string_view(at_, 3) == "\xEF\xBB\xBF") at_ += 3;
 }
 
-void TextCursor::fail(const std::string& what) const { throw Error(file_, line_, what); }
+void TextCursor::fail(const std::string& what) const {
+    throw Error(file_, line_, what);
+}
 
 bool TextCursor::token_ends(const char* p) const {
     if (p == end_ || is_space(*p)) return true;

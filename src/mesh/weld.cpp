@@ -36,8 +36,9 @@ std::uint64_t hash_point(const Vec3f& p) {
 using Cell = std::array<std::int64_t, 3>;
 
 std::uint64_t hash_cell(const Cell& c) {
-    return hash_bits(static_cast<std::uint64_t>(c[0]) ^ std::rotl(static_cast<std::uint64_t>(c[1]), 32),
-                     static_cast<std::uint64_t>(c[2]));
+    return hash_bits(
+        static_cast<std::uint64_t>(c[0]) ^ std::rotl(static_cast<std::uint64_t>(c[1]), 32),
+        static_cast<std::uint64_t>(c[2]));
 }
 
 }  // namespace

@@ -23,10 +23,10 @@ TEST(GuessUnit, ThingsPeoplePaintAreRecognised) {
     EXPECT_EQ(guess(165, 165, 72).unit, "mm");      // a bowl
     EXPECT_EQ(guess(4600, 1850, 1400).unit, "mm");  // a car
     EXPECT_EQ(guess(4.6, 1.85, 1.4).unit, "m");
-    EXPECT_EQ(guess(460, 185, 140).unit, "mm");     // a model of one
+    EXPECT_EQ(guess(460, 185, 140).unit, "mm");  // a model of one
     EXPECT_EQ(guess(0.165, 0.165, 0.072).unit, "m");
     EXPECT_EQ(guess(16.5, 16.5, 7.2).unit, "cm");
-    EXPECT_NE(guess(16.5, 16.5, 7.2).second, "");   // two centimetres are possible too
+    EXPECT_NE(guess(16.5, 16.5, 7.2).second, "");  // two centimetres are possible too
     EXPECT_THAT(guess(165, 165, 72).sentence, HasSubstr("165 x 165 x 72.0 mm"));
     EXPECT_DOUBLE_EQ(guess(4.6, 1.85, 1.4).metres_per_unit, 1);
 }
@@ -67,11 +67,12 @@ TEST(Inspect, TellsEveryDefectOnce) {
     add_polygon(soup, {27, 5, 6});
     soup.warnings = {"from the reader"};
     const Surface s = build_surface(soup, {.metres_per_unit = 1e-3});
-    EXPECT_THAT(describe_defects(s.report),
-                ElementsAre("1 vertex lay on another one: welded", "1 vertex is used by no face: dropped",
-                            "1 face without an area: dropped", HasSubstr("there twice"),
-                            "1 edge with more than two faces: split", "1 face showed its back: turned round",
-                            "from the reader"));
+    EXPECT_THAT(
+        describe_defects(s.report),
+        ElementsAre("1 vertex lay on another one: welded", "1 vertex is used by no face: dropped",
+                    "1 face without an area: dropped", HasSubstr("there twice"),
+                    "1 edge with more than two faces: split",
+                    "1 face showed its back: turned round", "from the reader"));
 }
 
 TEST(Inspect, WarnsWhenTheUnitLooksWrong) {

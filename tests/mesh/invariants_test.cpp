@@ -40,14 +40,31 @@ class Vandal {
         const auto begin = soup_.corners.begin() + soup_.polygon_start[p];
         const auto end = soup_.corners.begin() + soup_.polygon_start[p + 1];
         switch (below(12)) {
-            case 0: corner() = point(); break;                            // joins far things
-            case 1: corner() = face[0]; break;                            // folds a face
-            case 2: std::reverse(begin, end); break;                      // shows its back
-            case 3: add_polygon(soup_, face); break;                      // twice
-            case 4: std::reverse(face.begin(), face.end()); add_polygon(soup_, face); break;
-            case 5: soup_.points[point()] = soup_.points[point()]; break;  // coincide
-            case 6: add_polygon(soup_, {face[0], face[1], point()}); break;  // a fin
-            case 7: add_polygon(soup_, {point(), point(), point()}); break;
+            case 0:
+                corner() = point();
+                break;  // joins far things
+            case 1:
+                corner() = face[0];
+                break;  // folds a face
+            case 2:
+                std::reverse(begin, end);
+                break;  // shows its back
+            case 3:
+                add_polygon(soup_, face);
+                break;  // twice
+            case 4:
+                std::reverse(face.begin(), face.end());
+                add_polygon(soup_, face);
+                break;
+            case 5:
+                soup_.points[point()] = soup_.points[point()];
+                break;  // coincide
+            case 6:
+                add_polygon(soup_, {face[0], face[1], point()});
+                break;  // a fin
+            case 7:
+                add_polygon(soup_, {point(), point(), point()});
+                break;
             case 8: {  // a point on an edge, with a cap
                 soup_.points.push_back(0.5 * (soup_.points[face[0]] + soup_.points[face[1]]));
                 const auto middle = static_cast<std::uint32_t>(soup_.points.size() - 1);
@@ -60,8 +77,9 @@ class Vandal {
                     copy.push_back(static_cast<std::uint32_t>(soup_.points.size()));
                     soup_.points.push_back(soup_.points[c]);
                 }
-                std::copy(copy.begin(), copy.end(), soup_.corners.end() - static_cast<std::ptrdiff_t>(
-                                                         std::min(copy.size(), soup_.corners.size())));
+                std::copy(copy.begin(), copy.end(),
+                          soup_.corners.end() - static_cast<std::ptrdiff_t>(
+                                                    std::min(copy.size(), soup_.corners.size())));
                 break;
             }
             case 10: {  // a large polygon through anything
@@ -70,7 +88,8 @@ class Vandal {
                 add_polygon(soup_, ring);
                 break;
             }
-            default: std::fill(begin, end, face[0]);  // a hole
+            default:
+                std::fill(begin, end, face[0]);  // a hole
         }
     }
 
@@ -80,8 +99,10 @@ class Vandal {
 
 PolygonSoup base(std::uint64_t seed) {
     switch (seed % 5) {
-        case 0: return make_torus(9, 7);
-        case 1: return make_sheet(7);
+        case 0:
+            return make_torus(9, 7);
+        case 1:
+            return make_sheet(7);
         case 2: {
             PolygonSoup soup = make_box();
             add_box(soup, Vec3(1, 0, 0), Vec3(1));  // shares a side
@@ -89,8 +110,10 @@ PolygonSoup base(std::uint64_t seed) {
             add_box(soup, Vec3(3, 2, 1), Vec3(1));  // shares a corner
             return soup;
         }
-        case 3: return make_torus(3, 3);
-        default: return make_torus(25, 11);
+        case 3:
+            return make_torus(3, 3);
+        default:
+            return make_torus(25, 11);
     }
 }
 
@@ -131,7 +154,8 @@ TEST(BadMeshes, RepairIsIdempotent) {
         for (const auto& t : once.mesh.triangles) add_polygon(soup, {t[0], t[1], t[2]});
         const Surface twice = build_surface(soup, {.metres_per_unit = 1});
         EXPECT_THAT(broken_promises(twice), ElementsAre());
-        // Split vertices lie on each other and are welded and split again; no face is lost or flipped.
+        // Split vertices lie on each other and are welded and split again; no face is lost or
+        // flipped.
         EXPECT_EQ(twice.mesh.n_triangles(), once.mesh.n_triangles());
         EXPECT_EQ(twice.report.degenerate_faces_dropped, 0u);
         EXPECT_EQ(twice.report.duplicate_faces_dropped, 0u);

@@ -13,7 +13,9 @@
 /// Small meshes and the laws every repaired surface obeys, for the tests of this room.
 namespace tuft::mesh {
 
-inline std::vector<char> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
+inline std::vector<char> bytes_of(std::string_view text) {
+    return {text.begin(), text.end()};
+}
 
 /// Appends a polygon over existing points.
 inline void add_polygon(PolygonSoup& soup, const std::vector<std::uint32_t>& corners) {
@@ -117,8 +119,8 @@ inline std::vector<std::string> broken_promises(const Surface& surface) {
             const Vec3f normal = m.corner_normals[3 * t + k];
             require(std::abs(glm::length(normal) - 1) < 1e-5, "normal is not of unit length");
         }
-        const Vec3 area = glm::cross(m.position(t, 1) - m.position(t, 0),
-                                     m.position(t, 2) - m.position(t, 0));
+        const Vec3 area =
+            glm::cross(m.position(t, 1) - m.position(t, 0), m.position(t, 2) - m.position(t, 0));
         require(glm::length(area) > 0, "triangle " + std::to_string(t) + " has no area");
         std::sort(v.begin(), v.end());
         require(v[0] != v[1] && v[1] != v[2], "repeated corner");

@@ -62,7 +62,8 @@ TEST(Repair, LengthsBecomeMetres) {
 
 TEST(Repair, WeldsVerticesAtTheSamePlace) {
     PolygonSoup box = loosened(make_box());
-    add_polygon(box, {0, 1, 2});  // shares points, so it is no loose soup; and a duplicate of a half
+    add_polygon(box,
+                {0, 1, 2});  // shares points, so it is no loose soup; and a duplicate of a half
     const Surface s = repaired(box);
     EXPECT_EQ(s.report.vertices_welded, 16u);
     EXPECT_EQ(s.mesh.n_vertices(), 8u);
@@ -150,10 +151,26 @@ TEST(Repair, FlipsFlatTrianglesInsteadOfOpeningASlit) {
     }
 }
 
+// Found by fuzzing: a flat triangle that is left out where two others meet is mended at its
+// long side afterwards, so its vertices must have come apart from theirs.
+TEST(Repair, FlatTriangleOnASharedEdgeIsSetApart) {
+    PolygonSoup soup;
+    soup.points = {{0, 0, 0}, {0, 100, 0}, {1, 0, 0}, {0, 10, 8},
+                   {1, 2, 0}, {0, 100, 4}, {0, 10, 0}};
+    for (const auto& p : {std::vector<std::uint32_t>{0, 1, 3},
+                          {1, 2, 4},
+                          {4, 6, 5, 1},
+                          {4, 6, 5, 1, 0},
+                          {1, 2, 3},
+                          {0, 1, 2, 3}})
+        add_polygon(soup, p);
+    repaired(soup);
+}
+
 TEST(Repair, DropsDuplicateFacesWhicheverWayRound) {
     PolygonSoup sheet = make_sheet(2);
-    add_polygon(sheet, {1, 4, 0});   // the first triangle again, turned
-    add_polygon(sheet, {4, 1, 0});   // and reversed
+    add_polygon(sheet, {1, 4, 0});  // the first triangle again, turned
+    add_polygon(sheet, {4, 1, 0});  // and reversed
     const Surface s = repaired(sheet);
     EXPECT_EQ(s.report.duplicate_faces_dropped, 2u);
     EXPECT_EQ(s.mesh.n_triangles(), 8u);
@@ -346,7 +363,8 @@ TEST(Repair, NormalsSplitAtCreasesOnly) {
     for (std::size_t c = 0; c < 3 * torus.mesh.n_triangles(); ++c) {
         const Vec3 p(torus.mesh.positions[torus.mesh.triangles[c / 3][c % 3]]);
         const Vec3 centre = 30.0 * glm::normalize(Vec3(p.x, p.y, 0));
-        EXPECT_NEAR(glm::length(Vec3(torus.mesh.corner_normals[c]) - (p - centre) / 10.0), 0, 0.011);
+        EXPECT_NEAR(glm::length(Vec3(torus.mesh.corner_normals[c]) - (p - centre) / 10.0), 0,
+                    0.011);
     }
     // 36-degree facets are smooth, 45-degree ones are not.
     for (const std::uint32_t sides : {8u, 10u}) {

@@ -52,8 +52,7 @@ TEST(Triangulate, ConcaveQuadIsCutInside) {
 
 TEST(Triangulate, QuadWithACornerOnItsSideHasNoFlatHalf) {
     const std::vector<Vec3> p{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 2, 0}};
-    for (const auto& [a, b, c] : cut(p))
-        EXPECT_GT(glm::cross(p[b] - p[a], p[c] - p[a]).z, 0.5);
+    for (const auto& [a, b, c] : cut(p)) EXPECT_GT(glm::cross(p[b] - p[a], p[c] - p[a]).z, 0.5);
 }
 
 TEST(Triangulate, StarsCombsAndSpiralsAreCovered) {
@@ -68,9 +67,11 @@ TEST(Triangulate, StarsCombsAndSpiralsAreCovered) {
     comb.emplace_back(-1, 0, 0);
     std::reverse(comb.begin(), comb.end());
     for (int i = 0; i <= 100; ++i)
-        spiral.emplace_back((2 + 0.1 * i) * std::cos(0.2 * i), (2 + 0.1 * i) * std::sin(0.2 * i), 0);
+        spiral.emplace_back((2 + 0.1 * i) * std::cos(0.2 * i), (2 + 0.1 * i) * std::sin(0.2 * i),
+                            0);
     for (int i = 100; i >= 0; --i)
-        spiral.emplace_back((1 + 0.1 * i) * std::cos(0.2 * i), (1 + 0.1 * i) * std::sin(0.2 * i), 0);
+        spiral.emplace_back((1 + 0.1 * i) * std::cos(0.2 * i), (1 + 0.1 * i) * std::sin(0.2 * i),
+                            0);
     std::reverse(spiral.begin(), spiral.end());
     for (const auto& p : {star, comb, spiral}) {
         double shoelace = 0;
