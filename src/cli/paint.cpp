@@ -51,8 +51,9 @@ int run(const Paint& a) {
     Console console(a.common.quiet);
     const auto start = Clock::now();
 
-    const std::vector<stroke::Stroke> strokes = load_strokes(a, console);
+    std::vector<stroke::Stroke> strokes = load_strokes(a, console);
     const stroke::Model model = load_model(a.model, a.surface, console);
+    place_strokes(strokes, model, a.place_mm, console);
     const double prepared = seconds_since(start);
 
     stroke::Painting painting(model, {.substrate = a.surface.substrate,

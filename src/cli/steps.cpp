@@ -95,8 +95,6 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
             if (trace.brush.empty() || !a.brush.empty())
                 trace.brush = a.brush.empty() ? "wolf-medium" : a.brush;
             if (trace.ink.empty() || !a.ink.empty()) trace.ink = a.ink.empty() ? "carbon" : a.ink;
-            if (!a.place_mm.empty())
-                trace.placement.origin = kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]);
             stroke::Stroke s;
             s.trace = std::move(trace);
             s.settings.spine = a.spine;
@@ -107,6 +105,36 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
         report(console.progress(), "strokes", 1);
     }
     return strokes;
+}
+
+void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
+                   const std::vector<double>& place_mm, Console& console) {
+    const stroke::Placement none;
+    const auto has_place = [&](const stroke::Placement& p) {
+        return p.origin != none.origin || p.right != none.right || p.down != none.down;
+    };
+    std::optional<mesh::SurfacePoint> at;
+    for (stroke::Stroke& s : strokes) {
+        if (!s.trace.flat || (place_mm.empty() && has_place(s.trace.placement))) continue;
+        if (!at) {
+            const Box& box = model.mesh->bounds;
+            if (!place_mm.empty())
+                at = model.query->closest_point(kMillimetre * Vec3(place_mm[0], place_mm[1], place_mm[2]));
+            else if (at = model.query->ray(box.centre() - Vec3{0, box.diagonal(), 0}, {0, 1, 0}); !at)
+                at = model.query->closest_point(box.centre() - Vec3{0, box.diagonal(), 0});
+            if (place_mm.empty())
+                console.note(fmt::format("the strokes name no place; they go to the front of the model, at {:.1f},{:.1f},{:.1f} mm (see --place)",
+                                         at->position.x / kMillimetre, at->position.y / kMillimetre,
+                                         at->position.z / kMillimetre));
+        }
+        // Upright as somebody sees it who stands before the surface; on a flat top, x stays to the right.
+        const Vec3 n = at->normal;
+        const Vec3 right = std::abs(n.z) < 0.95 ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n))
+                                                : make_frame(Vec3{0}, n).t;
+        s.trace.placement.origin = at->position;
+        s.trace.placement.right = right;
+        s.trace.placement.down = glm::cross(right, n);
+    }
 }
 
 render::Image draw_picture(const stroke::Model& model, const stroke::Painting* painting,

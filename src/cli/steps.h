@@ -30,9 +30,13 @@ void check_output(const std::filesystem::path& path);
 /// Throws `UsageError` when the extension is none of `allowed` (".glb", ...).
 void check_extension(const std::filesystem::path& path, const std::vector<std::string>& allowed);
 
-/// Strokes of InkML files in order, with brush, ink and placement filled in where the
-/// file names none.
+/// Strokes of InkML files in order, with brush and ink filled in where the file names none.
 std::vector<stroke::Stroke> load_strokes(const Paint& arguments, Console& console);
+
+/// Puts flat strokes that have no place of their own, or all of them when `place_mm` is given,
+/// onto the model: upright at the nearest point to the place, else at its front (-y side).
+void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
+                   const std::vector<double>& place_mm, Console& console);
 
 /// What every painting command can leave behind; empty paths are skipped.
 struct Outputs {
