@@ -18,6 +18,7 @@ struct Work {
     const brush::Pose& pose;
     const Options& options;
     StandOptions stand;
+    double radius = 0; // of the tuft, metres
     double near = 0;   // metres: farther than this nothing of the tuft can touch
     Stand root;        // of the ferrule's mouth
 };
@@ -165,6 +166,16 @@ double skin_distance(const Work& w, const brush::TuftState& tuft) {
     return std::max(best, 0.0);
 }
 
+/// Where to look for the frame's origin: it goes with the hair and drifts to the middle of the
+/// contact over half a radius of travel, so that it does not jump when sections come and go.
+Vec3 followed_centre(const Work& w, const Memory& memory, const Vec3& travel, const Vec3& middle) {
+    if (!memory.touching) return middle;
+    const Vec3 carried = memory.origin + travel;
+    const double moved = std::max(glm::length(travel), glm::length(w.pose.position - memory.root));
+    if (glm::length(middle - carried) > 4 * w.radius) return middle;
+    return carried + (1 - std::exp(-moved / (0.5 * w.radius))) * (middle - carried);
+}
+
 /// The contact frame under the middle of the touching sections, and the distance to touch.
 /// Sections weigh as deep as they reach into the surface, so that it moves continuously.
 void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, Memory& memory, Result& result) {
@@ -207,12 +218,14 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
     if (gap > w.options.tolerance) result.distance = skin_distance(w, result.tuft);
     Stand at = *lowest;
     if (total > 0) {
-        const Stand middle = stand_from(w.surface, from->outside, from->side, sum / total, w.stand);
+        const Vec3 centre = followed_centre(w, memory, result.travel, sum / total);
+        const Stand middle = stand_from(w.surface, from->outside, from->side, centre, w.stand);
         if (middle.triangle != kNone) at = middle;
     }
     result.triangle = at.triangle;
     result.frame = make_frame(at.plane.origin, at.plane.normal, memory.heading);
     memory.heading = result.frame.t;
+    memory.origin = result.frame.origin;
 }
 
 Vec3 hand_force(const brush::Preset& preset, const Result& result, const Options& options) {
@@ -235,7 +248,7 @@ Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery
     const double thick = 1.2 * preset.radius * std::max(1.0, preset.flatten_max);
     const bool meets = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
-    Work w{surface, pose, options, {}, 0, {}};
+    Work w{surface, pose, options, {}, preset.radius, 0, {}};
     w.stand.reach = 2 * preset.length + thick;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (meets) w.root = stand_of_root(w, memory, preset.length);

@@ -32,6 +32,7 @@ struct Memory {
     Vec3 outside{0};                ///< the same, or where it came out in front of the surface
     double side = 1;                ///< -1: on the back of an open sheet
     Vec3 heading{1, 0, 0};          ///< t of the last contact frame
+    Vec3 origin{0};                 ///< of the last contact frame
     std::vector<Vec3> centres;      ///< of all sections at the last sample, metres
 };
 
@@ -42,7 +43,7 @@ struct Result {
     std::vector<std::vector<brush::ContactPlane>> branch_planes;  ///< of every section of tuft.branches,
                                                                   ///< empty when nothing is near
     Frame frame;                ///< on the surface under the contact patch, n outward; t carried
-                                ///< along from the stamp before
+                                ///< along from the stamp before; travels with the hair
     std::uint32_t triangle = kNone;  ///< under frame.origin; kNone when nothing is near
     Vec3 travel{0};             ///< metres, world: way of the touching hair since the last sample; the
                                 ///< frame's origin may go another way over a crease. 0 at first touch
