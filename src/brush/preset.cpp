@@ -38,6 +38,7 @@ constexpr std::array kFields = {
     Field{"bending", "stiffness_n_m2", &Preset::stiffness, 1, 1e-8, 1},
     Field{"bending", "alpha", &Preset::alpha, 1, -6, 3},
     Field{"bending", "beta", &Preset::beta, 1, -0.995, 1},
+    Field{"bending", "tip_stiffness", &Preset::tip_stiffness, 1, 0, 1},
     Field{"bending", "yield", &Preset::yield, 1, 0, 100},
     Field{"bending", "gamma", &Preset::gamma, 1, -6, 3},
     Field{"bending", "plastic_share", &Preset::plastic_share, 1, 0, 1},

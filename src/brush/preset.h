@@ -34,6 +34,7 @@ struct Preset {
     double stiffness = 2e-4;      ///< B0, N·m², at the root
     double alpha = -1;            ///< α of the modulus
     double beta = -0.8;           ///< β of the height, > -1
+    double tip_stiffness = 2e-4;  ///< of B0, added all along: the hairs that reach the tip
     double yield = 0.7;           ///< e = M_e0 L / B0; 0 means it never yields
     double gamma = -1;            ///< γ of the yield stress
     double plastic_share = 0.3;   ///< part of the stiffness that yields; 1 is the ideally plastic hair

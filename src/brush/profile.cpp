@@ -9,13 +9,14 @@ namespace tuft::brush {
 
 double bending_stiffness(const Profile& p, double xi) {
     const double u = 1 + p.beta * xi;
-    return std::exp(p.alpha * xi) * u * u * u;
+    return std::exp(p.alpha * xi) * u * u * u + p.floor;
 }
 
 double yield_moment(const Profile& p, double xi) {
     if (p.yield <= 0) return std::numeric_limits<double>::infinity();
     const double u = 1 + p.beta * xi;
-    return p.yield * std::exp(p.gamma * xi) * u * u;
+    const double own = std::exp(p.alpha * xi) * u * u * u;
+    return p.yield * std::exp(p.gamma * xi) * u * u * (1 + p.floor / own);
 }
 
 Quadrature gauss_legendre(int n) {
@@ -83,7 +84,7 @@ SmallDeflection small_deflection(const Profile& p, double xi) {
         static const Quadrature rule = gauss_legendre(16);
         for (std::size_t i = 0; i < rule.x.size(); ++i) {
             const double t = xi * rule.x[i];
-            const double f = rule.w[i] * xi * (1 - t) / bending_stiffness(p, t);
+            const double f = rule.w[i] * xi * (1 - t) / bending_stiffness({p.alpha, p.beta}, t);
             out.slope += f;
             out.w += f * (xi - t);
         }

@@ -13,6 +13,7 @@ struct Profile {
     double beta = -0.8;   ///< > -1
     double yield = 0;     ///< e = M_e0 L / B0; 0 means elastic for ever
     double gamma = -1;
+    double floor = 0;     ///< added to B/B0: the hairs that reach the tip; M_e grows in proportion
 };
 
 double bending_stiffness(const Profile& p, double xi);  ///< B/B0
@@ -33,7 +34,7 @@ struct SmallDeflection {
 
 /// Cantilever with transverse tip load P by linear theory, B w'' = P (L - x), in closed
 /// form by exponential integrals; Gauss quadrature where the closed form cancels
-/// (|β| < 0.05). Overshoots for |w| > 0.1 L: not for shapes, see rod.h.
+/// (|β| < 0.05), without `floor`. Overshoots for |w| > 0.1 L: not for shapes, see rod.h.
 /// Source: variable stiffness brush (Huang and Hou 2018), integrated anew.
 SmallDeflection small_deflection(const Profile& p, double xi);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "brush/rod.h"
+#include "brush/tuft.h"
 
 namespace tuft::brush {
 
@@ -81,7 +82,7 @@ QueryTable make_table(const Preset& p, int rows) {
     const std::vector<double> spine = spine_segments(p.segments, 0.25 + 0.75 * p.hardness);
     std::vector<double> lengths;
     for (const double l : spine) lengths.insert(lengths.end(), kFiner, l / kFiner);
-    rod::Rod fine = rod::make_rod({p.alpha, p.beta, p.yield, p.gamma}, lengths);
+    rod::Rod fine = rod::make_rod(profile_of(p), lengths);
     fine.plastic_share = p.plastic_share;
 
     QueryTable table{p.length, p.stiffness, {}};

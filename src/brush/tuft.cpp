@@ -68,10 +68,13 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
     aside = glm::length(aside) > 1e-3 * glm::length(to.position - from.position) + 1e-9
                 ? glm::normalize(back * aside)
                 : from.rotation * Vec3{1, 0, 0};
-    const double n = static_cast<double>(spine.memory.tangent.size());
+    // Bend angle ε s² that takes the tip back up to the surface: the tip rises by L ε²/10.
+    const double under = -glm::dot(tip - at_tip.origin, at_tip.normal) / p.length;
+    const double angle = std::clamp(std::sqrt(10 * under), 0.02, 0.6);
+    double s = 0;
     for (std::size_t j = 0; j < spine.memory.tangent.size(); ++j) {
-        Vec3& t = spine.memory.tangent[j];
-        t = glm::normalize(t + 0.02 * static_cast<double>(j + 1) / n * aside);
+        s += spine.rod.length[j];
+        spine.memory.tangent[j] = glm::normalize(axis + std::tan(angle * s * s) * aside);
     }
 }
 
@@ -122,6 +125,41 @@ Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
     rod::Result result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law);
     return with_sections(p, spine, std::move(result), turn, obstacles, law, share);
+}
+
+/// Largest move of the ferrule in one solve, in lengths, turns counted at one length: hair
+/// that stands nearly straight must be followed closely, or it falls to the wrong side.
+constexpr double kCareful = 0.006, kOrdinary = 0.03;
+constexpr double kLaid = 0.8;    ///< bend from which the hair lies as it will, radians
+constexpr double kTeleport = 0.5;///< lengths; a further jump is no motion to follow
+constexpr int kMaxParts = 8;
+
+Pose between(const Pose& a, const Pose& b, double t) {
+    return {glm::mix(a.position, b.position, t), glm::slerp(a.rotation, b.rotation, t),
+            a.time + t * (b.time - a.time)};
+}
+
+/// Follows the ferrule from `from` to just before `to` in parts small enough.
+void approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
+              std::span<const ContactPlane> planes, rod::Law law) {
+    if (planes.empty()) return;
+    const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
+    const double moved = glm::length(to.position - from.position) / p.length + turned;
+    const double bend = std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
+    int parts = 1;
+    if (moved < kTeleport) {
+        const double largest = bend < kLaid ? kCareful : kOrdinary;
+        parts = std::clamp(static_cast<int>(std::ceil(moved / largest)), 1, kMaxParts);
+    }
+    law.max_iterations = std::max(30, law.max_iterations / parts);
+    Pose last = from;
+    for (int k = 1; k < parts; ++k) {
+        const Pose pose = between(from, to, static_cast<double>(k) / parts);
+        break_symmetry(p, spine, last, pose, planes);
+        rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes), law);
+        last = pose;
+    }
+    break_symmetry(p, spine, last, to, planes);
 }
 
 /// The spine from the query table: bent in the plane of the holder and the tip's last place,
@@ -281,11 +319,15 @@ double rest_radius(const Preset& p, double u) {
     return std::hypot(1.06 * p.radius * taper * (1 - 0.14 * std::pow(1 - u, 6)), p.tip_radius);
 }
 
+Profile profile_of(const Preset& p) {
+    return {p.alpha, p.beta, p.yield, p.gamma, p.tip_stiffness};
+}
+
 Tuft make_tuft(const Preset& preset) {
     check_preset(preset, preset.name.empty() ? "brush" : preset.name);
     Tuft tuft;
     tuft.preset = preset;
-    const Profile profile{preset.alpha, preset.beta, preset.yield, preset.gamma};
+    const Profile profile = profile_of(preset);
     rod::Rod rod = rod::make_rod(profile, preset.segments, 0.25 + 0.75 * preset.hardness);
     rod.plastic_share = preset.plastic_share;
     tuft.spine = make_spine(preset, rod, clamp_of(preset, {}), 0, 1);
@@ -325,8 +367,8 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     }
     const std::size_t own = tuft.spine.rest_radius.size();
     const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
-    break_symmetry(p, tuft.spine, tuft.pose, pose, main_planes);
     const rod::Law law = law_of(p, tuft.wetness, 1);
+    if (p.spine == SpineMethod::rod) approach(p, tuft.spine, tuft.pose, pose, main_planes, law);
     Solved solved = p.spine == SpineMethod::table
                         ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, law)
                         : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, law, 1);

@@ -62,6 +62,9 @@ void reshape(Tuft& tuft);
 /// What the hand feels, newtons, world: min(G |F|, limit) along the force on the tuft.
 Vec3 hand_force(const Preset& preset, const TuftState& state);
 
+/// The preset's stiffness and yield along the hair.
+Profile profile_of(const Preset& preset);
+
 /// Radius of the resting tuft, metres: 1.06 R (1-u^2.4)^q (1 - 0.14 (1-u)^6), u from root
 /// to tip, and the tip's own radius added by squares.
 double rest_radius(const Preset& preset, double u);

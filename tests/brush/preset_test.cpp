@@ -1,0 +1,92 @@
+#include "brush/preset.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "brush/tuft.h"
+#include "core/error.h"
+
+namespace tuft::brush {
+namespace {
+
+std::string error_of(const std::string& text) {
+    try {
+        parse_preset(text, "test.toml");
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+TEST(Presets, EveryShippedOneLoadsUnderItsOwnName) {
+    const std::vector<std::string> names = list_presets();
+    for (const char* hair : {"wolf", "goat", "mixed"}) {
+        for (const char* size : {"small", "medium", "large"}) {
+            EXPECT_THAT(names, testing::Contains(std::string(hair) + "-" + size));
+        }
+        EXPECT_EQ(load_preset(hair).name, std::string(hair) + "-medium");
+    }
+    for (const std::string& name : names) EXPECT_EQ(load_preset(name).name, name);
+}
+
+TEST(Presets, HairOrdersStiffness) {
+    for (const char* size : {"-small", "-medium", "-large"}) {
+        const Preset wolf = load_preset(std::string("wolf") + size), mixed = load_preset(std::string("mixed") + size),
+                     goat = load_preset(std::string("goat") + size);
+        EXPECT_GT(wolf.stiffness, mixed.stiffness);
+        EXPECT_GT(mixed.stiffness, goat.stiffness);
+        EXPECT_LT(wolf.capacity, goat.capacity);
+    }
+}
+
+TEST(Presets, WrittenAndReadBackAreTheSame) {
+    Preset p = load_preset("goat-large");
+    p.note = "a \"quoted\" note \\ with a backslash";
+    p.spine = SpineMethod::table;
+    p.alpha = -1.23456789;
+    const Preset q = parse_preset(preset_toml(p), "again.toml");
+    EXPECT_EQ(q.name, p.name);
+    EXPECT_EQ(q.note, p.note);
+    EXPECT_EQ(q.spine, p.spine);
+    EXPECT_NEAR(q.alpha, p.alpha, 1e-9);
+    EXPECT_NEAR(q.length, p.length, 1e-9 * p.length);
+    EXPECT_NEAR(q.capacity, p.capacity, 1e-9 * p.capacity);
+    EXPECT_EQ(preset_toml(q), preset_toml(p));
+}
+
+TEST(Presets, MistakesAreNamedWithTheirLine) {
+    EXPECT_THAT(error_of("[shape]\nlenght_mm = 20\n"), testing::AllOf(testing::HasSubstr("test.toml:2"), testing::HasSubstr("did you mean 'shape.length_mm'")));
+    EXPECT_THAT(error_of("[shape]\nlength_mm = -3\n"), testing::HasSubstr("'shape.length_mm' is -3, outside 2 to 300"));
+    EXPECT_THAT(error_of("[shape]\nlength_mm = \"long\"\n"), testing::HasSubstr("must be a number"));
+    EXPECT_THAT(error_of("[shape]\nlength_mm = nan\n"), testing::HasSubstr("outside"));
+    EXPECT_THAT(error_of("[shape]\nsegments = 12.5\n"), testing::HasSubstr("whole number"));
+    EXPECT_THAT(error_of("[bending]\nspine = \"rope\"\n"), testing::HasSubstr("\"rod\" or \"table\""));
+    EXPECT_THAT(error_of("[shape\nlength_mm = 3"), testing::HasSubstr("test.toml:1"));
+    EXPECT_THAT(error_of("[split]\nat = 0.5\nmerge_at = 0.9\n"), testing::HasSubstr("must not exceed"));
+}
+
+TEST(Presets, AnUnknownNameSuggestsTheNearest) {
+    try {
+        load_preset("wolff");
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr("did you mean 'wolf'?"));
+    }
+    EXPECT_THROW(load_preset("./no/such/brush.toml"), Error);
+}
+
+TEST(Presets, TipsAreFineAndBelliesRound) {
+    for (const std::string& name : list_presets()) {
+        const Preset p = load_preset(name);
+        EXPECT_LE(rest_radius(p, 1), 0.15e-3) << name;       // a 0.3 mm line
+        EXPECT_NEAR(rest_radius(p, 0.25), p.radius, 0.1 * p.radius) << name;
+        EXPECT_GT(rest_radius(p, 0.6), 0.5 * p.radius) << name;
+        for (double u = 0.3; u < 1; u += 0.01) EXPECT_LT(rest_radius(p, u + 0.01), rest_radius(p, u)) << name;
+    }
+}
+
+}  // namespace
+}  // namespace tuft::brush

@@ -1,0 +1,79 @@
+#include "brush/sweep.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/error.h"
+
+namespace tuft::brush {
+namespace {
+
+std::string write(const std::string& name, const std::string& text) {
+    const std::string path = testing::TempDir() + name;
+    std::ofstream(path) << text;
+    return path;
+}
+
+TEST(Sweep, LinesWidenEvenlyWithDepth) {
+    for (const char* name : {"wolf-medium", "mixed-small", "goat-large"}) {
+        const Preset p = load_preset(name);
+        std::vector<double> depths;
+        for (int i = 0; i <= 20; ++i) depths.push_back(0.022 * i * p.length);
+        const std::vector<SweepRow> rows = sweep_depth(p, depths);
+        EXPECT_LT(rows[0].width, 0.3e-3);
+        for (std::size_t i = 1; i < rows.size(); ++i) {
+            EXPECT_GE(rows[i].width, rows[i - 1].width) << name << " " << i;
+            // No wiggles: a step never exceeds three times a mean step.
+            EXPECT_LT(rows[i].width - rows[i - 1].width, 3 * rows.back().width / 20) << name << " " << i;
+        }
+        EXPECT_GT(rows.back().width, 1.5 * p.radius);
+    }
+}
+
+TEST(Sweep, TableReadsBack) {
+    const std::vector<SweepRow> rows{{0.002, 0.0015, 0.003, 0.001}, {0.004, 0.0035, 0.005, 0.0012}};
+    const std::string path = write("sweep.csv", "# a brush\n" + sweep_csv(rows));
+    const std::vector<SweepRow> back = read_sweep(path);
+    ASSERT_EQ(back.size(), 2u);
+    EXPECT_NEAR(back[1].width, 0.0035, 1e-9);
+    EXPECT_NEAR(back[0].offset, 0.001, 1e-9);
+}
+
+TEST(Sweep, ExcludedRowsAreSkippedAndMistakesNamed) {
+    const std::vector<SweepRow> rows = read_sweep(write("some.csv", "z_mm,width_mm,drag_mm,offset_mm,excluded_by_authors\n1,1,1,1,0\n2,9,9,9,1\n"));
+    EXPECT_EQ(rows.size(), 1u);
+    const auto error_of = [](const std::string& text) {
+        try {
+            read_sweep(write("bad.csv", text));
+        } catch (const Error& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    EXPECT_THAT(error_of("z_mm,width_mm\n1,2\n"), testing::HasSubstr("no column 'drag_mm'"));
+    EXPECT_THAT(error_of("z_mm,width_mm,drag_mm,offset_mm\n1,2,x,4\n"), testing::AllOf(testing::HasSubstr(":2:"), testing::HasSubstr("'x'")));
+    EXPECT_THAT(error_of("z_mm,width_mm,drag_mm,offset_mm\n1,2\n"), testing::HasSubstr("is not a length"));
+    EXPECT_THAT(error_of("z_mm,width_mm,drag_mm,offset_mm\n"), testing::HasSubstr("no measured rows"));
+}
+
+TEST(Calibrate, FindsABrushThatMadeTheMeasurements) {
+    // Measured with a brush of other radius and flattening; the fit must explain the lines.
+    Preset truth = load_preset("mixed-medium");
+    truth.radius *= 1.25;
+    truth.flatten_contact *= 0.7;
+    std::vector<double> depths{0.002, 0.005, 0.008, 0.011};
+    const std::vector<SweepRow> measured = sweep_depth(truth, depths);
+    CalibrateOptions options;
+    options.max_evaluations = 60;
+    const Calibration fit = calibrate(load_preset("mixed-medium"), measured, options);
+    EXPECT_LT(fit.cost, 0.5);  // well inside the repeatability of such a measurement
+    EXPECT_LT(fit.rms.width, 0.5e-3);
+    EXPECT_LE(fit.evaluations, options.max_evaluations + 8);
+    EXPECT_THROW(calibrate(truth, std::span(measured).first(2)), Error);
+}
+
+}  // namespace
+}  // namespace tuft::brush
