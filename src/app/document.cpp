@@ -192,7 +192,7 @@ void Document::export_model(const fs::path& path) {
     if (!painting_) return;
     try {
         io::export_model(path, *model_->mesh, model_->atlas,
-                         io::make_maps(painting_->canvas(), model_->texels, painting_->substrate()),
+                         io::make_maps(painting_->canvas(), model_->texels, painting_->substrate(), painting_->compose_options()),
                          {.unit = unit_});
         message = "exported " + path.string();
     } catch (const Error& e) {

@@ -97,7 +97,7 @@ int run(const Export& a) {
     painting.use_substrate(project->substrate);
     use_presets(project->file, painting);
     show_strokes(project->file, painting, console);
-    const ink::ComposeOptions compose{.gutter = project->model.atlas.gutter};
+    const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
     if (extension == ".png") {
         io::write_image(a.output, io::view_of(ink::compose_srgb8(painting.canvas(), project->model.texels,

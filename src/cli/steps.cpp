@@ -109,13 +109,9 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
 
 void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
                    const std::vector<double>& place_mm, Console& console) {
-    const stroke::Placement none;
-    const auto has_place = [&](const stroke::Placement& p) {
-        return p.origin != none.origin || p.right != none.right || p.down != none.down;
-    };
     std::optional<mesh::SurfacePoint> at;
     for (stroke::Stroke& s : strokes) {
-        if (!s.trace.flat || (place_mm.empty() && has_place(s.trace.placement))) continue;
+        if (!s.trace.flat || (place_mm.empty() && s.trace.placed)) continue;
         if (!at) {
             const Box& box = model.mesh->bounds;
             if (!place_mm.empty())
@@ -134,6 +130,7 @@ void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& mo
         s.trace.placement.origin = at->position;
         s.trace.placement.right = right;
         s.trace.placement.down = glm::cross(right, n);
+        s.trace.placed = true;
     }
 }
 
@@ -150,7 +147,8 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
     ink::AtlasMap<float> colour, height;
     std::vector<Vec3f> texels;
     if (painting && !painting->journal().empty()) {
-        colour = ink::compose_linear(painting->canvas(), model.texels, substrate);
+        colour = ink::compose_linear(painting->canvas(), model.texels, substrate,
+                                     painting->compose_options());
         const auto* first = reinterpret_cast<const Vec3f*>(colour.texels.data());
         look.maps.size = colour.size;
         look.maps.corner_uvs = model.atlas.corner_uvs;
@@ -184,7 +182,7 @@ void write_outputs(const Outputs& o, const stroke::Painting& painting, Console& 
     const stroke::Model& model = painting.model();
     if (!o.exported.empty()) {
         const io::ModelMaps maps = io::make_maps(painting.canvas(), model.texels, painting.substrate(),
-                                                 {.gutter = model.atlas.gutter});
+                                                 painting.compose_options());
         io::export_model(o.exported, *model.mesh, model.atlas, maps,
                          {.unit = o.unit, .progress = console.progress()});
     }

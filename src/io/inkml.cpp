@@ -25,6 +25,7 @@ constexpr int kMaxNesting = 64;  // groups in groups, references to references
 /// Own annotations in force at one place of the file.
 struct Marks {
     stroke::Placement placement;
+    bool placed = false;
     std::string brush, ink, label;
     std::uint64_t seed = 0;
 };
@@ -285,7 +286,10 @@ class Reader {
             if (type == "brush") marks.brush = text;
             else if (type == "ink") marks.ink = text;
             else if (type == "label") marks.label = text;
-            else if (type == "origin") marks.placement.origin = kMillimetre * vector_of(node, text);
+            else if (type == "origin") {
+                marks.placement.origin = kMillimetre * vector_of(node, text);
+                marks.placed = true;
+            }
             else if (type == "right") marks.placement.right = direction_of(node, text);
             else if (type == "down") marks.placement.down = direction_of(node, text);
             else if (type == "laying" && text == "wrap") marks.placement.laying = stroke::Laying::wrap;
@@ -383,6 +387,7 @@ class Reader {
         d.sample_rate = state.sample_rate;
         d.trace.flat = z < 0 && !turned;
         d.trace.placement = state.marks.placement;
+        d.trace.placed = state.marks.placed;
         d.trace.brush = state.marks.brush;
         d.trace.ink = state.marks.ink;
         d.trace.seed = state.marks.seed;

@@ -239,6 +239,13 @@ StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
     return report;
 }
 
+ink::ComposeOptions Painting::compose_options() const {
+    if (!gutter_)
+        gutter_ = std::make_unique<ink::GutterPlan>(
+            ink::plan_gutter(*model_->mesh, model_->atlas, model_->texels));
+    return {.gutter = model_->atlas.gutter, .seams = gutter_.get()};
+}
+
 const brush::TuftState* Painting::tuft() const { return hand_ ? &hand_->state : nullptr; }
 
 std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const ProgressFn& progress) {

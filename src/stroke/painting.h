@@ -10,6 +10,7 @@
 
 #include "brush/preset.h"
 #include "ink/canvas.h"
+#include "ink/composite.h"
 #include "ink/pigments.h"
 #include "stroke/journal.h"
 #include "stroke/model.h"
@@ -94,6 +95,9 @@ class Painting {
     ink::Canvas& canvas() { return canvas_; }
     const ink::Substrate& substrate() const { return substrate_; }
     void use_substrate(const ink::Substrate& substrate) { substrate_ = substrate; }
+    /// How maps are made of this painting: gutters continued over the seams. The plan behind
+    /// it is made at the first call (0.3–1 s) and belongs to the painting.
+    ink::ComposeOptions compose_options() const;
     std::vector<std::uint32_t> take_dirty() { return canvas_.take_dirty(); }
 
   private:
@@ -123,6 +127,7 @@ class Painting {
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
     std::unique_ptr<Hand> hand_;
+    mutable std::unique_ptr<ink::GutterPlan> gutter_;
 };
 
 }  // namespace tuft::stroke

@@ -39,6 +39,7 @@ struct TraceSample {
 struct Trace {
     bool flat = true;                    ///< flat pen data with a placement, or poses in space
     Placement placement;                 ///< for flat traces
+    bool placed = false;                 ///< the file says where; else the placement is only a default
     std::vector<TraceSample> samples;    ///< time never falls
     std::string brush, ink;              ///< preset names; empty: as the command line says
     std::uint64_t seed = 0;
