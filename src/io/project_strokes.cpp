@@ -73,7 +73,7 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         insert.bind(3, t.ink);
         insert.bind(4, static_cast<std::int64_t>(t.seed));
         insert.bind(5, t.label);
-        insert.bind(6, stroke::to_json(stroke.settings));
+        insert.bind(6, stroke::entry_json(stroke));
         insert.bind(7, stroke.hidden ? 1 : 0);
         insert.bind(8, t.flat ? 1 : 0);
         insert.bind(9, t.placement.laying == stroke::Laying::project ? "project" : "wrap");
@@ -101,7 +101,7 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         t.ink = select.getColumn(2).getString();
         t.seed = static_cast<std::uint64_t>(select.getColumn(3).getInt64());
         t.label = select.getColumn(4).getString();
-        stroke.settings = stroke::settings_from_json(select.getColumn(5).getString());
+        stroke::read_entry_json(select.getColumn(5).getString(), stroke);
         stroke.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
         t.placement.laying = select.getColumn(8).getString() == "project" ? stroke::Laying::project

@@ -7,26 +7,86 @@
 
 namespace tuft::stroke {
 
-std::string to_json(const Settings& s) {
-    return nlohmann::json{{"spine", s.spine},     {"footprint", s.footprint}, {"contact", s.contact},
-                          {"spacing", s.spacing}, {"lead", s.lead}}
-        .dump();
+namespace {
+
+constexpr double kLongestString = 1.0;    // metres
+constexpr double kStrongestFilter = 100;
+constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape"};
+
+nlohmann::json json_of(const Settings& s) {
+    return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
+            {"spacing", s.spacing},     {"lead", s.lead},           {"dip", s.dip},
+            {"pressure", s.pressure},   {"smooth", s.smooth},       {"stabilise", s.stabilise}};
 }
 
-Settings settings_from_json(const std::string& json) {
+nlohmann::json parsed(const std::string& text) {
     try {
-        const auto j = nlohmann::json::parse(json);
-        Settings s;
+        return nlohmann::json::parse(text);
+    } catch (const nlohmann::json::exception&) {
+        throw Error("the settings of a stroke cannot be read: " + text.substr(0, 80));
+    }
+}
+
+Settings settings_of(const nlohmann::json& j) {
+    Settings s;
+    try {
         s.spine = j.value("spine", s.spine);
         s.footprint = j.value("footprint", s.footprint);
         s.contact = j.value("contact", s.contact);
         s.spacing = j.value("spacing", s.spacing);
         s.lead = j.value("lead", s.lead);
-        if (!(s.spacing > 0 && s.spacing < 1000)) throw Error("spacing is out of range");
-        return s;
+        s.dip = j.value("dip", s.dip);
+        s.pressure = j.value("pressure", s.pressure);
+        s.smooth = j.value("smooth", s.smooth);
+        s.stabilise = j.value("stabilise", s.stabilise);
     } catch (const nlohmann::json::exception&) {
-        throw Error("the settings of a stroke cannot be read: " + json.substr(0, 80));
+        throw Error("the settings of a stroke cannot be read: " + j.dump().substr(0, 80));
     }
+    check_settings(s);
+    return s;
+}
+
+bool among(const std::string& word, std::initializer_list<const char*> words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+}  // namespace
+
+void check_settings(const Settings& s) {
+    if (!(s.spacing > 0 && s.spacing < 1000)) throw Error("spacing is out of range");
+    if (!among(s.dip, {"each", "carry"}))
+        throw Error("dip is 'each' or 'carry', not '" + s.dip + "'");
+    if (!among(s.pressure, {"none", "speed", "dwell", "speed+dwell"}))
+        throw Error("pressure is 'none', 'speed', 'dwell' or 'speed+dwell', not '" + s.pressure + "'");
+    if (!(s.smooth >= 0 && s.smooth <= kStrongestFilter)) throw Error("smooth is out of range");
+    if (!(s.stabilise >= 0 && s.stabilise <= kLongestString)) throw Error("stabilise is out of range");
+}
+
+std::string to_json(const Settings& s) { return json_of(s).dump(); }
+Settings settings_from_json(const std::string& json) { return settings_of(parsed(json)); }
+
+std::string entry_json(const Stroke& entry) {
+    nlohmann::json j = json_of(entry.settings);
+    if (entry.action != Action::stroke) j["action"] = name_of(entry.action);
+    return j.dump();
+}
+
+void read_entry_json(const std::string& json, Stroke& entry) {
+    const nlohmann::json j = parsed(json);
+    entry.settings = settings_of(j);
+    entry.action = Action::stroke;
+    const auto action = j.find("action");
+    if (action == j.end()) return;
+    if (!action->is_string()) throw Error("the action of a journal's entry cannot be read");
+    entry.action = action_of(action->get<std::string>());
+}
+
+std::string name_of(Action action) { return kActions[static_cast<int>(action)]; }
+
+Action action_of(const std::string& name) {
+    for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape})
+        if (name == name_of(a)) return a;
+    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse and reshape");
 }
 
 const Stroke& Journal::append(Stroke stroke) {

@@ -16,20 +16,39 @@ struct Settings {
     std::string contact = "exact";      ///< exact | vertices
     double spacing = 1.0;               ///< texels between two stamps
     bool lead = true;                   ///< flat traces: the hand runs ahead so that the ink lies on them
+    std::string dip = "each";           ///< each: every stroke with a fresh full brush | carry: with
+                                        ///< the hair and ink that the last one with it left
+    std::string pressure = "none";      ///< flat traces: none (as sampled) | speed | dwell | speed+dwell
+    double smooth = 0;                  ///< strength of the hand's filter; 0: off, 1: its defaults
+    double stabilise = 0;               ///< metres of the string that pulls the tip; 0: off
 
     bool operator==(const Settings&) const = default;
 };
 
-/// Settings as one line of JSON, and back; unknown keys are ignored, wrong types throw `Error`.
+/// Settings as one line of JSON, and back; unknown keys are ignored, wrong types and values
+/// throw `Error`.
 std::string to_json(const Settings& settings);
 Settings settings_from_json(const std::string& json);
+/// Throws `Error` for a word or a number that means nothing.
+void check_settings(const Settings& settings);
 
+/// An entry of the journal: a stroke, or an action of the brush between strokes. An action
+/// has no samples; it names a brush, and for a dip the ink.
 struct Stroke {
     std::uint64_t id = 0;     ///< unique in its journal, never used again
     Trace trace;              ///< with the names of its brush and ink filled in
     Settings settings;
     bool hidden = false;      ///< kept, but not painted
+    Action action = Action::stroke;
 };
+
+/// The settings of an entry as above, with the entry's action as one more key.
+std::string entry_json(const Stroke& entry);
+void read_entry_json(const std::string& json, Stroke& entry);
+
+/// "stroke", "dip", "rinse", "reshape"; and back, throwing `Error` for any other word.
+std::string name_of(Action action);
+Action action_of(const std::string& name);
 
 /// Strokes in the order in which they are painted, with undo and redo.
 class Journal {

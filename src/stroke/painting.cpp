@@ -5,7 +5,7 @@
 
 #include "contact/contact.h"
 #include "footprint/outline.h"
-#include "ink/reservoir.h"
+#include "stroke/hand.h"
 #include "stroke/resample.h"
 #include "stroke/stamper.h"
 
@@ -36,7 +36,8 @@ struct Painting::Hand {
     brush::Tuft tuft;
     ink::Ink ink;
     ink::Reservoir reservoir;
-    ink::Mix mix;
+    std::string dipped;
+    SteadyHand steady;
     contact::Memory memory;
     contact::Options contact_options;
     Resampler resampler;
@@ -49,20 +50,19 @@ struct Painting::Hand {
     bool moved = false, was_touching = false;
     Vec3 last_position{0};
 
-    Hand(Stroke s, const brush::Preset& preset, const ink::Ink& i, const Model& model,
-         ink::Canvas& canvas, double step_, double texel)
+    Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& model, ink::Canvas& canvas,
+         double step_, double texel)
         : stroke(std::move(s)),
-          tuft(brush::make_tuft(preset)),
+          tuft(std::move(held.tuft)),
           ink(i),
-          reservoir(ink::make_reservoir(preset.capacity * 1e6)),
-          mix(ink::mix_of(canvas, i)),
-          resampler({.step = step_, .lever = preset.length}),
+          reservoir(held.reservoir),
+          dipped(std::move(held.dipped)),
+          resampler({.step = step_, .lever = tuft.preset.length}),
           stamper(model, canvas, stamp_options(stroke.settings)),
           step(step_),
           cell(0.5 * texel) {
         contact_options.method = stroke.settings.contact == "vertices" ? contact::Method::vertices
                                                                        : contact::Method::exact;
-        ink::dip(reservoir, mix);
         report.nearest = std::numeric_limits<double>::infinity();
     }
 
@@ -83,7 +83,10 @@ Painting::~Painting() = default;
 Painting::Painting(Painting&&) noexcept = default;
 Painting& Painting::operator=(Painting&&) noexcept = default;
 
-void Painting::use_brush(const brush::Preset& preset) { brushes_[preset.name] = preset; }
+void Painting::use_brush(const brush::Preset& preset) {
+    brushes_[preset.name] = preset;
+    held_.erase(preset.name);
+}
 void Painting::use_ink(const ink::Ink& ink) { inks_[ink.name] = ink; }
 
 const brush::Preset& Painting::brush(const std::string& name) {
@@ -98,14 +101,87 @@ const ink::Ink& Painting::ink(const std::string& name) {
     return inks_.emplace(name, ink::load_ink(name)).first->second;
 }
 
+const BrushInHand* Painting::held(const std::string& brush) const {
+    const auto found = held_.find(brush);
+    return found == held_.end() ? nullptr : &found->second;
+}
+
+// A brush that is not held is fresh; the entry says so, for replays that hold it.
+void Painting::settle(Stroke& entry) const {
+    const BrushInHand* last = held(entry.trace.brush);
+    if (!last) entry.settings.dip = "each";
+    if (last && entry.action != Action::stroke && entry.trace.ink.empty()) entry.trace.ink = last->dipped;
+}
+
+// The brush an entry begins with.
+BrushInHand Painting::take_up(const Stroke& entry) {
+    brush::Preset preset = brush(entry.trace.brush);
+    if (entry.settings.spine == "table") preset.spine = brush::SpineMethod::table;
+    const std::string& named = entry.trace.ink;
+    const ink::Mix mix = ink::mix_of(canvas_, ink(named));
+    const BrushInHand* last = entry.settings.dip == "carry" ? held(entry.trace.brush) : nullptr;
+    if (!last || last->tuft.preset.spine != preset.spine) {
+        BrushInHand fresh{brush::make_tuft(preset), ink::make_reservoir(preset.capacity * 1e6), named, named};
+        ink::dip(fresh.reservoir, mix);
+        return fresh;
+    }
+    BrushInHand brush = *last;
+    if (entry.action == Action::stroke) {
+        if (named != brush.named && named != brush.dipped) {
+            ink::rinse(brush.reservoir);
+            brush::reset(brush.tuft);
+            ink::dip(brush.reservoir, mix);
+            brush.dipped = named;
+        }
+        brush.named = named;
+    }
+    return brush;
+}
+
+// The entry is done: the brush is as it is now, and undo knows what it and the tiles were.
+void Painting::put_down(std::uint64_t id, const std::string& brush, BrushInHand after,
+                        std::vector<ink::TileSnapshot> before) {
+    Undo undo{.stroke_id = id, .before = std::move(before), .brush = brush};
+    if (const auto found = held_.find(brush); found != held_.end()) {
+        undo.brush_before = std::move(found->second);
+        undo.bytes += sizeof(BrushInHand);
+    }
+    held_.insert_or_assign(brush, std::move(after));
+    for (const ink::TileSnapshot& tile : undo.before)
+        undo.bytes += sizeof(ink::TileSnapshot) + tile.amounts.size() * sizeof(float);
+    undo_bytes_ += undo.bytes;
+    undo_.push_back(std::move(undo));
+    while (undo_bytes_ > options_.undo_bytes && undo_.size() > 1) {
+        undo_bytes_ -= undo_.front().bytes;
+        undo_.pop_front();
+    }
+}
+
+void Painting::act(const Stroke& entry) {
+    BrushInHand brush = take_up(entry);
+    switch (entry.action) {
+        case Action::dip:
+            ink::dip(brush.reservoir, ink::mix_of(canvas_, ink(entry.trace.ink)));
+            brush.dipped = entry.trace.ink;
+            break;
+        case Action::rinse:
+            ink::rinse(brush.reservoir);
+            brush::reset(brush.tuft);
+            break;
+        case Action::reshape: brush::reshape(brush.tuft); break;
+        case Action::stroke: break;
+    }
+    put_down(entry.id, entry.trace.brush, std::move(brush), {});
+}
+
 void Painting::begin(Stroke stroke) {
     cancel();
-    brush::Preset preset = brush(stroke.trace.brush);
-    if (stroke.settings.spine == "table") preset.spine = brush::SpineMethod::table;
+    settle(stroke);
+    BrushInHand brush = take_up(stroke);
+    const ink::Ink& ink = this->ink(brush.dipped);
     const double texel = model_->texels.texel_size;
     const double spacing = stroke.settings.spacing * texel;
-    hand_ = std::make_unique<Hand>(std::move(stroke), preset, ink(stroke.trace.ink), *model_,
-                                   canvas_, spacing, texel);
+    hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, *model_, canvas_, spacing, texel);
 }
 
 void Painting::extend(std::span<const brush::Pose> poses) {
@@ -118,7 +194,8 @@ void Painting::extend(std::span<const brush::Pose> poses) {
 void Painting::advance(std::span<const brush::Pose> poses) {
     for (const brush::Pose& pose : poses) {
         ++hand_->report.samples;
-        hand_->resampler.push(pose, hand_->poses);
+        const bool as_is = hand_->stroke.trace.flat;  // then the whole trace was steadied
+        hand_->resampler.push(as_is ? pose : steady(hand_->steady, pose, hand_->stroke.settings), hand_->poses);
     }
     draw_poses();
 }
@@ -128,6 +205,8 @@ void Painting::draw_poses() {
     for (const brush::Pose& pose : h.poses) {
         h.tuft.ink_left = h.reservoir.fullness();
         const double dt = h.moved ? pose.time - h.last_time : 0.0;
+        // A hair that painted before comes through the air, as it sprang back.
+        if (!h.moved && h.tuft.posed) brush::step(h.tuft, pose, {}, 0);
         contact::Result contact =
             contact::step(h.tuft, pose, *model_->query, h.memory, dt, h.contact_options);
         h.last_time = pose.time;
@@ -135,7 +214,8 @@ void Painting::draw_poses() {
         h.state = contact.tuft;
         h.report.nearest = std::min(h.report.nearest, contact.distance);
         if (options_.record_forces)
-            h.report.forces.push_back({pose, contact.tuft.force, contact.tuft.root_moment});
+            h.report.forces.push_back({pose, contact.tuft.force, contact.hand_force,
+                                       contact.tuft.moment, contact.tuft.root_moment});
         if (!contact.tuft.touching || contact.triangle == kNone) {
             h.was_touching = false;
             continue;
@@ -182,7 +262,9 @@ StrokeReport Painting::finish_hand() {
     h.flush();
     h.report.ink_left = h.reservoir.remaining();
     if (h.report.touched()) h.report.nearest = 0;
-    keep_undo(h.stroke.id, h.stamper.take_before());
+    const std::string name = h.stroke.trace.brush;
+    put_down(h.stroke.id, name, {std::move(h.tuft), h.reservoir, h.dipped, h.stroke.trace.ink},
+             h.stamper.take_before());
     StrokeReport report = std::move(h.report);
     hand_.reset();
     return report;
@@ -211,10 +293,15 @@ std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
         if (is_new) lead->second = drag_lead(preset);
         options.lead = lead->second;
     }
-    return hand_path(*model_->query, stroke.trace, options).poses;
+    return hand_path(*model_->query, steady(stroke.trace, stroke.settings), options).poses;
 }
 
 StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
+    if (stroke.action != Action::stroke) {
+        cancel();
+        act(stroke);
+        return {.stroke_id = stroke.id};
+    }
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     const std::vector<brush::Pose> poses = poses_of(stroke);
     begin(stroke);
@@ -233,6 +320,7 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
 }
 
 StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
+    settle(stroke);
     StrokeReport report = draw(stroke, progress);
     report.stroke_id = journal_.append(std::move(stroke)).id;
     undo_.back().stroke_id = report.stroke_id;
@@ -253,10 +341,11 @@ std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const Pr
     const double all = std::max<double>(1.0, static_cast<double>(strokes.size()));
     for (std::size_t i = 0; i < strokes.size(); ++i) {
         if (!strokes[i].hidden) {
-            reports.push_back(draw(strokes[i], [&](std::string_view phase, double fraction) {
+            StrokeReport report = draw(strokes[i], [&](std::string_view phase, double fraction) {
                 return !progress || progress(phase, (static_cast<double>(i) + fraction) / all);
-            }));
-            reports.back().stroke_id = strokes[i].id;
+            });
+            report.stroke_id = strokes[i].id;
+            if (strokes[i].action == Action::stroke) reports.push_back(std::move(report));
         }
         journal_.restore(std::move(strokes[i]));
     }
@@ -267,19 +356,8 @@ void Painting::adopt(std::vector<Stroke> strokes, ink::Canvas canvas) {
     if (canvas.n_slots() != model_->texels.n_slots())
         throw Error("the stored texels belong to another atlas");
     canvas_ = std::move(canvas);
+    held_.clear();
     for (Stroke& stroke : strokes) journal_.restore(std::move(stroke));
-}
-
-void Painting::keep_undo(std::uint64_t id, std::vector<ink::TileSnapshot> before) {
-    Undo undo{.stroke_id = id, .before = std::move(before)};
-    for (const ink::TileSnapshot& tile : undo.before)
-        undo.bytes += sizeof(ink::TileSnapshot) + tile.amounts.size() * sizeof(float);
-    undo_bytes_ += undo.bytes;
-    undo_.push_back(std::move(undo));
-    while (undo_bytes_ > options_.undo_bytes && undo_.size() > 1) {
-        undo_bytes_ -= undo_.front().bytes;
-        undo_.pop_front();
-    }
 }
 
 bool Painting::undo() {
@@ -293,8 +371,11 @@ bool Painting::undo() {
         repaint_all();
         return true;
     }
-    for (const ink::TileSnapshot& tile : undo_.back().before) canvas_.restore(tile);
-    undo_bytes_ -= undo_.back().bytes;
+    Undo& last = undo_.back();
+    for (const ink::TileSnapshot& tile : last.before) canvas_.restore(tile);
+    if (last.brush_before) held_.insert_or_assign(last.brush, std::move(*last.brush_before));
+    else held_.erase(last.brush);
+    undo_bytes_ -= last.bytes;
     undo_.pop_back();
     return true;
 }
@@ -308,6 +389,7 @@ bool Painting::redo() {
 
 void Painting::repaint_all() {
     canvas_.clear();
+    held_.clear();
     undo_.clear();
     undo_bytes_ = 0;
     for (const Stroke& stroke : journal_.strokes())

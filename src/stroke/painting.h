@@ -9,20 +9,32 @@
 #include <vector>
 
 #include "brush/preset.h"
+#include "brush/tuft.h"
 #include "ink/canvas.h"
 #include "ink/composite.h"
 #include "ink/pigments.h"
+#include "ink/reservoir.h"
 #include "stroke/journal.h"
 #include "stroke/model.h"
 #include "stroke/placement.h"
 
 namespace tuft::stroke {
 
-/// One stamp as the hand felt it.
+/// One pose as the hand felt it.
 struct ForceRecord {
     brush::Pose pose;
-    Vec3 force{0};             ///< newtons, of the surface on the tuft
+    Vec3 force{0};             ///< newtons, of the surface on the tuft: normal and friction
+    Vec3 hand_force{0};        ///< newtons, for a haptic device (contact::Result::hand_force)
+    Vec3 torque{0};            ///< N·m, of `force` about the ferrule's mouth
     double moment = 0;         ///< N·m, bending moment at the ferrule
+};
+
+/// A brush between two strokes.
+struct BrushInHand {
+    brush::Tuft tuft;
+    ink::Reservoir reservoir;
+    std::string dipped;        ///< the ink it was last dipped into
+    std::string named;         ///< the ink that its last stroke named
 };
 
 /// What a stroke did.
@@ -62,8 +74,15 @@ class Painting {
     const brush::Preset& brush(const std::string& name);
     const ink::Ink& ink(const std::string& name);
 
-    /// Paints a whole stroke and appends it to the journal. Throws `Error` for a stroke
-    /// that names an unknown brush or ink or has no samples, before anything is changed.
+    /// Paints a whole stroke, or does an action with its brush, and appends it to the
+    /// journal. Throws `Error` for a stroke that names an unknown brush or ink or has no
+    /// samples, before anything is changed.
+    ///
+    /// With `settings.dip` "each" the entry begins with a clean, straight, full brush. With
+    /// "carry" it begins with hair and ink as the last entry with that brush left them; it is
+    /// washed and dipped anew where a stroke names another ink than the stroke before and the
+    /// brush was not dipped into that one. A brush that this painting does not hold yet is
+    /// fresh: its entry is kept in the journal as "each", so that a replay is the same.
     StrokeReport paint(Stroke stroke, const ProgressFn& progress = {});
 
     /// The same in pieces for poses in space: `begin`, any number of `extend`, `end`.
@@ -76,11 +95,15 @@ class Painting {
     /// The bent tuft at the last sample, for drawing it; empty between strokes.
     const brush::TuftState* tuft() const;
 
-    /// Takes over a stored journal, ids kept, and paints what is not hidden.
+    /// The brush as the last entry with it left it; null when this painting does not hold it.
+    const BrushInHand* held(const std::string& brush) const;
+
+    /// Takes over a stored journal, ids kept, and paints what is not hidden. One report per
+    /// stroke painted, none for actions.
     std::vector<StrokeReport> replay(std::vector<Stroke> strokes, const ProgressFn& progress = {});
 
     /// Takes over a stored journal together with the texels it once made. Throws `Error`
-    /// when they were made for another texel map.
+    /// when they were made for another texel map. The brushes are not held then.
     void adopt(std::vector<Stroke> strokes, ink::Canvas canvas);
 
     /// Takes the last stroke back, or paints the last one taken back again; false when
@@ -105,6 +128,8 @@ class Painting {
     struct Undo {
         std::uint64_t stroke_id = 0;
         std::vector<ink::TileSnapshot> before;
+        std::string brush;
+        std::optional<BrushInHand> brush_before;  ///< nothing: it was not held
         std::size_t bytes = 0;
     };
 
@@ -112,7 +137,11 @@ class Painting {
     void advance(std::span<const brush::Pose> poses);
     void draw_poses();
     StrokeReport finish_hand();
-    void keep_undo(std::uint64_t id, std::vector<ink::TileSnapshot> before);
+    void act(const Stroke& entry);
+    void settle(Stroke& entry) const;
+    BrushInHand take_up(const Stroke& entry);
+    void put_down(std::uint64_t id, const std::string& brush, BrushInHand after,
+                  std::vector<ink::TileSnapshot> before);
     void repaint_all();
     std::vector<brush::Pose> poses_of(const Stroke& stroke);
 
@@ -123,6 +152,7 @@ class Painting {
     Journal journal_;
     std::map<std::string, brush::Preset> brushes_;
     std::map<std::string, ink::Ink> inks_;
+    std::map<std::string, BrushInHand> held_;
     std::map<std::string, std::vector<Lead>> leads_;  ///< by brush
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;

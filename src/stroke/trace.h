@@ -35,6 +35,20 @@ struct TraceSample {
     Quat rotation{1, 0, 0, 0};///< spatial: of the ferrule (see brush::Pose)
 };
 
+/// What a hand does with a brush.
+enum class Action {
+    stroke,   ///< paints
+    dip,      ///< fills the tuft up with ink; what is in it stays and mixes
+    rinse,    ///< washes it: no ink left, hair straight and together
+    reshape,  ///< combs it: hair straight and together, ink stays
+};
+
+/// Something done with the brush between two strokes.
+struct Care {
+    Action action = Action::dip;
+    std::string ink;   ///< to dip into; empty: the ink of the stroke after it
+};
+
 /// One stroke from touch to lift.
 struct Trace {
     bool flat = true;                    ///< flat pen data with a placement, or poses in space
@@ -44,6 +58,8 @@ struct Trace {
     std::string brush, ink;              ///< preset names; empty: as the command line says
     std::uint64_t seed = 0;
     std::string label;                   ///< free text for people: a character, a stroke's name
+    bool pressed = true;                 ///< false: pressures were made up, the device gave none
+    std::vector<Care> before;            ///< what a file wants done with the brush first
 };
 
 }  // namespace tuft::stroke
