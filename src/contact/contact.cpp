@@ -18,16 +18,17 @@ struct Work {
     const brush::Pose& pose;
     const Options& options;
     StandOptions stand;
-    double radius = 0; // of the tuft, metres
-    double near = 0;   // metres: farther than this nothing of the tuft can touch
-    Stand root;        // of the ferrule's mouth
+    double radius = 0;  // of the tuft, metres
+    double near = 0;    // metres: farther than this nothing of the tuft can touch
+    Stand root;         // of the ferrule's mouth
 };
 
 Stand stand_of_root(const Work& w, const Memory& memory, double length) {
     const Vec3& root = w.pose.position;
     // A hand that touched has not left the object's front within a tuft's length.
     const bool known = memory.touching && glm::length(root - memory.root) < 2 * length;
-    const Vec3 from = known ? memory.outside : find_outside(w.surface, root, -w.pose.axis(), w.stand);
+    const Vec3 from =
+        known ? memory.outside : find_outside(w.surface, root, -w.pose.axis(), w.stand);
     return stand_from(w.surface, from, known ? memory.side : 1, root, w.stand);
 }
 
@@ -37,10 +38,12 @@ std::vector<Vec3> centres(const brush::Branch& branch) {
     return out;
 }
 
-/// Stands of the tuft's nodes, tip first; sub-spines, which follow in the list, start from the trunk.
+/// Stands of the tuft's nodes, tip first; sub-spines, which follow in the list, start from the
+/// trunk.
 std::vector<Stand> stand_nodes(const Work& w, std::span<const Vec3> nodes, std::size_t trunk,
                                std::span<const Stand> before = {}) {
-    std::vector<Stand> out = stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand, before);
+    std::vector<Stand> out =
+        stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand, before);
     if (nodes.size() == trunk) return out;
     const std::size_t twig = (nodes.size() - trunk) / 3;
     for (std::size_t first = trunk; first < nodes.size(); first += twig) {
@@ -69,8 +72,8 @@ ContactPlane refreshed(const ContactPlane& old, const Stand& now, const Vec3& p,
 
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
 /// `planes`: those of the last solve. `rest`: stands of the trunk where it lies now, or empty.
-brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes,
-                       std::vector<Stand>& rest) {
+brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
+                       std::vector<ContactPlane>& planes, std::vector<Stand>& rest) {
     const std::size_t trunk = tuft.spine.rest_radius.size();
     const bool was_split = tuft.split;
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
@@ -88,7 +91,8 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<
         double worst = 0;
         std::vector<ContactPlane> fresh = planes;
         for (std::size_t i = 0; i < planes.size(); ++i) {
-            const double radius = i < trunk ? before.spine.rest_radius[trunk - 1 - i] : before.spine.rest_radius[trunk - 1];
+            const double radius = i < trunk ? before.spine.rest_radius[trunk - 1 - i]
+                                            : before.spine.rest_radius[trunk - 1];
             const double z = glm::dot(compared[i] - planes[i].origin, planes[i].normal);
             if (std::min(z, stands[i].height) > 2 * radius) continue;
             worst = std::max(worst, std::abs(z - stands[i].height));
@@ -112,7 +116,8 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<
 brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, Result& result) {
     const Vec3 tip = brush::predicted_nodes(tuft, w.pose).front();
     const Vec3 holder = w.pose.position - tuft.preset.length * w.pose.axis();
-    const WeightedDistance d = weighted_distance(w.surface, tip, holder, w.options.nearest_vertices);
+    const WeightedDistance d =
+        weighted_distance(w.surface, tip, holder, w.options.nearest_vertices);
     if (!d.found) return brush::step(tuft, w.pose, {}, dt);
     const ContactPlane plane{snap_tip(tip, d), d.normal};
     result.planes.assign(1, plane);
@@ -121,10 +126,11 @@ brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, 
     return state;
 }
 
-/// Stands of every section of every branch of the solved tuft. Of a whole tuft these are the stands of
-/// the rod's nodes, from which the sections' centres differ along the planes' normals only;
+/// Stands of every section of every branch of the solved tuft. Of a whole tuft these are the stands
+/// of the rod's nodes, from which the sections' centres differ along the planes' normals only;
 /// `trunk` holds them if they are known.
-std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft& solved, const brush::TuftState& tuft,
+std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft& solved,
+                                               const brush::TuftState& tuft,
                                                std::vector<Stand> trunk) {
     std::vector<std::vector<Stand>> out;
     if (tuft.branches.size() == 1) {
@@ -161,7 +167,8 @@ double skin_distance(const Work& w, const brush::TuftState& tuft) {
     for (const brush::Branch& branch : tuft.branches)
         for (const brush::Section& s : branch.sections) {
             const double r = std::sqrt(s.a * s.b);
-            if (const auto q = w.surface.closest_point(s.centre, best + r)) best = std::min(best, q->distance - r);
+            if (const auto q = w.surface.closest_point(s.centre, best + r))
+                best = std::min(best, q->distance - r);
         }
     return std::max(best, 0.0);
 }
@@ -178,7 +185,8 @@ Vec3 followed_centre(const Work& w, const Memory& memory, const Vec3& travel, co
 
 /// The contact frame under the middle of the touching sections, and the distance to touch.
 /// Sections weigh as deep as they reach into the surface, so that it moves continuously.
-void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, Memory& memory, Result& result) {
+void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, Memory& memory,
+                 Result& result) {
     Vec3 sum{0}, travel{0};
     std::vector<Vec3> centres;
     for (const brush::Branch& branch : result.tuft.branches)
@@ -194,7 +202,8 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
             const Stand& s = stands[b][i];
             const std::size_t k = at_centre++;
             if (s.triangle == kNone) continue;
-            const double under = s.height - std::sqrt(sections[i].a * sections[i].b);  // as the rod's contacts
+            const double under =
+                s.height - std::sqrt(sections[i].a * sections[i].b);  // as the rod's contacts
             if (under < gap) {
                 gap = under;
                 lowest = &s;
@@ -211,7 +220,8 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
             }
         }
     }
-    if (memory.touching && total > 0) result.travel = followed ? travel / total : w.pose.position - memory.root;
+    if (memory.touching && total > 0)
+        result.travel = followed ? travel / total : w.pose.position - memory.root;
     memory.centres = std::move(centres);
     if (!lowest) return;
     result.distance = result.tuft.touching ? 0 : std::max(0.0, gap);
@@ -246,13 +256,15 @@ Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery
     const brush::Preset& preset = tuft.preset;
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, pose);
     const double thick = 1.2 * preset.radius * std::max(1.0, preset.flatten_max);
-    const bool meets = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
+    const bool meets =
+        overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
     Work w{surface, pose, options, {}, preset.radius, 0, {}};
     w.stand.reach = 2 * preset.length + thick;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (meets) w.root = stand_of_root(w, memory, preset.length);
-    const bool reachable = meets && w.root.triangle != kNone && w.root.height < preset.length + w.near;
+    const bool reachable =
+        meets && w.root.triangle != kNone && w.root.height < preset.length + w.near;
     if (!reachable) {
         result.tuft = brush::step(tuft, pose, {}, dt);
         const auto far = surface.closest_point(nodes.front());
@@ -263,8 +275,9 @@ Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery
 
     std::vector<Stand> rest;
     result.tuft = options.method == Method::exact ? solve(w, tuft, dt, result.planes, rest)
-                                                 : solve_by_vertices(w, tuft, dt, result);
-    const std::vector<std::vector<Stand>> stands = stand_sections(w, tuft, result.tuft, std::move(rest));
+                                                  : solve_by_vertices(w, tuft, dt, result);
+    const std::vector<std::vector<Stand>> stands =
+        stand_sections(w, tuft, result.tuft, std::move(rest));
     for (const std::vector<Stand>& branch : stands) {
         result.branch_planes.emplace_back();
         for (const Stand& s : branch) result.branch_planes.back().push_back(s.plane);

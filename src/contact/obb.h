@@ -8,9 +8,9 @@
 namespace tuft::contact {
 
 struct Obb {
-    Vec3 centre{0};                     ///< metres
-    Mat3 axes{1.0};                     ///< columns, unit and orthogonal
-    Vec3 half{0};                       ///< metres along the columns
+    Vec3 centre{0};  ///< metres
+    Mat3 axes{1.0};  ///< columns, unit and orthogonal
+    Vec3 half{0};    ///< metres along the columns
 };
 
 /// Box along the principal axes of the points, grown by `margin` on every side.

@@ -12,7 +12,8 @@ double smooth(double x) {
 }
 
 /// Normal of the plane under a point that stands `off` from its closest point q: the smooth
-/// normal, and over a crease, where the two differ by more than shading does, the direction of `off`.
+/// normal, and over a crease, where the two differ by more than shading does, the direction of
+/// `off`.
 Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, double lift) {
     const Vec3 n = side * q.normal;
     const double d = glm::length(off);
@@ -20,7 +21,8 @@ Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, dou
     const Vec3 direction = off / d;
     const double cosine = glm::dot(direction, n);
     constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°
-    const double w = smooth((kAlike - cosine) / (kAlike - kApart)) * smooth((d - lift) / (4 * lift));
+    const double w =
+        smooth((kAlike - cosine) / (kAlike - kApart)) * smooth((d - lift) / (4 * lift));
     if (w <= 0 || cosine < -0.5) return n;
     return glm::normalize((1 - w) * n + w * direction);
 }
@@ -55,14 +57,16 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
     }
     out.triangle = q->triangle;
     out.plane.origin = q->position;
-    out.plane.normal = behind ? out.side * q->normal : plane_normal(*q, out.side, off, options.lift);
+    out.plane.normal =
+        behind ? out.side * q->normal : plane_normal(*q, out.side, off, options.lift);
     out.height = glm::dot(off, out.plane.normal);
     if (out.height < options.lift) out.outside = p + (options.lift - out.height) * out.plane.normal;
     return out;
 }
 
-std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root, std::span<const Vec3> points,
-                               double near, const StandOptions& options, std::span<const Stand> before) {
+std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root,
+                               std::span<const Vec3> points, double near,
+                               const StandOptions& options, std::span<const Stand> before) {
     std::vector<Stand> out(points.size());
     Stand last = root;
     Vec3 looked_up = root.outside;
@@ -78,7 +82,8 @@ std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& r
         }
         const Stand& hint = i < before.size() ? before[i] : last;
         const Vec3& from = i + 1 < points.size() ? out[i + 1].outside : root.outside;
-        last = stand_from(surface, from, last.side, p, options, hint.triangle != kNone ? &hint.plane.origin : nullptr);
+        last = stand_from(surface, from, last.side, p, options,
+                          hint.triangle != kNone ? &hint.plane.origin : nullptr);
         out[i] = last;
         looked_up = last.outside;
         clear = last.triangle == kNone ? options.reach : last.height;
@@ -86,11 +91,13 @@ std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& r
     return out;
 }
 
-Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up, const StandOptions& options) {
+Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up,
+                  const StandOptions& options) {
     const auto q = surface.closest_point(root, options.reach);
     if (!q || glm::dot(root - q->position, q->face_normal) >= 0) return root;
     const auto exit = surface.ray(root, up, 0, 4 * options.reach);
-    if (!exit || glm::dot(exit->face_normal, up) <= 0) return root;  // in front of an open sheet's back
+    if (!exit || glm::dot(exit->face_normal, up) <= 0)
+        return root;  // in front of an open sheet's back
     return exit->position + options.lift * exit->face_normal;
 }
 

@@ -20,15 +20,15 @@ struct Stand {
 };
 
 struct StandOptions {
-    double reach = 0.05;    ///< metres within which surfaces are looked for
-    double lift = 2e-5;     ///< metres that `outside` keeps off the surface
+    double reach = 0.05;  ///< metres within which surfaces are looked for
+    double lift = 2e-5;   ///< metres that `outside` keeps off the surface
 };
 
 /// The surface that `p` meets, coming from `from`, a point known to be outside. If a wall lies
 /// between them `p` is behind it, however thin it is, and the plane is that of the wall's
 /// front next to p; otherwise it is that of the closest point. Over a convex edge the normal
-/// turns smoothly from one face's to the other's. `known`, where given, is any point of the surface:
-/// nothing farther is looked at, which makes it faster.
+/// turns smoothly from one face's to the other's. `known`, where given, is any point of the
+/// surface: nothing farther is looked at, which makes it faster.
 Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double side, const Vec3& p,
                  const StandOptions& options, const Vec3* known = nullptr);
 
@@ -36,11 +36,13 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
 /// outwards, each from the one before. Points farther than `near` from any surface share the plane
 /// of the last one looked up, which then is no closer to them than the surface. `before`, where
 /// not empty, holds the stands of the same points a moment ago and only makes it faster.
-std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root, std::span<const Vec3> points,
-                               double near, const StandOptions& options, std::span<const Stand> before = {});
+std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root,
+                               std::span<const Vec3> points, double near,
+                               const StandOptions& options, std::span<const Stand> before = {});
 
 /// A start outside the object for a tuft at `root` whose handle points along `up`: the root
 /// itself, or, when it is inside a closed object, where the handle comes out.
-Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up, const StandOptions& options);
+Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up,
+                  const StandOptions& options);
 
 }  // namespace tuft::contact

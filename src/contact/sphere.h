@@ -11,11 +11,11 @@ namespace tuft::contact {
 /// r* of the smallest enclosing sphere.
 struct Sphere {
     Vec3 centre{0};
-    double radius = 0;       ///< holds every point
-    double r_start = 0;      ///< of the first ball, over the pair B, C
-    double r_expanded = 0;   ///< of the last ball grown, a lower bound
+    double radius = 0;      ///< holds every point
+    double r_start = 0;     ///< of the first ball, over the pair B, C
+    double r_expanded = 0;  ///< of the last ball grown, a lower bound
     int iterations = 0;
-    bool converged = true;   ///< false: stopped at `max_iterations`; radius still holds all points
+    bool converged = true;  ///< false: stopped at `max_iterations`; radius still holds all points
 };
 
 /// First ball: B is the point farthest from points[0], C the one farthest from B; D0 = (B+C)/2,

@@ -61,8 +61,8 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
     const double distance2 = glm::dot(d, d);
     if (!(distance2 <= best.limit2)) return false;
     // Equal distances (shared edges and corners) go to the lower index, whatever the visit order.
-    if (best.triangle != kNone && (distance2 > best.distance2 ||
-                                   (distance2 == best.distance2 && t > best.triangle)))
+    if (best.triangle != kNone &&
+        (distance2 > best.distance2 || (distance2 == best.distance2 && t > best.triangle)))
         return false;
     best.triangle = t;
     best.b1 = b.x;
@@ -104,7 +104,8 @@ bool visit_vertices(RTCPointQueryFunctionArguments* args) {
         const auto nearer = [](const NearVertex& x, const NearVertex& y) {
             return x.distance < y.distance || (x.distance == y.distance && x.index < y.index);
         };
-        best.found.insert(std::upper_bound(best.found.begin(), best.found.end(), candidate, nearer), candidate);
+        best.found.insert(std::upper_bound(best.found.begin(), best.found.end(), candidate, nearer),
+                          candidate);
         if (best.found.size() > best.k) best.found.pop_back();
     }
     if (best.found.size() < best.k) return false;
@@ -116,7 +117,8 @@ bool visit_vertices(RTCPointQueryFunctionArguments* args) {
 
 /// Metres that rounding to single precision can hide from the box tests round p.
 double rounding_slack(const TriangleMesh& mesh, const Vec3& p) {
-    return 4e-7 * (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + mesh.bounds.diagonal());
+    return 4e-7 *
+           (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + mesh.bounds.diagonal());
 }
 
 RTCPointQuery make_query(const Vec3& p, double radius) {
@@ -132,8 +134,8 @@ void check(RTCDevice device, const char* what) {
     const RTCError code = rtcGetDeviceError(device);
     if (code == RTC_ERROR_NONE) return;
     throw Error(std::string("cannot build the search tree of the mesh (") + what + "): " +
-                (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "Embree error " +
-                                                                         std::to_string(code)));
+                (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory"
+                                                 : "Embree error " + std::to_string(code)));
 }
 
 RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) {
@@ -182,10 +184,12 @@ SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : state_(std::make_unique<S
     const RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Embree reads 16 bytes at every vertex: its own buffers are padded, ours are not.
     if (!mesh.triangles.empty()) {
-        void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                 sizeof(Vec3f), mesh.n_vertices());
-        void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                3 * sizeof(std::uint32_t), mesh.n_triangles());
+        void* vertices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(Vec3f), mesh.n_vertices());
+        void* indices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    3 * sizeof(std::uint32_t), mesh.n_triangles());
         if (!vertices || !indices) {
             rtcReleaseGeometry(geometry);
             throw Error("cannot build the search tree of the mesh: out of memory");
@@ -222,7 +226,8 @@ std::optional<SurfacePoint> SurfaceQuery::closest_point(const Vec3& p, double ma
     return s;
 }
 
-std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k, double max_distance) const {
+std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k,
+                                                       double max_distance) const {
     if (!finite(p) || k <= 0 || !(max_distance >= 0)) return {};
     Nearest best;
     best.mesh = state_->mesh;
@@ -241,8 +246,8 @@ std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k, dou
     return std::move(best.found);
 }
 
-std::optional<SurfacePoint> SurfaceQuery::ray(const Vec3& origin, const Vec3& direction, double t_min,
-                                              double t_max) const {
+std::optional<SurfacePoint> SurfaceQuery::ray(const Vec3& origin, const Vec3& direction,
+                                              double t_min, double t_max) const {
     const RayHit hit = trace(Vec3f(origin), Vec3f(direction), static_cast<float>(t_min),
                              static_cast<float>(t_max));
     if (hit.triangle == kNone) return std::nullopt;
@@ -251,11 +256,14 @@ std::optional<SurfacePoint> SurfaceQuery::ray(const Vec3& origin, const Vec3& di
     return s;
 }
 
-bool SurfaceQuery::occluded(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const {
-    return blocked(Vec3f(origin), Vec3f(direction), static_cast<float>(t_min), static_cast<float>(t_max));
+bool SurfaceQuery::occluded(const Vec3& origin, const Vec3& direction, double t_min,
+                            double t_max) const {
+    return blocked(Vec3f(origin), Vec3f(direction), static_cast<float>(t_min),
+                   static_cast<float>(t_max));
 }
 
-RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const {
+RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_min,
+                           float t_max) const {
     RTCRayHit rayhit{};
     rayhit.ray = make_ray(origin, direction, t_min, t_max);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -266,7 +274,8 @@ RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_
     return {rayhit.hit.primID, rayhit.hit.u, rayhit.hit.v, rayhit.ray.tfar};
 }
 
-bool SurfaceQuery::blocked(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const {
+bool SurfaceQuery::blocked(const Vec3f& origin, const Vec3f& direction, float t_min,
+                           float t_max) const {
     RTCRay ray = make_ray(origin, direction, t_min, t_max);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -274,6 +283,8 @@ bool SurfaceQuery::blocked(const Vec3f& origin, const Vec3f& direction, float t_
     return ray.tfar < 0;
 }
 
-const TriangleMesh& SurfaceQuery::mesh() const { return *state_->mesh; }
+const TriangleMesh& SurfaceQuery::mesh() const {
+    return *state_->mesh;
+}
 
 }  // namespace tuft::mesh

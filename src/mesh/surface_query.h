@@ -19,9 +19,9 @@ struct RayHit {
 /// A vertex near a point; its normal is the area-weighted mean over its triangles.
 struct NearVertex {
     std::uint32_t index = kNone;
-    double distance = 0;     ///< metres
-    Vec3 position{0};        ///< metres
-    Vec3 normal{0, 0, 1};    ///< unit
+    double distance = 0;   ///< metres
+    Vec3 position{0};      ///< metres
+    Vec3 normal{0, 0, 1};  ///< unit
 };
 
 /// Ray and closest-point queries against a mesh by an Embree BVH. Keeps a

@@ -16,14 +16,14 @@ struct View {
     double field_of_view = 0.42;  ///< radians, over the picture's height, in (0, 3)
     double margin = 0.1;          ///< part of the picture kept free on each side when fitting
     std::optional<Vec3> target;   ///< metres; looks here instead of fitting the whole object
-    double distance = 0;          ///< metres from eye to target; 0: such that `width_at_target` fits
-    double width_at_target = 0.1; ///< metres seen across the picture at the target
+    double distance = 0;  ///< metres from eye to target; 0: such that `width_at_target` fits
+    double width_at_target = 0.1;  ///< metres seen across the picture at the target
 };
 
 struct Camera {
-    Vec3 eye{0};                   ///< metres
+    Vec3 eye{0};                                         ///< metres
     Vec3 right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};  ///< unit, orthogonal
-    double tan_half_height = 0.2;  ///< of half the field of view over the height
+    double tan_half_height = 0.2;    ///< of half the field of view over the height
     int width = 1280, height = 720;  ///< pixels
 };
 

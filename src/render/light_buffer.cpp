@@ -13,8 +13,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// What comes to `p` from direction `d` but for the boxes.
-Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, const Vec3f& d, const Vec2f& jitter,
-               bool& hit_object) {
+Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, const Vec3f& d,
+               const Vec2f& jitter, bool& hit_object) {
     const mesh::RayHit hit = scene.query.trace(p, d, 0, kInfinity);
     hit_object = hit.triangle != kNone;
     if (hit_object) {
@@ -22,7 +22,8 @@ Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, cons
         if (glm::dot(n, d) > 0) n = -n;
         Vec3f t, b;
         complete_frame(n, t, b);
-        const Vec3f at = p + hit.distance * d + cache.voxel() * ((jitter.x - 0.5f) * t + (jitter.y - 0.5f) * b);
+        const Vec3f at =
+            p + hit.distance * d + cache.voxel() * ((jitter.x - 0.5f) * t + (jitter.y - 0.5f) * b);
         return scene.material.albedo(hit.triangle, hit.b1, hit.b2) * cache.nearest_light(at, n);
     }
     if (d.z < -1e-4f && scene.studio.floor && p.z > scene.studio.floor_z) {
@@ -67,14 +68,15 @@ Sight look(const Scene& scene, const Camera& camera, const Vec3f& direction) {
     }
     if (scene.studio.floor && direction.z < -1e-5f && eye.z > scene.studio.floor_z) {
         s.position = eye + (scene.studio.floor_z - eye.z) / direction.z * direction;
-        const Vec2f from_centre = Vec2f{s.position.x, s.position.y} - Vec2f{scene.studio.centre.x, scene.studio.centre.y};
+        const Vec2f from_centre =
+            Vec2f{s.position.x, s.position.y} - Vec2f{scene.studio.centre.x, scene.studio.centre.y};
         if (glm::length(from_centre) < 8 * scene.studio.radius) s.seen = Seen::floor;
     }
     return s;
 }
 
-Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at, const LightSamples& samples,
-                   int x, int y, std::uint64_t seed) {
+Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at,
+                   const LightSamples& samples, int x, int y, std::uint64_t seed) {
     Light light;
     const bool floor = at.seen == Seen::floor;
     const Vec3f start = at.position + scene.offset * at.face;
@@ -92,16 +94,20 @@ Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at,
         light.direct += part / static_cast<float>(samples.boxes[b]);
     }
     const Vec2f turn = lattice_shift(x, y, seed, 3);
-    const std::uint64_t jitter = hash_bits(seed, (static_cast<std::uint64_t>(x) << 32) + static_cast<std::uint64_t>(y));
+    const std::uint64_t jitter =
+        hash_bits(seed, (static_cast<std::uint64_t>(x) << 32) + static_cast<std::uint64_t>(y));
     for (int i = 0; i < samples.around; ++i) {
         const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(i)) + turn);
         Vec3f d = cosine_direction(at.normal, s);
         const float below = glm::dot(d, at.face);
         if (below < 1e-3f) d = glm::normalize(d + (2e-3f - below) * at.face);
         bool hit = false;
-        const Vec3f in = incoming(scene, cache, start, d, hash_point(jitter, static_cast<std::uint64_t>(i)), hit);
-        if (!floor) light.around += in;
-        else if (hit) light.around += in - dome_radiance(scene.studio, d);
+        const Vec3f in = incoming(scene, cache, start, d,
+                                  hash_point(jitter, static_cast<std::uint64_t>(i)), hit);
+        if (!floor)
+            light.around += in;
+        else if (hit)
+            light.around += in - dome_radiance(scene.studio, d);
     }
     light.around /= static_cast<float>(samples.around);
     return light;
@@ -117,10 +123,12 @@ bool LightBuffer::find(float x, float y, const Sight& at, float pixel_size, Ligh
         const std::size_t k = static_cast<std::size_t>(j) * width + i;
         const Sight& there = sights[k];
         if (there.seen != at.seen) return;
-        const float off = std::abs(glm::dot(at.face, there.position - at.position)) / (2 * pixel_size);
+        const float off =
+            std::abs(glm::dot(at.face, there.position - at.position)) / (2 * pixel_size);
         const float cosine = glm::dot(at.normal, there.normal);
         if (off > 3 || cosine < 0.7f) return;
-        weight *= std::exp(-off) * cosine * cosine * cosine * cosine * cosine * cosine * cosine * cosine;
+        weight *=
+            std::exp(-off) * cosine * cosine * cosine * cosine * cosine * cosine * cosine * cosine;
         sum.direct += weight * light[k].direct;
         sum.around += weight * light[k].around;
         total += weight;
@@ -152,18 +160,21 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
     for (int top = 0; top < camera.height; top += kBand) {
         report(options.progress, "light", static_cast<double>(top) / camera.height);
         const int rows = std::min(kBand, camera.height - top);
-        parallel_for(static_cast<std::size_t>(rows) * camera.width, 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::size_t k = static_cast<std::size_t>(top) * camera.width + i;
-                const double x = static_cast<double>(k % camera.width) + 0.5;
-                const double y = static_cast<double>(k / camera.width) + 0.5;
-                Sight& s = buffer.sights[k];
-                s = look(scene, camera, Vec3f(ray_direction(camera, x, y)));
-                if (s.seen != Seen::backdrop)
-                    buffer.light[k] = sample_light(scene, cache, s, options.samples, static_cast<int>(k % camera.width),
-                                                   static_cast<int>(k / camera.width), options.seed);
-            }
-        });
+        parallel_for(static_cast<std::size_t>(rows) * camera.width, 256,
+                     [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t i = begin; i < end; ++i) {
+                             const std::size_t k = static_cast<std::size_t>(top) * camera.width + i;
+                             const double x = static_cast<double>(k % camera.width) + 0.5;
+                             const double y = static_cast<double>(k / camera.width) + 0.5;
+                             Sight& s = buffer.sights[k];
+                             s = look(scene, camera, Vec3f(ray_direction(camera, x, y)));
+                             if (s.seen != Seen::backdrop)
+                                 buffer.light[k] =
+                                     sample_light(scene, cache, s, options.samples,
+                                                  static_cast<int>(k % camera.width),
+                                                  static_cast<int>(k / camera.width), options.seed);
+                         }
+                     });
     }
     smooth_light(buffer, variance, camera);
     return buffer;

@@ -19,8 +19,8 @@ struct Sight {
     std::uint32_t triangle = kNone;
     float b1 = 0, b2 = 0;
     Vec3f position{0};
-    Vec3f normal{0, 0, 1};   ///< unit, smooth, towards the eye
-    Vec3f face{0, 0, 1};     ///< unit, of the flat triangle, towards the eye
+    Vec3f normal{0, 0, 1};  ///< unit, smooth, towards the eye
+    Vec3f face{0, 0, 1};    ///< unit, of the flat triangle, towards the eye
 };
 Sight look(const Scene& scene, const Camera& camera, const Vec3f& direction);
 
@@ -37,8 +37,8 @@ struct LightSamples {
 LightSamples share_samples(int total);
 
 /// Monte Carlo estimate of the light at a sight in pixel (x, y).
-Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at, const LightSamples& samples,
-                   int x, int y, std::uint64_t seed);
+Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at,
+                   const LightSamples& samples, int x, int y, std::uint64_t seed);
 
 /// Per pixel, row-major from the top.
 struct LightBuffer {

@@ -24,8 +24,8 @@ struct Scene {
 Vec3f face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
 
 /// Light of the boxes on a face at p (irradiance over π). `samples`: per box.
-Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n, const std::array<int, 3>& samples,
-                   const Vec2f& shift);
+Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n,
+                   const std::array<int, 3>& samples, const Vec2f& shift);
 
 class LightCache {
   public:
@@ -49,7 +49,7 @@ class LightCache {
         Vec3f light{0};
     };
     struct Link {
-        std::uint32_t patch;   ///< or kFloorLink + grid cell
+        std::uint32_t patch;  ///< or kFloorLink + grid cell
         Vec3f albedo;
     };
     static constexpr std::uint32_t kFloorLink = 1u << 31;
@@ -59,19 +59,20 @@ class LightCache {
     void insert(const Vec3f& p, const Vec3f& n);
     void seed_patches(const Scene& scene);
     void seed_floor(const Scene& scene);
-    void gather(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own, std::vector<Link>& links) const;
+    void gather(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own,
+                std::vector<Link>& links) const;
     void solve(const Scene& scene);
     Vec3f read_floor(const std::vector<Vec3f>& grid, float x, float y) const;
 
     float voxel_ = 1;
     Vec3f origin_{0};
     std::vector<Patch> patches_;
-    std::vector<std::uint32_t> table_;        ///< open addressing: patch index or kNone
+    std::vector<std::uint32_t> table_;  ///< open addressing: patch index or kNone
     std::vector<std::uint64_t> keys_;
     Vec3f mean_{0};
     float floor_half_ = 1;
     Vec2f floor_centre_{0};
-    std::vector<Vec3f> floor_, open_floor_;   ///< light at the points of a square grid
+    std::vector<Vec3f> floor_, open_floor_;  ///< light at the points of a square grid
 };
 
 }  // namespace tuft::render

@@ -16,7 +16,8 @@ struct Taps {
 };
 
 Taps taps_at(const Vec2f& uv, std::uint32_t size) {
-    const float x = uv.x * static_cast<float>(size) - 0.5f, y = uv.y * static_cast<float>(size) - 0.5f;
+    const float x = uv.x * static_cast<float>(size) - 0.5f,
+                y = uv.y * static_cast<float>(size) - 0.5f;
     const float fx = std::floor(x), fy = std::floor(y);
     const auto clamp = [&](float v) {
         return static_cast<std::size_t>(std::clamp(v, 0.0f, static_cast<float>(size - 1)));
@@ -27,12 +28,14 @@ Taps taps_at(const Vec2f& uv, std::uint32_t size) {
             {(1 - wx) * (1 - wy), wx * (1 - wy), (1 - wx) * wy, wx * wy}};
 }
 
-float into_unit(float v) { return v >= 0 && v <= 1 ? v : v - std::floor(v); }
+float into_unit(float v) {
+    return v >= 0 && v <= 1 ? v : v - std::floor(v);
+}
 
 void check_map(std::size_t have, std::uint32_t size, const char* name) {
     if (have && have != std::size_t{size} * size)
-        throw Error("the " + std::string(name) + " map has " + std::to_string(have) + " texels instead of " +
-                    std::to_string(size) + " x " + std::to_string(size));
+        throw Error("the " + std::string(name) + " map has " + std::to_string(have) +
+                    " texels instead of " + std::to_string(size) + " x " + std::to_string(size));
 }
 
 }  // namespace
@@ -54,7 +57,8 @@ MaterialReader::MaterialReader(const mesh::TriangleMesh& mesh, const Appearance&
     check_map(maps.height.size(), maps.size, "height");
     if (maps.size && maps.corner_uvs.size() != 3 * mesh.n_triangles())
         throw Error("the texture has " + std::to_string(maps.corner_uvs.size()) +
-                    " corner coordinates for a mesh of " + std::to_string(mesh.n_triangles()) + " triangles");
+                    " corner coordinates for a mesh of " + std::to_string(mesh.n_triangles()) +
+                    " triangles");
     const bool porcelain = appearance.finish == Finish::porcelain;
     body_ = appearance.body_colour.value_or(porcelain ? Vec3f{0.86f, 0.857f, 0.845f}
                                                       : Vec3f{0.37f, 0.275f, 0.21f});
@@ -82,7 +86,8 @@ Vec3f MaterialReader::albedo(std::uint32_t triangle, float b1, float b2) const {
         for (int i = 0; i < 4; ++i) {
             const auto& c = maps.base_colour_srgb[taps.index[i]];
             const float alpha = static_cast<float>(c[3]) / 255;
-            sum += taps.weight[i] * glm::mix(body_, Vec3f{srgb_[c[0]], srgb_[c[1]], srgb_[c[2]]}, alpha);
+            sum += taps.weight[i] *
+                   glm::mix(body_, Vec3f{srgb_[c[0]], srgb_[c[1]], srgb_[c[2]]}, alpha);
         }
         return sum;
     }
@@ -104,7 +109,8 @@ Vec3f MaterialReader::relief(std::uint32_t triangle, const Vec2f& at) const {
     const TextureMaps& maps = appearance_.maps;
     const float step = 1 / static_cast<float>(maps.size);
     const auto height = [&](float u, float v) {
-        const Taps taps = taps_at({std::clamp(u, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f)}, maps.size);
+        const Taps taps =
+            taps_at({std::clamp(u, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f)}, maps.size);
         float sum = 0;
         for (int i = 0; i < 4; ++i) sum += taps.weight[i] * maps.height[taps.index[i]];
         return sum;
@@ -136,7 +142,8 @@ Material MaterialReader::read(std::uint32_t triangle, float b1, float b2) const 
         if (!maps.roughness.empty()) {
             const Taps taps = taps_at(at, maps.size);
             m.roughness = 0;
-            for (int i = 0; i < 4; ++i) m.roughness += taps.weight[i] * maps.roughness[taps.index[i]];
+            for (int i = 0; i < 4; ++i)
+                m.roughness += taps.weight[i] * maps.roughness[taps.index[i]];
             m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
         }
         if (!maps.height.empty()) m.slope = relief(triangle, at);

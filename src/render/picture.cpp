@@ -23,7 +23,9 @@ float fresnel(float cosine) {
 }
 
 /// Keeps values to 0.8 and takes the rest smoothly to below 1.
-float shoulder(float v) { return v <= 0.8f ? std::max(v, 0.0f) : 1 - 0.2f * std::exp(-(v - 0.8f) / 0.2f); }
+float shoulder(float v) {
+    return v <= 0.8f ? std::max(v, 0.0f) : 1 - 0.2f * std::exp(-(v - 0.8f) / 0.2f);
+}
 
 struct Shading {
     const Scene& scene;
@@ -82,13 +84,14 @@ Vec3f shade_object(const Shading& f, const Sight& s, Light light, const Vec3f& v
 Vec3f shade(const Shading& f, float x, float y, std::uint64_t seed) {
     const Vec3f direction(ray_direction(f.camera, x, y));
     const Sight s = look(f.scene, f.camera, direction);
-    const Vec3f back = backdrop(x / static_cast<float>(f.camera.width), y / static_cast<float>(f.camera.height));
+    const Vec3f back =
+        backdrop(x / static_cast<float>(f.camera.width), y / static_cast<float>(f.camera.height));
     if (s.seen == Seen::backdrop) return back;
     Light light;
     const float pixel = f.pixel_angle * glm::length(s.position - Vec3f(f.camera.eye));
     if (!f.buffer.find(x, y, s, pixel, light))
-        light = sample_light(f.scene, f.cache, s, share_samples(2 * f.options.light_samples), static_cast<int>(x),
-                             static_cast<int>(y), seed);
+        light = sample_light(f.scene, f.cache, s, share_samples(2 * f.options.light_samples),
+                             static_cast<int>(x), static_cast<int>(y), seed);
     if (s.seen == Seen::object) return shade_object(f, s, light, -direction);
     const Vec3f open = f.cache.open_floor_light(s.position.x, s.position.y);
     return back * glm::max(1.0f + (light.direct + light.around) / open, 0.02f);
@@ -96,7 +99,8 @@ Vec3f shade(const Shading& f, float x, float y, std::uint64_t seed) {
 
 /// Mean colour of a pixel under a tent filter of radius one pixel, as sRGB code values.
 Vec3f pixel_colour(const Shading& f, int x, int y) {
-    const std::uint64_t seed = hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x);
+    const std::uint64_t seed =
+        hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x);
     const Vec2f shift = hash_point(seed, 0);
     const int most = f.options.edge_samples, few = std::max(1, most / 4);
     Vec3f sum{0}, lo{kInfinity}, hi{-kInfinity};
@@ -105,8 +109,11 @@ Vec3f pixel_colour(const Shading& f, int x, int y) {
         // Contrast that four rays do not show is looked for in the neighbours' sights below.
         if (n == few && glm::length(hi - lo) < 0.04f) break;
         const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(n)) + shift);
-        const auto tent = [](float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); };
-        const float sx = static_cast<float>(x) + 0.5f + tent(s.x), sy = static_cast<float>(y) + 0.5f + tent(s.y);
+        const auto tent = [](float u) {
+            return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
+        };
+        const float sx = static_cast<float>(x) + 0.5f + tent(s.x),
+                    sy = static_cast<float>(y) + 0.5f + tent(s.y);
         const Vec3f c = shade(f, sx, sy, hash_bits(seed, static_cast<std::uint64_t>(n) + 1));
         // Averaging clipped light keeps bright edges smooth.
         const Vec3f shown{shoulder(c.x), shoulder(c.y), shoulder(c.z)};
@@ -124,42 +131,48 @@ std::uint8_t quantise(float code, float dither) {
 
 }  // namespace
 
-Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& query, const Appearance& appearance,
-                     const PictureOptions& options) {
+Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& query,
+                     const Appearance& appearance, const PictureOptions& options) {
     constexpr std::int64_t kMostPixels = std::int64_t{40} << 20;  // about 5 GB of buffers
     const Camera camera = make_camera(options.view, options.width, options.height, mesh.positions);
     if (std::int64_t{options.width} * options.height > kMostPixels)
-        throw Error("a picture of " + std::to_string(options.width) + "x" + std::to_string(options.height) +
-                    " is too large; at most 40 million pixels");
+        throw Error("a picture of " + std::to_string(options.width) + "x" +
+                    std::to_string(options.height) + " is too large; at most 40 million pixels");
     const MaterialReader material(mesh, appearance);
     Scene scene{mesh, query, material,
-                make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth, options.floor, options.exposure),
+                make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth, options.floor,
+                            options.exposure),
                 0};
     scene.offset = 2e-5f * scene.studio.radius + 2e-7f * glm::length(scene.studio.centre);
     report(options.progress, "bounces", 0);
     const LightCache cache(scene);
-    const LightBuffer buffer = fill_light_buffer(
-        scene, cache, camera, {share_samples(options.light_samples), options.seed, options.progress});
+    const LightBuffer buffer =
+        fill_light_buffer(scene, cache, camera,
+                          {share_samples(options.light_samples), options.seed, options.progress});
 
     Image image;
     image.width = options.width;
     image.height = options.height;
     image.rgb.resize(3 * static_cast<std::size_t>(options.width) * options.height);
-    const Shading shading{scene,  cache,   camera,
-                       buffer, options, static_cast<float>(2 * camera.tan_half_height / camera.height)};
+    const Shading shading{scene,   cache,
+                          camera,  buffer,
+                          options, static_cast<float>(2 * camera.tan_half_height / camera.height)};
     constexpr int kBand = 32;
     for (int top = 0; top < image.height; top += kBand) {
         report(options.progress, "picture", static_cast<double>(top) / image.height);
         const int rows = std::min(kBand, image.height - top);
-        parallel_for(static_cast<std::size_t>(rows) * image.width, 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::size_t k = static_cast<std::size_t>(top) * image.width + i;
-                const Vec3f c = pixel_colour(shading, static_cast<int>(k % image.width), static_cast<int>(k / image.width));
-                const float dither = static_cast<float>(uniform(options.seed + 2, k));
-                for (int channel = 0; channel < 3; ++channel)
-                    image.rgb[3 * k + channel] = quantise(c[channel], dither);
-            }
-        });
+        parallel_for(static_cast<std::size_t>(rows) * image.width, 256,
+                     [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t i = begin; i < end; ++i) {
+                             const std::size_t k = static_cast<std::size_t>(top) * image.width + i;
+                             const Vec3f c =
+                                 pixel_colour(shading, static_cast<int>(k % image.width),
+                                              static_cast<int>(k / image.width));
+                             const float dither = static_cast<float>(uniform(options.seed + 2, k));
+                             for (int channel = 0; channel < 3; ++channel)
+                                 image.rgb[3 * k + channel] = quantise(c[channel], dither);
+                         }
+                     });
     }
     report(options.progress, "picture", 1);
     return image;

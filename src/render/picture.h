@@ -28,11 +28,11 @@ enum class Finish {
 /// Empty spans mean "no such map".
 struct TextureMaps {
     std::uint32_t size = 0;
-    std::span<const Vec2f> corner_uvs{};       ///< [3 n_triangles], v up
-    std::span<const Vec3f> base_colour{};      ///< linear RGB reflectance, or
+    std::span<const Vec2f> corner_uvs{};   ///< [3 n_triangles], v up
+    std::span<const Vec3f> base_colour{};  ///< linear RGB reflectance, or
     std::span<const std::array<std::uint8_t, 4>> base_colour_srgb{};  ///< sRGB, alpha over the body
-    std::span<const float> roughness{};        ///< of the coat, 0 mirror … 1 matt
-    std::span<const float> height{};           ///< metres of ink above the surface
+    std::span<const float> roughness{};  ///< of the coat, 0 mirror … 1 matt
+    std::span<const float> height{};     ///< metres of ink above the surface
 };
 
 struct Appearance {
@@ -45,18 +45,18 @@ struct Appearance {
 struct PictureOptions {
     int width = 1280, height = 720;  ///< pixels
     View view;
-    bool floor = true;            ///< stands on a seamless studio floor with its shadow
-    double light_azimuth = 0;     ///< radians the lights are turned about z; they follow the camera
-    double exposure = 1;          ///< factor on the light
-    int edge_samples = 16;        ///< rays per pixel on edges and ink (a quarter of it elsewhere)
-    int light_samples = 28;       ///< rays per pixel towards lights and surroundings
+    bool floor = true;         ///< stands on a seamless studio floor with its shadow
+    double light_azimuth = 0;  ///< radians the lights are turned about z; they follow the camera
+    double exposure = 1;       ///< factor on the light
+    int edge_samples = 16;     ///< rays per pixel on edges and ink (a quarter of it elsewhere)
+    int light_samples = 28;    ///< rays per pixel towards lights and surroundings
     std::uint64_t seed = 1;
     ProgressFn progress;
 };
 
 /// Draws the model in a photographer's studio: soft boxes, a dim dome, light that bounces
-/// between the surfaces, a seamless floor. The lights scale with the object and turn with the camera.
-/// Light is linear; it is encoded as sRGB, and only values above 0.8 are compressed to keep
+/// between the surfaces, a seamless floor. The lights scale with the object and turn with the
+/// camera. Light is linear; it is encoded as sRGB, and only values above 0.8 are compressed to keep
 /// highlights from clipping. The same arguments give the same bits for any thread count.
 /// Throws `Error` for sizes out of range or maps that do not match `size` or the mesh.
 /// Cost at 1280 × 720 and 100,000 triangles: about 10 s of one core.

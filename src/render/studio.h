@@ -25,7 +25,7 @@ struct Studio {
     bool floor = true;
     float floor_z = 0;
     Vec3f floor_albedo{0.5f};
-    float scale = 1;               ///< exposure, already in all radiances
+    float scale = 1;  ///< exposure, already in all radiances
 };
 
 /// Studio for an object in `bounds`, seen from `azimuth` (lights turned by `turn` more).
@@ -36,7 +36,8 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
 Vec3f dome_radiance(const Studio& studio, const Vec3f& direction);
 
 /// Radiance of the boxes along a ray, blurred by a coat of the given roughness.
-Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direction, float roughness);
+Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direction,
+                   float roughness);
 
 /// A point of a box seen from p, with the light it would give a face with normal n.
 struct BoxSample {

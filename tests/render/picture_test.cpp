@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,7 +22,8 @@ mesh::TriangleMesh make_sphere(int rings = 32) {
     const double r = 0.05;
     const auto point = [&](int i, int j) {
         const double theta = std::numbers::pi * j / rings, phi = 2 * std::numbers::pi * i / around;
-        return Vec3{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+        return Vec3{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                    std::cos(theta)};
     };
     for (int j = 0; j <= rings; ++j)
         for (int i = 0; i < around; ++i) m.positions.emplace_back(r * point(i, j) + Vec3{0, 0, r});
@@ -29,14 +31,16 @@ mesh::TriangleMesh make_sphere(int rings = 32) {
         for (int i = 0; i < around; ++i) {
             const std::uint32_t a = j * around + i, b = j * around + (i + 1) % around;
             const std::uint32_t c = a + around, d = b + around;
-            const auto add = [&](std::uint32_t p, std::uint32_t q, std::uint32_t s, std::array<Vec2, 3> uv) {
+            const auto add = [&](std::uint32_t p, std::uint32_t q, std::uint32_t s,
+                                 std::array<Vec2, 3> uv) {
                 m.triangles.push_back({p, q, s});
                 for (const std::uint32_t v : {p, q, s})
-                    m.corner_normals.emplace_back(glm::normalize(Vec3(m.positions[v]) - Vec3{0, 0, r}));
+                    m.corner_normals.emplace_back(
+                        glm::normalize(Vec3(m.positions[v]) - Vec3{0, 0, r}));
                 for (const Vec2& at : uv) m.corner_uvs.emplace_back(at);
             };
-            const double u0 = double(i) / around, u1 = double(i + 1) / around, v0 = 1 - double(j) / rings,
-                         v1 = 1 - double(j + 1) / rings;
+            const double u0 = double(i) / around, u1 = double(i + 1) / around,
+                         v0 = 1 - double(j) / rings, v1 = 1 - double(j + 1) / rings;
             if (j + 1 < rings) add(a, c, d, {Vec2{u0, v0}, Vec2{u0, v1}, Vec2{u1, v1}});
             if (j > 0) add(a, d, b, {Vec2{u0, v0}, Vec2{u1, v1}, Vec2{u1, v0}});
         }
@@ -63,7 +67,8 @@ TEST(Sampling, SobolPointsFillEveryElementaryInterval) {
         std::vector<int> count(256, 0);
         for (std::uint32_t i = 0; i < 256; ++i) {
             const Vec2f p = sobol_point(i);
-            ++count[static_cast<int>(p.x * (1 << split)) * (256 >> split) + static_cast<int>(p.y * (256 >> split))];
+            ++count[static_cast<int>(p.x * (1 << split)) * (256 >> split) +
+                    static_cast<int>(p.y * (256 >> split))];
         }
         for (const int c : count) EXPECT_EQ(c, 1);
     }
@@ -81,7 +86,8 @@ TEST(Material, BilinearLookupIsExactOnLinearMaps) {
     const MaterialReader reader(m, a);
     for (std::uint32_t t = 20; t < 60; ++t) {
         const float b1 = 0.3f, b2 = 0.4f;
-        const Vec2f uv = 0.3f * m.corner_uvs[3 * t] + b1 * m.corner_uvs[3 * t + 1] + b2 * m.corner_uvs[3 * t + 2];
+        const Vec2f uv = 0.3f * m.corner_uvs[3 * t] + b1 * m.corner_uvs[3 * t + 1] +
+                         b2 * m.corner_uvs[3 * t + 2];
         const Vec3f c = reader.albedo(t, b1, b2);
         if (uv.x < 0.02f || uv.x > 0.98f) continue;  // the border texels are constant
         EXPECT_NEAR(c.x, uv.x, 1e-5);
@@ -91,7 +97,8 @@ TEST(Material, BilinearLookupIsExactOnLinearMaps) {
 }
 
 TEST(Material, ReliefGivesTheSlopeOfARamp) {
-    // One 10 mm × 10 mm right triangle that spans half the texture; height rises 0.2 m per metre in x.
+    // One 10 mm × 10 mm right triangle that spans half the texture; height rises 0.2 m per metre in
+    // x.
     mesh::TriangleMesh m;
     m.positions = {{0, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0}};
     m.triangles = {{0, 1, 2}};
@@ -100,7 +107,8 @@ TEST(Material, ReliefGivesTheSlopeOfARamp) {
     constexpr std::uint32_t kSize = 32;
     std::vector<float> height(kSize * kSize);
     for (std::uint32_t y = 0; y < kSize; ++y)
-        for (std::uint32_t x = 0; x < kSize; ++x) height[y * kSize + x] = 0.2f * 0.01f * (y + 0.5f) / kSize;
+        for (std::uint32_t x = 0; x < kSize; ++x)
+            height[y * kSize + x] = 0.2f * 0.01f * (y + 0.5f) / kSize;
     Appearance a;
     a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .height = height};
     const Vec3f slope = MaterialReader(m, a).read(0, 0.3f, 0.3f).slope;
@@ -147,9 +155,11 @@ TEST(Light, NothingShadesAConvexBody) {
             sum.around += l.around / 16.0f;
         }
         const Vec3f expected = open_light(scene.studio, s.position, s.face);
-        // 64 against 6400 points of a low-discrepancy sum; the triangle's neighbours hide at most 1e-3.
+        // 64 against 6400 points of a low-discrepancy sum; the triangle's neighbours hide at most
+        // 1e-3.
         EXPECT_NEAR(sum.direct.y + sum.around.y, expected.y, 0.015);
-        EXPECT_NEAR(cache.object_light(s.position, s.face).y, expected.y, 0.06);  // patches of 1/64 of the size
+        EXPECT_NEAR(cache.object_light(s.position, s.face).y, expected.y,
+                    0.06);  // patches of 1/64 of the size
     }
 }
 
@@ -205,6 +215,38 @@ TEST(Picture, NoVisibleNoise) {
     EXPECT_LT(worst, 40);
 }
 
+TEST(Picture, DrawsAnyMeshFromAnywhere) {
+    mesh::TriangleMesh empty;
+    mesh::TriangleMesh flake;  // one triangle far from the origin
+    flake.positions = {{1000, 1000, 5}, {1000.1f, 1000, 5}, {1000, 1000.1f, 5}};
+    flake.triangles = {{0, 1, 2}};
+    flake.corner_normals.assign(3, Vec3f{0, 0, 1});
+    flake.neighbours.assign(3, kNone);
+    for (const Vec3f& p : flake.positions) flake.bounds.add(Vec3(p));
+    const mesh::TriangleMesh sphere = make_sphere(6);
+    for (const mesh::TriangleMesh* m :
+         std::initializer_list<const mesh::TriangleMesh*>{&empty, &flake, &sphere}) {
+        const mesh::SurfaceQuery query(*m);
+        for (const double elevation : {-1.5, -0.2, 0.0, 1.57})
+            for (const int width : {1, 33}) {
+                PictureOptions o;
+                o.width = width;
+                o.height = 17;
+                o.floor = width > 1 || elevation > 0;
+                o.view.elevation = elevation;
+                const Image image = render_picture(*m, query, {}, o);
+                EXPECT_EQ(image.rgb.size(), 3u * width * 17);
+            }
+    }
+    PictureOptions inside;
+    inside.width = inside.height = 16;
+    inside.view.target = Vec3{0, 0, 0.05};
+    inside.view.distance = 0.01;
+    const mesh::SurfaceQuery query(sphere);
+    const Image dark = render_picture(sphere, query, {}, inside);
+    EXPECT_LE(*std::max_element(dark.rgb.begin(), dark.rgb.end()), 2);  // no light gets in
+}
+
 TEST(Picture, TextureIsWhereItsUvsSayAndTheFloorIsDarkUnderTheObject) {
     const mesh::TriangleMesh m = make_sphere(48);
     const mesh::SurfaceQuery query(m);
@@ -212,7 +254,8 @@ TEST(Picture, TextureIsWhereItsUvsSayAndTheFloorIsDarkUnderTheObject) {
     std::vector<Vec3f> map(kSize * kSize, Vec3f{0.8f});
     for (std::uint32_t y = 0; y < kSize; ++y)
         for (std::uint32_t x = 0; x < kSize; ++x)
-            if (y >= kSize / 2) map[y * kSize + x] = Vec3f{0.02f};  // upper half of the sphere is black
+            if (y >= kSize / 2)
+                map[y * kSize + x] = Vec3f{0.02f};  // upper half of the sphere is black
     Appearance a;
     a.finish = Finish::clay;
     a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .base_colour = map};
@@ -233,9 +276,11 @@ TEST(Picture, TextureIsWhereItsUvsSayAndTheFloorIsDarkUnderTheObject) {
     EXPECT_GT(at(centre + 0.05 * glm::normalize(side - Vec3{0, 0, 0.1})), 110);
     // The open floor shows the backdrop itself; at the foot of the sphere it is darker.
     const Vec3f open = backdrop(0.02f, 0.97f);
-    EXPECT_NEAR(grey(image, static_cast<int>(0.02 * 240), static_cast<int>(0.97 * 180)), 255 * encode_srgb(open.y), 6);
+    EXPECT_NEAR(grey(image, static_cast<int>(0.02 * 240), static_cast<int>(0.97 * 180)),
+                255 * encode_srgb(open.y), 6);
     const auto foot = project(camera, 0.012 * side);
-    const Vec3f behind = backdrop(static_cast<float>(foot->x) / 240, static_cast<float>(foot->y) / 180);
+    const Vec3f behind =
+        backdrop(static_cast<float>(foot->x) / 240, static_cast<float>(foot->y) / 180);
     EXPECT_GE(at(0.012 * side), 0);
     EXPECT_LT(at(0.012 * side), 0.75 * 255 * encode_srgb(behind.y));
 }
