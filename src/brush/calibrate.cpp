@@ -26,8 +26,9 @@ constexpr std::array kFree = {
     Free{&Preset::tip_power, 0.6, 2.5, 0, 0.2},
     Free{&Preset::alpha, -6, 1, -2, 0.3},         // of 2 - α
     Free{&Preset::beta, -0.995, 0, 1, 0.4},      // of 1 + β
+    Free{&Preset::tip_stiffness, 1e-6, 1e-1, 0, 0.8},
     Free{&Preset::transverse_stiffness, 200, 2e5, 0, 0.5},
-    Free{&Preset::friction_wet, 0.05, 0.8, 0, 0.4},
+    Free{&Preset::adhesion_range, 1e-5, 2e-3, 0, 0.8},
     Free{&Preset::flatten_contact, 0.05, 6, 0, 0.4},
 };
 
@@ -100,6 +101,56 @@ Point blend(const Point& a, const Point& b, double t) {
 
 }  // namespace
 
+namespace {
+
+/// Downhill simplex (Nelder and Mead 1965) from `begin` with first steps times `size`, for at
+/// most `budget` evaluations or until the vertices agree to 1e-4.
+template <class Cost>
+Vertex descend(const Vertex& begin, double size, int budget, const Cost& cost) {
+    std::vector<Vertex> simplex{begin};
+    for (std::size_t i = 0; i < kFree.size(); ++i) {
+        Point x = begin.x;
+        x[i] += size * kFree[i].first;
+        simplex.push_back({x, cost(x)});
+    }
+    budget -= static_cast<int>(kFree.size());
+    const auto by_cost = [](const Vertex& a, const Vertex& b) { return a.cost < b.cost; };
+    const auto at = [&](const Point& x) {
+        --budget;
+        return Vertex{x, cost(x)};
+    };
+    while (budget > 0) {
+        std::stable_sort(simplex.begin(), simplex.end(), by_cost);
+        Vertex& worst = simplex.back();
+        if (worst.cost - simplex.front().cost < 1e-4 * simplex.front().cost) break;
+        Point centre{};
+        for (std::size_t v = 0; v + 1 < simplex.size(); ++v) {
+            for (std::size_t i = 0; i < centre.size(); ++i) {
+                centre[i] += simplex[v].x[i] / static_cast<double>(kFree.size());
+            }
+        }
+        const Vertex reflected = at(blend(centre, worst.x, -1));
+        if (reflected.cost < simplex.front().cost) {
+            const Vertex further = at(blend(centre, worst.x, -2));
+            worst = further.cost < reflected.cost ? further : reflected;
+        } else if (reflected.cost < simplex[simplex.size() - 2].cost) {
+            worst = reflected;
+        } else {
+            const Vertex closer = at(blend(centre, reflected.cost < worst.cost ? reflected.x : worst.x, 0.5));
+            if (closer.cost < std::min(worst.cost, reflected.cost)) {
+                worst = closer;
+            } else {
+                for (std::size_t v = 1; v < simplex.size(); ++v) {
+                    simplex[v] = at(blend(simplex.front().x, simplex[v].x, 0.5));
+                }
+            }
+        }
+    }
+    return *std::min_element(simplex.begin(), simplex.end(), by_cost);
+}
+
+}  // namespace
+
 Calibration calibrate(const Preset& start, std::span<const SweepRow> measured,
                       const CalibrateOptions& options) {
     if (measured.size() < 4) {
@@ -112,56 +163,34 @@ Calibration calibrate(const Preset& start, std::span<const SweepRow> measured,
         ++out.evaluations;
         return compare(preset_at(start, x), measured, options.repeatability).cost;
     };
-
-    // Downhill simplex (Nelder and Mead 1965), begun anew from its best vertex when it stalls.
-    Point best;
-    for (std::size_t i = 0; i < kFree.size(); ++i) best[i] = to_search(kFree[i], start);
-    double best_cost = cost(best);
-    for (int round = 0; round < 4 && out.evaluations < options.max_evaluations; ++round) {
-        std::vector<Vertex> simplex{{best, best_cost}};
-        for (std::size_t i = 0; i < kFree.size(); ++i) {
-            Point x = best;
-            x[i] += (round % 2 == 0 ? 1 : -1) * kFree[i].first / (1 + round);
-            simplex.push_back({x, cost(x)});
+    const auto vertex = [&](const Preset& p) {
+        Point x;
+        for (std::size_t i = 0; i < kFree.size(); ++i) x[i] = to_search(kFree[i], p);
+        return Vertex{x, cost(x)};
+    };
+    // A wet end that lies down and one that does not, a soft point and a softer one, are
+    // valleys of their own: begin in each, then follow the best.
+    Vertex best = vertex(start);
+    const int share = options.max_evaluations / 6;
+    for (const double film : {1.0, 0.1}) {
+        for (const double gradient : {0.0, 1.0}) {
+            Preset p = start;
+            p.adhesion_range *= film;
+            p.alpha -= 0.5 * gradient;
+            p.tip_stiffness *= 1 - 0.9 * gradient;
+            p.tip_stiffness = std::max(p.tip_stiffness, 2e-6);
+            p.flatten_contact *= 1 + 0.5 * gradient;
+            if (out.evaluations > share * 4) break;
+            const Vertex found = descend(vertex(p), 1, share, cost);
+            if (found.cost < best.cost) best = found;
         }
-        while (out.evaluations < options.max_evaluations) {
-            std::stable_sort(simplex.begin(), simplex.end(),
-                             [](const Vertex& a, const Vertex& b) { return a.cost < b.cost; });
-            Vertex& worst = simplex.back();
-            if (worst.cost - simplex.front().cost < 1e-4 * simplex.front().cost) break;
-            Point centre{};
-            for (std::size_t v = 0; v + 1 < simplex.size(); ++v) {
-                for (std::size_t i = 0; i < centre.size(); ++i) {
-                    centre[i] += simplex[v].x[i] / static_cast<double>(kFree.size());
-                }
-            }
-            Vertex reflected{blend(centre, worst.x, -1), 0};
-            reflected.cost = cost(reflected.x);
-            if (reflected.cost < simplex.front().cost) {
-                Vertex further{blend(centre, worst.x, -2), 0};
-                further.cost = cost(further.x);
-                worst = further.cost < reflected.cost ? further : reflected;
-            } else if (reflected.cost < simplex[simplex.size() - 2].cost) {
-                worst = reflected;
-            } else {
-                Vertex closer{blend(centre, reflected.cost < worst.cost ? reflected.x : worst.x, 0.5), 0};
-                closer.cost = cost(closer.x);
-                if (closer.cost < std::min(worst.cost, reflected.cost)) {
-                    worst = closer;
-                } else {
-                    for (std::size_t v = 1; v < simplex.size(); ++v) {
-                        simplex[v].x = blend(simplex.front().x, simplex[v].x, 0.5);
-                        simplex[v].cost = cost(simplex[v].x);
-                    }
-                }
-            }
-        }
-        const auto low = std::min_element(simplex.begin(), simplex.end(),
-                                          [](const Vertex& a, const Vertex& b) { return a.cost < b.cost; });
-        best = low->x;
-        best_cost = low->cost;
     }
-    out.preset = preset_at(start, best);
+    for (int round = 0; round < 6 && out.evaluations < options.max_evaluations; ++round) {
+        const double size = (round % 2 == 0 ? 0.7 : -0.7) / (1 + 0.5 * round);
+        const Vertex found = descend(best, size, options.max_evaluations - out.evaluations, cost);
+        if (found.cost < best.cost) best = found;
+    }
+    out.preset = preset_at(start, best.x);
     const Fit fit = compare(out.preset, measured, options.repeatability);
     out.rms = fit.rms;
     out.cost = fit.cost;

@@ -58,12 +58,17 @@ SweepRow sweep_one(const Preset& preset, double depth) {
     Pose pose{{0, 0, preset.length}, {1, 0, 0, 0}, 0};
     TuftState state = step(tuft, pose, {&sheet, 1}, 0);
     const int drag = static_cast<int>(kDrag / kStep);
-    for (int i = 1; i <= press + drag; ++i) {
+    Vec3 lag{0};
+    int still = 0;
+    for (int i = 1; i <= press + drag && still < 5; ++i) {
         // The hand already moves while it presses, as a stroke begins.
         pose.position.x += kStep * preset.length;
         pose.position.z = preset.length - depth * std::min(1.0, static_cast<double>(i) / press);
         pose.time += 0.01;
         state = step(tuft, pose, {&sheet, 1}, 0.01);
+        const Vec3 lag_t0 = lag;
+        lag = tuft.spine.memory.node.back() * preset.length - pose.position;
+        still = i > press && glm::length(lag - lag_t0) < 1e-6 * preset.length ? still + 1 : 0;
     }
     const Patch patch = patch_of(state);
     SweepRow row{depth};
@@ -156,6 +161,22 @@ std::vector<SweepRow> read_sweep(const std::string& path) {
     }
     if (rows.empty()) throw Error(path, "has no measured rows");
     return rows;
+}
+
+std::optional<double> stated_length(const std::string& path) {
+    const std::vector<char> bytes = read_file(path, 16 << 20);
+    const std::string text(bytes.begin(), bytes.end());
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string line = text.substr(at, end - at);
+        at = end + 1;
+        const std::size_t word = line.find("length ");
+        if (line.empty() || line[0] != '#' || word == std::string::npos) continue;
+        char* rest = nullptr;
+        const double v = std::strtod(line.c_str() + word + 7, &rest);
+        if (std::string_view(rest).starts_with(" mm") && v > 0 && v < 1e3) return v * kMillimetre;
+    }
+    return std::nullopt;
 }
 
 }  // namespace tuft::brush

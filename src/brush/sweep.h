@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ struct SweepRow {
     double offset = 0;   ///< end of the patch nearer to the root, behind the foot of the holder's axis
 };
 
-/// Drags each depth until steady (three hair lengths). Depths in metres.
+/// Drags each depth until steady (at most three hair lengths). Depths in metres.
 std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> depths);
 
 /// CSV text with the columns z_mm,width_mm,drag_mm,offset_mm.
@@ -28,9 +29,12 @@ std::string sweep_csv(std::span<const SweepRow> rows);
 /// column `excluded_by_authors` is not 0 skipped. Throws `Error` with file and line.
 std::vector<SweepRow> read_sweep(const std::string& path);
 
+/// Hair length in metres that a comment of the table states as "length NUMBER mm"; nothing else.
+std::optional<double> stated_length(const std::string& path);
+
 struct CalibrateOptions {
     SweepRow repeatability{0, 1.4e-3, 0.5e-3, 0.7e-3};  ///< one standard deviation of each column
-    int max_evaluations = 400;
+    int max_evaluations = 1200;
 };
 
 struct Calibration {
@@ -40,8 +44,9 @@ struct Calibration {
     int evaluations = 0;
 };
 
-/// Fits radius, hardness of the flattening, side stiffness and friction of `start` to the
-/// measured rows by a simplex search. Deterministic.
+/// Fits radius, taper, stiffness along the hair, side stiffness, flattening and wet film of
+/// `start`, whose hair length must be the measured brush's, by a simplex search from several
+/// beginnings. Deterministic. About 20 ms per evaluation.
 Calibration calibrate(const Preset& start, std::span<const SweepRow> measured,
                       const CalibrateOptions& options = {});
 

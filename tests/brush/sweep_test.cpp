@@ -33,6 +33,33 @@ TEST(Sweep, LinesWidenEvenlyWithDepth) {
     }
 }
 
+TEST(Sweep, Robot2020DrawsTheMeasuredLines) {
+    const std::string path = std::string(TUFT_TEST_DATA) + "/brush/brush_robot2020_even.csv";
+    const std::vector<SweepRow> measured = read_sweep(path);
+    const Preset p = load_preset("robot-2020");
+    EXPECT_NEAR(p.length, stated_length(path).value(), 1e-9);
+    SweepRow sum;
+    for (const SweepRow& row : measured) {
+        const SweepRow swept = sweep_depth(p, std::span(&row.depth, 1)).front();
+        sum.width += std::pow(swept.width - row.width, 2) / measured.size();
+        sum.drag += std::pow(swept.drag - row.drag, 2) / measured.size();
+        sum.offset += std::pow(swept.offset - row.offset, 2) / measured.size();
+    }
+    // A quarter more than one standard deviation of the measurement itself.
+    EXPECT_LT(std::sqrt(sum.width), 1.25 * 1.4e-3);
+    EXPECT_LT(std::sqrt(sum.drag), 1.25 * 0.5e-3);
+    EXPECT_LT(std::sqrt(sum.offset), 1.25 * 0.7e-3);
+    // Depths between and beyond the table: even growth, steps back below the ruler's 0.5 mm.
+    std::vector<double> depths;
+    for (int i = 0; i <= 34; ++i) depths.push_back(5e-4 * i);
+    const std::vector<SweepRow> rows = sweep_depth(p, depths);
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        EXPECT_GE(rows[i].width, rows[i - 1].width - 1e-5) << i;
+        EXPECT_GT(rows[i].drag, rows[i - 1].drag - 5e-4) << i;
+        EXPECT_NEAR(rows[i].offset, rows[i - 1].offset, i < 3 ? 2.5e-3 : 5e-4) << i;
+    }
+}
+
 TEST(Sweep, TableReadsBack) {
     const std::vector<SweepRow> rows{{0.002, 0.0015, 0.003, 0.001}, {0.004, 0.0035, 0.005, 0.0012}};
     const std::string path = write("sweep.csv", "# a brush\n" + sweep_csv(rows));
