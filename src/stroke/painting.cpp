@@ -223,8 +223,7 @@ void Painting::draw_poses() {
         if (!contact.tuft.converged) ++h.report.unconverged;
 
         const std::vector<footprint::Outline> outlines =
-            footprint::outline(contact.tuft, contact.frame,
-                               footprint::node_planes(contact.tuft, contact.planes));
+            footprint::outline(contact.tuft, contact.frame, contact.branch_planes);
         Stamp stamp;
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, h.cell);
         if (stamp.footprint.empty()) {
