@@ -28,23 +28,23 @@ void write_glyph(std::vector<stroke::Trace>& out, const Glyph& g, const WidthTab
 
 std::vector<stroke::Trace> bowl_inside() {
     const WidthTable table(brush::load_preset(kBrush));
-    const double pitch = 37;  // mm
+    const double pitch = 43, back = 20;  // mm; on the wall that faces the reader
     std::vector<stroke::Trace> out;
     const char* characters[] = {"七", "上", "八", "下"};
     for (int k = 0; k < 4; ++k) {
-        // All four share the wrap at the bowl's middle, so they stay square to each other.
-        WriteOptions options{.size = 33 * kMillimetre};
+        // All four share one wrap, so they stay square to each other.
+        WriteOptions options{.size = 39 * kMillimetre};
         const Vec2 middle{(k % 2 - 0.5) * pitch, (k / 2 - 0.5) * pitch};
         options.centre = Vec2(500, 500) - middle * kMillimetre / (0.001 * options.size);
         write_glyph(out, glyph(characters[k]), table, options,
-                    {{0, 0, 11.6 * kMillimetre}, {1, 0, 0}, {0, -1, 0}, stroke::Laying::wrap}, "carbon");
+                    {{0, back * kMillimetre, 11.6 * kMillimetre}, {1, 0, 0}, {0, -1, 0}, stroke::Laying::wrap}, "carbon");
     }
     return out;
 }
 
 std::vector<stroke::Trace> bowl_outside() {
     const WidthTable table(brush::load_preset(kBrush));
-    const double radius = 68.2 * kMillimetre, height = 44.0 * kMillimetre, step = 32 * kDegree;
+    const double radius = 68.4 * kMillimetre, height = 44.5 * kMillimetre, step = 33 * kDegree;
     std::vector<stroke::Trace> out;
     const char* characters[] = {"漫", "步", "人", "生"};
     for (int k = 0; k < 4; ++k) {
@@ -53,7 +53,7 @@ std::vector<stroke::Trace> bowl_outside() {
                                       {std::cos(a), std::sin(a), 0},
                                       {0, 0, -1},
                                       stroke::Laying::wrap};
-        write_glyph(out, glyph(characters[k]), table, {.size = 34 * kMillimetre}, place, "carbon");
+        write_glyph(out, glyph(characters[k]), table, {.size = 36 * kMillimetre}, place, "carbon");
     }
     return out;
 }

@@ -12,13 +12,13 @@ namespace {
 /// A line through points (x, z) of the car's side view, mm, with a width at each.
 struct Point {
     double x, z, width;
-    double pace = 1;
+    double pace = 1, rest = -1;
 };
 
 /// The flank is written from the right-hand side of the car: +x, its front, is to the right.
 Stroke line(const char* name, const std::vector<Point>& points) {
     Stroke s{name, {}};
-    for (const Point& p : points) s.keys.push_back({p.x, -p.z, p.width, p.pace});
+    for (const Point& p : points) s.keys.push_back({p.x, -p.z, p.width, p.pace, p.rest});
     return s;
 }
 
@@ -29,16 +29,15 @@ std::vector<stroke::Trace> car_pinstripe() {
     const WidthTable table(brush::load_preset(brush));
     const WriteOptions options{.size = 1.0, .centre = {0, 0}, .speed = 0.16, .tilt = {0, 0}};
     const std::vector<Stroke> strokes = {
-        // From behind the rear wheel over its arch, along the flank, over the front arch and out.
-        line("stripe", {{-520, 172, 0, 0.5}, {-500, 176, 1.2}, {-455, 184, 2.2}, {-400, 196, 2.8},
-                        {-345, 200, 3.0}, {-290, 197, 3.2}, {-220, 188, 3.4}, {-100, 181, 3.6},
-                        {30, 178, 3.6}, {150, 175, 3.4}, {240, 178, 3.2}, {300, 189, 3.0},
-                        {369, 196, 2.8}, {430, 188, 2.2}, {470, 174, 1.4}, {500, 156, 0, 1.3},
-                        {506, 151, 0}}),
-        line("companion", {{-470, 174, 0, 0.5}, {-440, 180, 0.9}, {-395, 188, 1.2}, {-345, 191.5, 1.2},
-                           {-285, 188.5, 1.2}, {-218, 180, 1.2}, {-100, 173, 1.2}, {30, 170, 1.2},
-                           {150, 167, 1.2}, {236, 169.5, 1.2}, {298, 180, 1.2}, {369, 187, 1.1},
-                           {425, 179, 0.9}, {456, 168, 0, 1.2}, {462, 164, 0}}),
+        // From behind the front wheel along the door, below the character line, over the
+        // rear arch and out. The tail lamp's end is the long one.
+        line("stripe", {{262, 162, 0, 0.4}, {235, 167.5, 2.4, 0.6}, {195, 173.5, 4.8, 0.9}, {150, 177, 6.2},
+                        {50, 179, 6.4}, {-50, 180.5, 6.0}, {-150, 185, 5.3}, {-250, 193.5, 4.5},
+                        {-345, 200, 3.6}, {-420, 196, 2.6}, {-480, 184, 1.4, 1.2},
+                        {-532, 167, 0.4, 1.2, 0}, {-526, 169, 0}}),
+        line("companion", {{178, 186, 0, 0.4}, {160, 187.2, 0.8, 0.6}, {125, 188.5, 1.2}, {50, 190, 1.2},
+                           {-50, 190.5, 1.2}, {-150, 194.5, 1.2}, {-250, 202.5, 1.2}, {-345, 208, 1.1},
+                           {-415, 205, 0.9}, {-464, 197.5, 0.3, 1.2, 0}, {-460, 198.3, 0}}),
     };
     std::vector<stroke::Trace> out;
     for (const Stroke& s : strokes) {

@@ -47,7 +47,7 @@ struct WriteOptions {
     double turn_radius = 0.0015;  ///< metres: bends tighter than this slow the hand down
     double acceleration = 1.2;    ///< m/s², from rest and into rest
     double sample_rate = 200; ///< Hz
-    Vec2 tilt{0.06, 0.10};    ///< radians: the holder leans a little to the right and to the writer
+    Vec2 tilt{0.015, 0.025};  ///< radians: upright, but for a little to the right and to the writer
 };
 
 /// The motion: a centripetal Catmull–Rom curve through the keys (from rest to rest, corners

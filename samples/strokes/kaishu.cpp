@@ -1,5 +1,6 @@
 #include "kaishu.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tuft::samples {
@@ -21,11 +22,15 @@ struct Axis {
 
 void append(Stroke& s, std::initializer_list<Key> keys) { s.keys.insert(s.keys.end(), keys); }
 
-/// The tip has left the surface, the hand goes on: so it draws no drop at the end.
-void follow_through(Stroke& s, double length) {
-    const Key &a = s.keys[s.keys.size() - 2], &b = s.keys.back();
-    const Vec2 on = length * glm::normalize(Vec2(b.x - a.x, b.y - a.y));
-    s.keys.push_back({b.x + on.x, b.y + on.y, 0, 1.4});
+/// Ends a stroke that runs out to a point: the finest line up to the last key, then the
+/// tip is taken back over it while it lifts, so that it draws no drop beyond the end.
+void run_out(Stroke& s, double w) {
+    Key& end = s.keys.back();
+    const Key before = s.keys[s.keys.size() - 2];
+    const Vec2 back = 0.45 * w * glm::normalize(Vec2(before.x - end.x, before.y - end.y));
+    end.width = std::max(0.08 * w, 8.0);
+    end.rest = 0;
+    s.keys.push_back({end.x + back.x, end.y + back.y, 0, 1});
 }
 
 }  // namespace
@@ -34,8 +39,8 @@ Stroke heng(Vec2 from, Vec2 to, double w, double bow) {
     const Axis l(from, to);
     const double n = l.length, b = -bow * n;
     Stroke s{"heng", {}};
-    append(s, {l.at(0.32 * w, -0.34 * w, 0, 0.5),
-               l.at(0.55 * w, -0.06 * w, 1.0 * w, 0.5, 0.02),
+    append(s, {l.at(0.38 * w, -0.26 * w, 0, 0.5),
+               l.at(0.58 * w, -0.05 * w, 1.0 * w, 0.5, 0.02),
                l.at(1.8 * w, 0.55 * b, 0.90 * w, 0.9),
                l.at(0.5 * n, b, 0.78 * w, 1.1),
                l.at(n - 2.1 * w, 0.65 * b, 0.80 * w, 0.9),
@@ -61,8 +66,8 @@ namespace {
 
 /// The head of a 竖: a cut from the upper left, then straight down.
 void shu_head(Stroke& s, const Axis& l, double w) {
-    append(s, {l.at(0.25 * w, 0.32 * w, 0, 0.5),
-               l.at(0.58 * w, 0.0, 1.10 * w, 0.5, 0.02),
+    append(s, {l.at(0.32 * w, 0.26 * w, 0, 0.5),
+               l.at(0.60 * w, 0.0, 1.10 * w, 0.5, 0.02),
                l.at(1.9 * w, 0.06 * w, 0.98 * w, 0.9)});
 }
 
@@ -74,9 +79,9 @@ Stroke shu_drop(Vec2 from, Vec2 to, double w, double bow) {
     Stroke s{"shu", {}};
     shu_head(s, l, w);
     append(s, {l.at(0.5 * n, b + 0.03 * w, 0.88 * w, 1.1),
-               l.at(n - 1.5 * w, 0.5 * b + 0.03 * w, 1.02 * w, 0.7),
-               l.at(n - 0.8 * w, 0.02 * w, 0.90 * w, 0.5),
-               l.at(n - 0.15 * w, -0.02 * w, 0, 0.6)});
+               l.at(n - 1.7 * w, 0.5 * b + 0.03 * w, 1.06 * w, 0.7),
+               l.at(n - 0.9 * w, 0.02 * w, 0.92 * w, 0.5),
+               l.at(n - 0.1 * w, -0.02 * w, 0, 0.6)});
     return s;
 }
 
@@ -89,7 +94,7 @@ Stroke shu_needle(Vec2 from, Vec2 to, double w) {
                l.at(0.76 * n, 0, 0.88 * w, 1.1),
                l.at(0.91 * n, 0, 0.42 * w, 1.2),
                l.at(0.985 * n, 0, 0.0, 1.4)});
-    follow_through(s, 0.5 * w);
+    run_out(s, w);
     return s;
 }
 
@@ -98,8 +103,8 @@ Stroke shu_plain(Vec2 from, Vec2 to, double w) {
     const double n = l.length;
     Stroke s{"shu", {}};
     shu_head(s, l, w);
-    append(s, {l.at(n - 0.55 * w, 0.02 * w, 0.95 * w, 0.7, 0.02),
-               l.at(n - 0.65 * w, 0.02 * w, 0, 0.5)});
+    append(s, {l.at(n - 0.75 * w, 0.02 * w, 0.92 * w, 0.7, 0.02),
+               l.at(n - 0.85 * w, 0.02 * w, 0, 0.5)});
     return s;
 }
 
@@ -115,7 +120,7 @@ Stroke shu_gou(Vec2 from, Vec2 to, Vec2 hook, double w) {
                {p.x + 0.45 * h.x, p.y + 0.38 * h.y, 0.62 * w, 0.8},
                {p.x + 0.8 * h.x, p.y + 0.75 * h.y, 0.30 * w, 1.1},
                {hook.x, hook.y, 0, 1.3}});
-    follow_through(s, 0.5 * w);
+    run_out(s, w);
     return s;
 }
 
@@ -142,7 +147,7 @@ Stroke shu_wan_gou(Vec2 from, Vec2 bend, Vec2 to, Vec2 hook, double w) {
     append(s, {{p.x + 0.40 * h.x + 0.1 * w, p.y + 0.36 * h.y, 0.62 * w, 0.8},
                {p.x + 0.75 * h.x + 0.08 * w, p.y + 0.72 * h.y, 0.30 * w, 1.1},
                {hook.x, hook.y, 0, 1.2}});
-    follow_through(s, 0.5 * w);
+    run_out(s, w);
     return s;
 }
 
@@ -157,7 +162,7 @@ Stroke pie(Vec2 from, Vec2 to, double w, double sag) {
                l.at(0.74 * n, 0.88 * b, 0.66 * w, 1.1),
                l.at(0.90 * n, 0.46 * b, 0.36 * w, 1.2),
                l.at(0.985 * n, 0.06 * b, 0.0, 1.4)});
-    follow_through(s, 0.4 * w);
+    run_out(s, w);
     return s;
 }
 
@@ -174,7 +179,7 @@ Stroke na(Vec2 from, Vec2 foot, Vec2 to, double w) {
     append(s, {{foot.x + 0.34 * t.x, foot.y + 0.30 * t.y, 0.80 * w, 0.6},
                {foot.x + 0.66 * t.x, foot.y + 0.62 * t.y, 0.44 * w, 0.85},
                {to.x, to.y, 0, 1.2}});
-    follow_through(s, 0.3 * w);
+    run_out(s, 0.7 * w);
     return s;
 }
 
@@ -198,7 +203,7 @@ Stroke dian_pie(Vec2 from, Vec2 to, double w) {
                l.at(0.5 * n, -0.06 * n, 0.82 * w, 1),
                l.at(0.8 * n, -0.03 * n, 0.42 * w, 1.1),
                l.at(n, 0, 0, 1.3)});
-    follow_through(s, 0.4 * w);
+    run_out(s, w);
     return s;
 }
 
@@ -211,7 +216,7 @@ Stroke ti(Vec2 from, Vec2 to, double w) {
                l.at(0.42 * n, 0.03 * n, 0.72 * w, 0.9),
                l.at(0.75 * n, 0.01 * n, 0.34 * w, 1.2),
                l.at(n, 0, 0, 1.4)});
-    follow_through(s, 0.4 * w);
+    run_out(s, w);
     return s;
 }
 
@@ -225,8 +230,8 @@ void zhe_head(Stroke& s, const Axis& l, double w) {
                l.at(1.4 * w, -0.005 * n, 0.82 * w, 0.9),
                l.at(0.55 * n, -0.02 * n, 0.72 * w, 1),
                l.at(n - 1.3 * w, -0.012 * n, 0.76 * w, 0.8),
-               l.at(n - 0.70 * w, -0.16 * w, 0.66 * w, 0.45, 0.02),
-               l.at(n - 0.45 * w, 0.22 * w, 1.12 * w, 0.4, 0.02)});
+               l.at(n - 0.72 * w, -0.10 * w, 0.70 * w, 0.45, 0.02),
+               l.at(n - 0.46 * w, 0.24 * w, 1.12 * w, 0.4, 0.02)});
 }
 
 }  // namespace
@@ -252,7 +257,7 @@ Stroke heng_pie(Vec2 from, Vec2 corner, Vec2 to, double w) {
                d.at(0.55 * m, -0.11 * m, 0.78 * w, 1.05),
                d.at(0.80 * m, -0.075 * m, 0.50 * w, 1.15),
                d.at(0.98 * m, 0.0, 0.0, 1.4)});
-    follow_through(s, 0.4 * w);
+    run_out(s, w);
     return s;
 }
 

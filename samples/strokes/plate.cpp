@@ -46,14 +46,14 @@ struct Leaf {
 
 Stroke draw(const Leaf& l, const Rim& rim) {
     const Vec2 u{std::cos(l.turn), std::sin(l.turn)}, v{-u.y, u.x};
-    const auto key = [&](double along, double across, double width, double pace) {
+    const auto key = [&](double along, double across, double width, double pace, double rest = -1) {
         const Vec2 p = Vec2(l.s, l.t) + l.length * (along * u + across * l.bend * v);
-        return rim.at(p.x, p.y, width, pace);
+        return rim.at(p.x, p.y, width, pace, rest);
     };
     return {"leaf",
             {key(0, 0, 0, 0.7), key(0.16, 0.5, 0.45 * l.width, 0.8), key(0.42, 1.0, l.width, 0.8),
-             key(0.66, 0.95, 0.80 * l.width, 1), key(0.88, 0.45, 0.30 * l.width, 1.2),
-             key(1.0, 0.05, 0, 1.4), key(1.08, -0.3, 0, 1.4)}};
+             key(0.66, 0.95, 0.80 * l.width, 1), key(0.86, 0.5, 0.34 * l.width, 1.2),
+             key(1.0, 0.0, 0.22, 1.2, 0), key(0.93, 0.22, 0, 1)}};
 }
 
 /// A thin line through points (s, t) that swells by `width` in its middle.
@@ -70,8 +70,8 @@ Stroke stem(const std::vector<Vec2>& points, double width, const Rim& rim) {
 
 /// A round berry: pressed and lifted where it stands.
 Stroke berry(Vec2 p, double width, const Rim& rim) {
-    return {"berry", {rim.at(p.x - 0.5 * width, p.y, 0, 0.5), rim.at(p.x, p.y, width, 0.5, 0.03),
-                      rim.at(p.x - 0.1 * width, p.y, 0, 0.5)}};
+    return {"berry", {rim.at(p.x - 0.7 * width, p.y, 0, 0.4), rim.at(p.x, p.y, width, 0.4, 0.06),
+                      rim.at(p.x - 0.1 * width, p.y, 0, 0.4)}};
 }
 
 /// Half a wave: the stem's hollow with its spray, and the leaf on its back. `side` is +1
@@ -82,33 +82,33 @@ void half_wave(std::vector<Stroke>& out, double s0, double half, double side, co
     std::vector<Vec2> main;
     for (int i = -1; i <= 9; ++i) main.push_back({s0 + half * i / 8.0, wave(i / 8.0)});
     for (std::size_t i = 1; i + 1 < main.size(); ++i) main[i].y += hand.shift(0.25);
-    out.push_back(stem(main, 1.15, rim));
+    out.push_back(stem(main, 1.3, rim));
 
     // A side shoot curls back into the hollow and ends in a spray of three.
     const double x0 = s0 + 0.08 * half;
     const Vec2 end{s0 + hand.vary(0.56, 0.03) * half, side * hand.vary(-5.2, 0.06)};
     out.push_back(stem({{x0, wave(0.08)}, {s0 + 0.22 * half, side * 1.0}, {s0 + 0.38 * half, side * -2.6}, end},
-                       0.8, rim));
+                       0.95, rim));
     const double along = side * -0.25;
     const double turns[] = {0.0, 0.75, -0.75};
-    const double lengths[] = {12.5, 9.5, 9.0};
+    const double lengths[] = {15.0, 11.5, 11.0};
     for (int k = 0; k < 3; ++k)
-        out.push_back(draw({.s = end.x - 0.6, .t = end.y,
+        out.push_back(draw({.s = end.x - 2.0, .t = end.y + side * 0.9,
                             .turn = along + turns[k] + hand.shift(0.08),
-                            .length = hand.vary(lengths[k], 0.06), .width = hand.vary(k ? 2.7 : 3.4, 0.06),
+                            .length = hand.vary(lengths[k], 0.06), .width = hand.vary(k ? 3.0 : 3.7, 0.06),
                             .bend = turns[k] > 0 ? -0.16 : turns[k] < 0 ? 0.16 : 0.10 * side}, rim));
     // Two leaves on the outer side of the wave, one before the crest and one behind.
     for (const double x : {0.30, 0.62}) {
         const double slope = std::atan2(side * rise * pi * std::cos(pi * x), half);
         out.push_back(draw({.s = s0 + x * half, .t = wave(x) + side * 0.4,
                             .turn = slope + side * (0.75 + hand.shift(0.08)),
-                            .length = hand.vary(x < 0.5 ? 8.5 : 9.5, 0.06), .width = hand.vary(2.7, 0.06),
+                            .length = hand.vary(x < 0.5 ? 10.0 : 11.5, 0.06), .width = hand.vary(3.0, 0.06),
                             .bend = -0.16 * side}, rim));
     }
     // One under the shoot's start.
-    out.push_back(draw({.s = s0 + 0.24 * half, .t = side * -0.6, .turn = side * (-1.35 + hand.shift(0.1)),
-                        .length = hand.vary(7.0, 0.08), .width = hand.vary(2.3, 0.06), .bend = 0.16 * side}, rim));
-    out.push_back(berry({s0 + 0.93 * half, side * hand.vary(6.3, 0.05)}, hand.vary(1.7, 0.08), rim));
+    out.push_back(draw({.s = s0 + 0.22 * half, .t = side * 0.6, .turn = side * (-1.25 + hand.shift(0.1)),
+                        .length = hand.vary(8.0, 0.08), .width = hand.vary(2.7, 0.06), .bend = 0.16 * side}, rim));
+    out.push_back(berry({s0 + 0.93 * half, side * hand.vary(6.6, 0.05)}, hand.vary(2.3, 0.08), rim));
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "brush/preset.h"
+#include "core/files.h"
+#include "ink/pigments.h"
+#include "io/inkml.h"
+#include "mesh/repair.h"
+#include "stroke/placement.h"
+
+namespace tuft::io {
+namespace {
+
+/// The stroke files that are shipped fit the models they are written for.
+void expect_fits(const std::string& strokes, const std::string& model, std::size_t n_strokes) {
+    const std::filesystem::path source = TUFT_SOURCE;
+    const auto traces = read_inkml(source / "samples/strokes" / (strokes + ".inkml"));
+    EXPECT_EQ(traces.size(), n_strokes);
+    const auto path = source / "models" / (model + ".ply");
+    const mesh::Surface surface = mesh::build_surface(mesh::read_ply(read_file(path), path));
+    const mesh::SurfaceQuery query(surface.mesh);
+    for (const stroke::Trace& t : traces) {
+        EXPECT_NO_THROW(brush::load_preset(t.brush)) << t.brush;
+        EXPECT_NO_THROW(ink::load_ink(t.ink)) << t.ink;
+        ASSERT_GT(t.samples.size(), 10u);
+        EXPECT_EQ(t.samples.front().pressure, 0);  // lands from the air and leaves for it
+        EXPECT_EQ(t.samples.back().pressure, 0);
+        const stroke::LaidTrace laid = stroke::lay(query, t);
+        EXPECT_EQ(laid.missed, 0u) << t.label;
+        const bool wrapped = t.placement.laying == stroke::Laying::wrap;
+        EXPECT_LT(laid.origin_gap, wrapped ? 1e-3 : 0.1) << t.label;
+        for (std::size_t i = 1; i < t.samples.size(); ++i) {
+            const auto &a = t.samples[i - 1], &b = t.samples[i];
+            EXPECT_GT(b.time, a.time);
+            EXPECT_LT(b.time - a.time, 0.0051);  // 200 samples a second
+            // No hand is faster than 0.5 m/s with a brush, no surface tears a stroke apart:
+            // neighbours stay neighbours on the model.
+            const double flat = glm::length(b.position - a.position);
+            EXPECT_LT(flat, 0.0025);
+            const double gap = glm::length(laid.samples[i].position - laid.samples[i - 1].position);
+            EXPECT_LT(gap, flat + 0.004) << t.label;  // a shut line of the car is 2.5 mm deep
+        }
+    }
+}
+
+TEST(Samples, CharactersFitTheBowl) {
+    expect_fits("qi-shang-ba-xia", "bowl", 2 + 3 + 2 + 3);
+    expect_fits("man-bu-ren-sheng", "bowl", 14 + 7 + 2 + 5);
+}
+
+TEST(Samples, OrnamentFitsThePlate) { expect_fits("plate-ornament", "plate", 12 * 2 * 9); }
+
+TEST(Samples, PinstripesFitTheCar) { expect_fits("car-pinstripe", "car", 2); }
+
+}  // namespace
+}  // namespace tuft::io
