@@ -29,7 +29,7 @@ constexpr std::array kFree = {
     Free{&Preset::tip_stiffness, 1e-6, 1e-1, 0, 0.8},
     Free{&Preset::transverse_stiffness, 200, 2e5, 0, 0.5},
     Free{&Preset::adhesion_range, 1e-5, 2e-3, 0, 0.8},
-    Free{&Preset::flatten_contact, 0.05, 6, 0, 0.4},
+    Free{&Preset::flatten_contact, 0.05, 10, 0, 0.4},
 };
 
 double to_search(const Free& f, const Preset& p) {

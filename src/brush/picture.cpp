@@ -33,7 +33,7 @@ Pressed press(const Preset& p, double depth, double tilt) {
     const ContactPlane sheet;
     const double stride = 0.02 * p.length, tip = p.length * std::cos(tilt);
     const int pressing = 20 + static_cast<int>(std::ceil(depth / stride));
-    out.pose.rotation = glm::angleAxis(tilt, Vec3{0, 1, 0});
+    out.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0});
     for (int i = 0; i <= pressing + 150; ++i) {
         const double part = std::min(1.0, static_cast<double>(i) / pressing);
         out.pose.position = {-stride * i, 0, tip - depth * part};
@@ -189,7 +189,10 @@ Picture draw_tuft(const Preset& preset, const PictureOptions& options) {
         View view;
         view.scale = scale;
         view.foot = {(k + 0.28) * column, ground};
-        view.root_x = pressed.pose.position.x;
+        // The origin is the foot of the holder's axis; where the holder leans, it moves aside.
+        const double foot = std::tan(options.tilt) * pressed.pose.position.z;
+        view.root_x = pressed.pose.position.x + foot;
+        view.foot.x += 0.7 * scale * foot;
         draw_holder(canvas, pressed.pose, preset, view);
         draw_tuft_side(canvas, pressed, view, 7 + k);
         draw_patch(canvas, pressed, view, plan);

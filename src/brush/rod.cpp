@@ -1,12 +1,11 @@
 #include "brush/rod.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "brush/rod_energy.h"
+#include "brush/rod_newton.h"
 
 namespace tuft::brush::rod {
 
@@ -88,127 +87,10 @@ std::vector<Vec3> nodes(const Rod& rod, const Memory& memory) {
 
 namespace {
 
-using DenseMatrix = Eigen::MatrixXd;
-
-/// Buffers of one thread, kept so that a warm solve allocates little.
-struct Workspace {
-    Evaluation at, trial;
-    Shape next;
-    std::vector<double> gradient, hessian, step;
-    DenseMatrix matrix;
-    Eigen::LLT<DenseMatrix> factor;
-    Eigen::SelfAdjointEigenSolver<DenseMatrix> eigen;
-};
-
-constexpr int kDampedSteps = 6;  ///< of one solve, before eigenvectors are asked
-constexpr int kEigenCost = 12;  ///< iterations that a step by eigenvectors counts for
-
-constexpr double kLongestStep = 0.3;  ///< radians any segment turns in one iteration
-
-/// Largest turn of a segment in ws.step.
-double longest_turn(const Workspace& ws) {
-    double longest = 0;
-    for (std::size_t j = 0; 2 * j < ws.step.size(); ++j) {
-        longest = std::max(longest, std::hypot(ws.step[2 * j], ws.step[2 * j + 1]));
-    }
-    return longest;
-}
-
-/// Cholesky of H + damping · (stiffness of the joints beside each segment).
-bool factorise(const Rod& rod, Workspace& ws, double damping) {
-    const auto size = static_cast<Eigen::Index>(ws.gradient.size());
-    ws.matrix = Eigen::Map<const DenseMatrix>(ws.hessian.data(), size, size);
-    for (Eigen::Index i = 0; i < size && damping > 0; ++i) {
-        const std::size_t j = static_cast<std::size_t>(i) / 2;
-        const double outer = j + 1 < rod.stiffness.size() ? rod.stiffness[j + 1] : 0;
-        ws.matrix(i, i) += damping * (rod.stiffness[j] + outer);
-    }
-    ws.factor.compute(ws.matrix);
-    return ws.factor.info() == Eigen::Success;
-}
-
-/// Solves H u = -g into ws.step by Cholesky. A step that turns some segment too far, or an
-/// indefinite H, is damped in proportion to the joints' stiffness, so that the soft tip alone
-/// does not hold up the rest. With `by_eigenvectors` an indefinite H is taken with |λ| in
-/// place of λ instead: dear, but it converges fast next to a saddle. Returns the cost.
-int newton_step(const Rod& rod, Workspace& ws, bool by_eigenvectors) {
-    constexpr double kDamping[] = {0, 0.5, 3, 20, 200};
-    const auto size = static_cast<Eigen::Index>(ws.gradient.size());
-    const Eigen::Map<const Eigen::VectorXd> g(ws.gradient.data(), size);
-    ws.step.resize(ws.gradient.size());
-    Eigen::Map<Eigen::VectorXd> u(ws.step.data(), size);
-    int cost = 0;
-    bool usable = false;
-    for (const double damping : kDamping) {
-        ++cost;
-        if (factorise(rod, ws, damping)) {
-            u = -ws.factor.solve(g);
-            usable = u.allFinite();
-            if (usable && longest_turn(ws) <= 2 * kLongestStep) return cost;
-        } else if (by_eigenvectors) {
-            break;
-        }
-    }
-    if (usable) return cost;
-    ws.matrix = Eigen::Map<const DenseMatrix>(ws.hessian.data(), size, size);
-    if (!ws.matrix.allFinite()) return 0;
-    ws.eigen.compute(ws.matrix);
-    if (ws.eigen.info() != Eigen::Success) return 0;
-    const Eigen::ArrayXd lambda = ws.eigen.eigenvalues().array().abs();
-    const double least = 1e-8 * lambda.maxCoeff();
-    const Eigen::VectorXd along = ws.eigen.eigenvectors().transpose() * g;
-    u = -(ws.eigen.eigenvectors() * (along.array() / lambda.max(least)).matrix());
-    return u.allFinite() ? cost + kEigenCost : 0;
-}
-
 constexpr double kFirstTouch = 0.1;   ///< B0/L²: guess of a first contact's force
 constexpr double kFaint = 0.02;       ///< B0/L²: normal force below which relative accuracy is no aim
-struct NewtonResult {
-    bool converged = false;
-    int iterations = 0;
-};
 
-/// Descends Π from `shape` for frozen friction; Π never rises.
-NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit) {
-    const double tolerance = frozen.law->tolerance;
-    NewtonResult out;
-    int damped = 0;
-    evaluate(frozen, shape, ws.at);
-    while (true) {
-        differentiate(frozen, shape, ws.at, ws.gradient, ws.hessian);
-        double residual = 0;
-        for (const double g : ws.gradient) residual = std::max(residual, std::abs(g));
-        if (residual < tolerance) {
-            out.converged = true;
-            return out;
-        }
-        if (out.iterations >= limit || !std::isfinite(residual)) return out;
-        const int cost = newton_step(*frozen.rod, ws, damped >= kDampedSteps);
-        if (cost == 0) return out;
-        damped += cost > 1;
-        out.iterations += cost;
-        const double longest = longest_turn(ws);
-        double slope = 0;
-        for (std::size_t i = 0; i < ws.step.size(); ++i) slope += ws.gradient[i] * ws.step[i];
-        double scale = std::min(1.0, kLongestStep / longest);
-        // Below this a change of Π is round-off.
-        const double noise = 1e-14 * (1 + std::abs(ws.at.value));
-        bool accepted = false;
-        for (int halving = 0; halving < 20 && !accepted; ++halving, scale *= 0.5) {
-            advance(shape, ws.step, scale, ws.next);
-            evaluate(frozen, ws.next, ws.trial);
-            accepted = ws.trial.value <= ws.at.value + 1e-4 * scale * slope + noise;
-        }
-        if (!accepted) {
-            out.converged = residual < 1e3 * tolerance && -slope < 1e3 * noise;
-            return out;
-        }
-        std::swap(shape, ws.next);
-        std::swap(ws.at, ws.trial);
-    }
-}
-
-/// Where node i first touched on its way from its last place to `x`.
+/// Where a point first touched on its way from its last place to `x`.
 Vec3 touching_point(const Obstacle& o, const Vec3& x_t0, const Vec3& x) {
     const double z0 = glm::dot(x_t0 - o.origin, o.normal) - o.radius;
     const double z1 = glm::dot(x - o.origin, o.normal) - o.radius;

@@ -88,6 +88,9 @@ std::vector<double> squash(const SectionInput& in) {
     return out;
 }
 
+constexpr double kDrySpread = 0.4;  ///< dry hair, not held by water, spreads this much more
+constexpr double kLying = 0.6;  ///< height over b at which wet hair lies by its own weight
+
 /// How far each centre comes down along its plane's normal, metres, root first. A flattened
 /// section keeps its lower side where the contact has it, so the centre sinks by r - b, but
 /// not below the surface; what the contact's give let sink is lifted onto it. The free end
@@ -97,6 +100,7 @@ std::vector<double> lowering(const SectionInput& in, const std::vector<Section>&
     const std::size_t count = sections.size();
     std::vector<double> down(count, 0);
     if (in.obstacles.empty()) return down;
+    const double film = in.preset.adhesion > 0 ? in.wetness * in.preset.adhesion_range : 0;
     double tail = -1;  // how far the free end may come down; negative before any contact
     for (std::size_t i = 1; i < count; ++i) {
         const Section& s = sections[count - 1 - i];
@@ -105,13 +109,13 @@ std::vector<double> lowering(const SectionInput& in, const std::vector<Section>&
         const double r = in.spine.rest_radius[i], upright = std::abs(glm::dot(s.m, o.normal));
         if (tail >= 0 && z >= r) {
             // Comes to lie without a kink, so that the patch's end moves evenly with depth.
-            const double h = z - tail;
-            down[i] = std::max(0.0, z - 0.5 * (h + std::hypot(h, s.b)));
+            const double lying = kLying * s.b * upright, h = z - tail - lying;
+            down[i] = std::max(0.0, z - lying - 0.5 * (h + std::hypot(h, s.b)));
             continue;
         }
         const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;
         down[i] = z - std::max(0.0, z - near * (r - s.b) * upright);
-        tail = z < r ? down[i] + in.film : -1;
+        tail = z < r ? down[i] + film : -1;
     }
     return down;
 }
@@ -133,6 +137,7 @@ SectionOutput make_sections(const SectionInput& in) {
     const double force = glm::length(in.result.force) * p.stiffness / (p.length * p.length);
     const double k_f = std::min(1.0, p.force_gain * force / p.force_limit);
     const std::vector<double> squashed = squash(in);
+    const double spread = 1 + kDrySpread * (1 - in.wetness);
     SectionOutput out;
     out.sections.resize(count);
     double s = 0;
@@ -143,7 +148,7 @@ SectionOutput make_sections(const SectionInput& in) {
         const double out_of_ferrule = s * p.length / (2.5 * p.radius);
         const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
         const double widen = held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
-                                         p.flatten_contact * squashed[i]);
+                                         p.flatten_contact * spread * squashed[i]);
         Section& section = out.sections[count - 1 - i];
         // Nears its limit smoothly, or a line's width would show where it is reached.
         const double room = p.flatten_max - 1;

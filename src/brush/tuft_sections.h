@@ -14,7 +14,7 @@ struct SectionInput {
     const rod::Result& result;
     std::span<const rod::Obstacle> obstacles;
     Quat rotation;       ///< of the ferrule
-    double film = 0;     ///< m, gap that the wet film closes
+    double wetness = 1;  ///< 0 to 1: the film that draws the tip down, the cohesion that keeps hair together
     double share = 1;    ///< spines the hair is shared among
 };
 

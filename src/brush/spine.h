@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+
+#include "brush/tuft.h"
+
+/// Inside of the tuft: one spine between the ferrule and its contact planes.
+namespace tuft::brush {
+
+struct Solved {
+    rod::Result result;   ///< in units of L and B0
+    Branch branch;
+};
+
+rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
+
+/// A straight spine whose root lies at ξ0 of the hair, one of `share`.
+Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& clamp, double xi0,
+                 double share);
+
+/// Follows the ferrule from `from` to just before `to` in parts small enough, and lets
+/// hair that stands upright fall behind the motion.
+void approach(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
+              std::span<const ContactPlane> planes, double wetness);
+
+/// The spine bent by the rod solver; `turn` is the ferrule's rotation, `planes` tip first.
+Solved solve_spine(const Preset& preset, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
+                   std::span<const ContactPlane> planes, double wetness, double share);
+
+/// The spine from the query table: bent in the plane of the holder and the tip's last place,
+/// so that the tip follows the hand as a tractrix, by the moment that puts the tip on the plane.
+Solved stand_spine(const Preset& preset, const QueryTable& table, Spine& spine,
+                   const rod::Clamp& clamp, const Quat& turn, std::span<const ContactPlane> planes,
+                   double wetness);
+
+/// SP = ξ k (1 - Z_i/Z) of the bifurcation rule, k the root moment over that of a tuft that
+/// lies flat.
+double split_measure(const Preset& preset, double ink_left, double root_moment);
+
+/// Parts the last third of the spine into three sub-spines of a third of the hair each.
+void split(Tuft& tuft);
+
+/// Solves the sub-spines on the bent trunk and puts them in place of the last third.
+void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state);
+
+}  // namespace tuft::brush

@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+
+#include "brush/spine.h"
+
+namespace tuft::brush {
+
+namespace {
+
+constexpr double kBranchPoint = 2.0 / 3;  ///< share of the length below which the tuft never splits
+constexpr int kTwigs = 3;
+
+/// Index, from the root, of the node where sub-spines leave.
+int branch_node(const rod::Rod& rod) {
+    double s = 0;
+    int i = 0;
+    while (i + 2 < rod.segments() && s + 0.5 * rod.length[i] < kBranchPoint) s += rod.length[i++];
+    return i;
+}
+
+rod::Clamp twig_clamp(const Tuft& tuft, int k, int index) {
+    const rod::Memory& m = tuft.spine.memory;
+    const int inner = std::max(0, k - 1);
+    const Vec3 t = m.tangent[inner];
+    Vec3 e = tuft.pose.rotation * tuft.spine.wide;
+    e = parallel_transport(e, tuft.pose.axis(), t);
+    e = glm::normalize(e - glm::dot(e, t) * t);
+    const double yaw = tuft.preset.split_yaw * (index - 0.5 * (kTwigs - 1));
+    rod::Clamp clamp;
+    clamp.position = m.node[k];
+    clamp.tangent = std::cos(yaw) * t + std::sin(yaw) * e;
+    clamp.side = std::cos(yaw) * e - std::sin(yaw) * t;
+    return clamp;
+}
+
+}  // namespace
+
+double split_measure(const Preset& p, double ink_left, double root_moment) {
+    const double flat = 0.6 * p.stiffness / p.length;
+    return p.split_factor * std::min(1.0, root_moment / flat) * (1 - std::clamp(ink_left, 0.0, 1.0));
+}
+
+void split(Tuft& tuft) {
+    const int k = branch_node(tuft.spine.rod);
+    double xi = 0;
+    for (int j = 0; j < k; ++j) xi += tuft.spine.rod.length[j];
+    for (int index = 0; index < kTwigs; ++index) {
+        const rod::Clamp clamp = twig_clamp(tuft, k, index);
+        const rod::Rod part = rod::outer_part(tuft.spine.rod, k, kTwigs);
+        Spine twig = make_spine(tuft.preset, part, clamp, xi, kTwigs);
+        const double yaw = tuft.preset.split_yaw * (index - 0.5 * (kTwigs - 1));
+        Vec3 up = glm::cross(tuft.pose.rotation * tuft.spine.wide, tuft.pose.axis());
+        up = parallel_transport(up, tuft.pose.axis(), clamp.tangent);
+        const Quat turn = glm::angleAxis(-yaw, glm::normalize(up));
+        for (int j = 0; j < part.segments(); ++j) {
+            twig.memory.tangent[j] = glm::normalize(turn * tuft.spine.memory.tangent[k + j]);
+            twig.memory.joint[j] = tuft.spine.memory.joint[k + j];
+        }
+        twig.memory.node = rod::nodes(part, twig.memory);
+        tuft.twigs[index] = std::move(twig);
+    }
+    tuft.split = true;
+}
+
+void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state) {
+    const Preset& p = tuft.preset;
+    const int k = branch_node(tuft.spine.rod);
+    const std::vector<Section> whole = std::move(state.branches.front().sections);
+    state.branches.clear();
+    std::size_t next = whole.size();
+    for (int index = 0; index < kTwigs; ++index) {
+        Spine& twig = tuft.twigs[index];
+        const std::size_t count = twig.rest_radius.size();
+        std::span<const ContactPlane> own = planes;
+        if (planes.size() > 1) own = planes.subspan(next, count);
+        next += count;
+        const rod::Clamp clamp = twig_clamp(tuft, k, index);
+        Solved solved = solve_spine(p, twig, clamp, tuft.pose.rotation, own, tuft.wetness, kTwigs);
+        state.iterations += solved.result.iterations;
+        state.converged = state.converged && solved.result.converged;
+        Branch branch = std::move(solved.branch);
+        branch.ink_share = 1.0 / kTwigs;
+        if (index == kTwigs / 2) {
+            // The middle one carries the trunk.
+            branch.sections.pop_back();
+            branch.sections.insert(branch.sections.end(), whole.begin() + static_cast<long>(count) - 1,
+                                   whole.end());
+        }
+        state.branches.push_back(std::move(branch));
+    }
+}
+
+}  // namespace tuft::brush
