@@ -37,14 +37,18 @@ std::vector<stroke::Trace> bowl_inside() {
         const Vec2 middle{(k % 2 - 0.5) * pitch, (k / 2 - 0.5) * pitch};
         options.centre = Vec2(500, 500) - middle * kMillimetre / (0.001 * options.size);
         write_glyph(out, glyph(characters[k]), table, options,
-                    {{0, back * kMillimetre, 11.6 * kMillimetre}, {1, 0, 0}, {0, -1, 0}, stroke::Laying::wrap}, "carbon");
+                    {{0, back * kMillimetre, 11.6 * kMillimetre},
+                     {1, 0, 0},
+                     {0, -1, 0},
+                     stroke::Laying::wrap},
+                    "carbon");
     }
     return out;
 }
 
 std::vector<stroke::Trace> bowl_outside() {
     const WidthTable table(brush::load_preset(kBrush));
-    const double radius = 68.4 * kMillimetre, height = 44.5 * kMillimetre, step = 33 * kDegree;
+    const double radius = 68.4 * kMillimetre, height = 44.5 * kMillimetre, step = 31.5 * kDegree;
     std::vector<stroke::Trace> out;
     const char* characters[] = {"漫", "步", "人", "生"};
     for (int k = 0; k < 4; ++k) {

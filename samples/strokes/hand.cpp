@@ -14,7 +14,7 @@ namespace {
 struct Spot {
     Vec2 p{0};
     double width = 0, pace = 1;
-    double length = 0;   ///< along the way, changes of width count too
+    double length = 0;  ///< along the way, changes of width count too
 };
 
 /// Distance that the hand feels between two keys: pressing is a motion too.
@@ -29,8 +29,7 @@ std::vector<double> monotone_slopes(const std::vector<double>& t, const std::vec
     for (std::size_t i = 1; i + 1 < n; ++i) {
         const double h0 = t[i] - t[i - 1], h1 = t[i + 1] - t[i];
         const double d0 = (v[i] - v[i - 1]) / h0, d1 = (v[i + 1] - v[i]) / h1;
-        if (d0 * d1 > 0)
-            slope[i] = 3 * (h0 + h1) / ((2 * h1 + h0) / d0 + (h1 + 2 * h0) / d1);
+        if (d0 * d1 > 0) slope[i] = 3 * (h0 + h1) / ((2 * h1 + h0) / d0 + (h1 + 2 * h0) / d1);
     }
     return slope;
 }
@@ -101,15 +100,18 @@ std::vector<double> time_piece(const std::vector<Spot>& spots, const WriteOption
     speed.front() = speed.back() = creep;
     for (std::size_t i = 1; i < n; ++i) {
         const double ds = spots[i].length - spots[i - 1].length;
-        speed[i] = std::min(speed[i], std::sqrt(speed[i - 1] * speed[i - 1] + 2 * o.acceleration * ds));
+        speed[i] =
+            std::min(speed[i], std::sqrt(speed[i - 1] * speed[i - 1] + 2 * o.acceleration * ds));
     }
     for (std::size_t i = n - 1; i-- > 0;) {
         const double ds = spots[i + 1].length - spots[i].length;
-        speed[i] = std::min(speed[i], std::sqrt(speed[i + 1] * speed[i + 1] + 2 * o.acceleration * ds));
+        speed[i] =
+            std::min(speed[i], std::sqrt(speed[i + 1] * speed[i + 1] + 2 * o.acceleration * ds));
     }
     std::vector<double> time(n, 0.0);
     for (std::size_t i = 1; i < n; ++i)
-        time[i] = time[i - 1] + 2 * (spots[i].length - spots[i - 1].length) / (speed[i] + speed[i - 1]);
+        time[i] =
+            time[i - 1] + 2 * (spots[i].length - spots[i - 1].length) / (speed[i] + speed[i - 1]);
     return time;
 }
 
@@ -122,8 +124,10 @@ WidthTable::WidthTable(const brush::Preset& preset) {
     widths_ = {0};
     pressures_ = {0};
     for (const brush::SweepRow& row : brush::sweep_depth(preset, depths)) {
-        if (row.width <= widths_.back() + 1e-6) {  // the bare tip: press as far as the line stays fine
-            pressures_.back() = std::max(pressures_.back(), widths_.size() > 1 ? row.depth / deepest : 0.0);
+        if (row.width <=
+            widths_.back() + 1e-6) {  // the bare tip: press as far as the line stays fine
+            pressures_.back() =
+                std::max(pressures_.back(), widths_.size() > 1 ? row.depth / deepest : 0.0);
             continue;
         }
         widths_.push_back(row.width);
@@ -146,7 +150,8 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
     std::vector<Spot> keys;
     for (std::size_t i = 0; i < stroke.keys.size(); ++i) {
         const Key& k = stroke.keys[i];
-        keys.push_back({0.001 * o.size * (Vec2(k.x, k.y) - o.centre), 0.001 * o.size * k.width, k.pace, 0});
+        keys.push_back(
+            {0.001 * o.size * (Vec2(k.x, k.y) - o.centre), 0.001 * o.size * k.width, k.pace, 0});
         const bool last = i + 1 == stroke.keys.size();
         if (keys.size() > 1 && (k.rest >= 0 || last)) {
             const auto piece = trace_piece(keys);
@@ -174,7 +179,8 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
         const double u = h > 0 ? std::clamp((t - times[i]) / h, 0.0, 1.0) : 1.0;
         const Vec2 p = spots[i].p + u * (spots[i + 1].p - spots[i].p);
         const double width = spots[i].width + u * (spots[i + 1].width - spots[i].width);
-        trace.samples.push_back({.time = t, .position = Vec3(p, 0), .pressure = table.pressure(width), .tilt = o.tilt});
+        trace.samples.push_back(
+            {.time = t, .position = Vec3(p, 0), .pressure = table.pressure(width), .tilt = o.tilt});
     }
     return trace;
 }

@@ -14,13 +14,13 @@ namespace tuft::samples {
 /// of the character square, x to the right, y down.
 struct Key {
     double x = 0, y = 0;
-    double width = 0;       ///< of the line that is wanted; 0 lifts off
-    double pace = 1;        ///< speed here, 1 is the stroke's own
-    double rest = -1;       ///< seconds to stop here; the path may turn sharply. -1: go on
+    double width = 0;  ///< of the line that is wanted; 0 lifts off
+    double pace = 1;   ///< speed here, 1 is the stroke's own
+    double rest = -1;  ///< seconds to stop here; the path may turn sharply. -1: go on
 };
 
 struct Stroke {
-    std::string name;       ///< such as "heng"
+    std::string name;  ///< such as "heng"
     std::vector<Key> keys;
 };
 
@@ -41,18 +41,18 @@ class WidthTable {
 };
 
 struct WriteOptions {
-    double size = 0.03;       ///< metres of the character square
-    Vec2 centre{500, 500};    ///< what becomes the trace's origin, thousandths
-    double speed = 0.045;     ///< m/s where the pace is 1 and the path is straight
+    double size = 0.03;           ///< metres of the character square
+    Vec2 centre{500, 500};        ///< what becomes the trace's origin, thousandths
+    double speed = 0.045;         ///< m/s where the pace is 1 and the path is straight
     double turn_radius = 0.0015;  ///< metres: bends tighter than this slow the hand down
     double acceleration = 1.2;    ///< m/s², from rest and into rest
-    double sample_rate = 200; ///< Hz
+    double sample_rate = 200;     ///< Hz
     Vec2 tilt{0.015, 0.025};  ///< radians: upright, but for a little to the right and to the writer
 };
 
 /// The motion: a centripetal Catmull–Rom curve through the keys (from rest to rest, corners
 /// at the rests), widths by monotone cubics (Fritsch and Carlson 1980), speed after pace and
-/// bend with bounded acceleration. 
+/// bend with bounded acceleration.
 stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOptions& options);
 
 }  // namespace tuft::samples

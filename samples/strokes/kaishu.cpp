@@ -13,14 +13,17 @@ struct Axis {
     Vec2 from, u, v;
     double length;
 
-    Axis(Vec2 a, Vec2 b) : from(a), u(glm::normalize(b - a)), v(-u.y, u.x), length(glm::length(b - a)) {}
+    Axis(Vec2 a, Vec2 b)
+        : from(a), u(glm::normalize(b - a)), v(-u.y, u.x), length(glm::length(b - a)) {}
     Key at(double along, double across, double width, double pace = 1, double rest = -1) const {
         const Vec2 p = from + along * u + across * v;
         return {p.x, p.y, width, pace, rest};
     }
 };
 
-void append(Stroke& s, std::initializer_list<Key> keys) { s.keys.insert(s.keys.end(), keys); }
+void append(Stroke& s, std::initializer_list<Key> keys) {
+    s.keys.insert(s.keys.end(), keys);
+}
 
 /// Ends a stroke that runs out to a point: the finest line up to the last key, then the
 /// tip is taken back over it while it lifts, so that it draws no drop beyond the end.
@@ -39,10 +42,8 @@ Stroke heng(Vec2 from, Vec2 to, double w, double bow) {
     const Axis l(from, to);
     const double n = l.length, b = -bow * n;
     Stroke s{"heng", {}};
-    append(s, {l.at(0.38 * w, -0.26 * w, 0, 0.5),
-               l.at(0.58 * w, -0.05 * w, 1.0 * w, 0.5, 0.02),
-               l.at(1.8 * w, 0.55 * b, 0.90 * w, 0.9),
-               l.at(0.5 * n, b, 0.78 * w, 1.1),
+    append(s, {l.at(0.38 * w, -0.26 * w, 0, 0.5), l.at(0.58 * w, -0.05 * w, 1.0 * w, 0.5, 0.02),
+               l.at(1.8 * w, 0.55 * b, 0.90 * w, 0.9), l.at(0.5 * n, b, 0.78 * w, 1.1),
                l.at(n - 2.1 * w, 0.65 * b, 0.80 * w, 0.9),
                l.at(n - 1.25 * w, 0.3 * b - 0.12 * w, 0.78 * w, 0.5, 0.02),
                l.at(n - 0.76 * w, 0.18 * w, 1.16 * w, 0.4, 0.03),
@@ -54,8 +55,7 @@ Stroke short_heng(Vec2 from, Vec2 to, double w) {
     const Axis l(from, to);
     const double n = l.length;
     Stroke s{"heng", {}};
-    append(s, {l.at(0.1 * w, -0.1 * w, 0, 0.6),
-               l.at(0.6 * w, 0.02 * w, 0.75 * w, 0.7),
+    append(s, {l.at(0.1 * w, -0.1 * w, 0, 0.6), l.at(0.6 * w, 0.02 * w, 0.75 * w, 0.7),
                l.at(0.5 * n, -0.02 * n, 0.80 * w, 1),
                l.at(n - 0.75 * w, 0.04 * w, 1.12 * w, 0.5, 0.03),
                l.at(n - 0.85 * w, 0.06 * w, 0, 0.5)});
@@ -66,8 +66,7 @@ namespace {
 
 /// The head of a 竖: a cut from the upper left, then straight down.
 void shu_head(Stroke& s, const Axis& l, double w) {
-    append(s, {l.at(0.32 * w, 0.26 * w, 0, 0.5),
-               l.at(0.60 * w, 0.0, 1.10 * w, 0.5, 0.02),
+    append(s, {l.at(0.32 * w, 0.26 * w, 0, 0.5), l.at(0.60 * w, 0.0, 1.10 * w, 0.5, 0.02),
                l.at(1.9 * w, 0.06 * w, 0.98 * w, 0.9)});
 }
 
@@ -80,8 +79,7 @@ Stroke shu_drop(Vec2 from, Vec2 to, double w, double bow) {
     shu_head(s, l, w);
     append(s, {l.at(0.5 * n, b + 0.03 * w, 0.88 * w, 1.1),
                l.at(n - 1.7 * w, 0.5 * b + 0.03 * w, 1.06 * w, 0.7),
-               l.at(n - 0.9 * w, 0.02 * w, 0.92 * w, 0.5),
-               l.at(n - 0.1 * w, -0.02 * w, 0, 0.6)});
+               l.at(n - 0.9 * w, 0.02 * w, 0.92 * w, 0.5), l.at(n - 0.1 * w, -0.02 * w, 0, 0.6)});
     return s;
 }
 
@@ -90,10 +88,8 @@ Stroke shu_needle(Vec2 from, Vec2 to, double w) {
     const double n = l.length;
     Stroke s{"shu", {}};
     shu_head(s, l, w);
-    append(s, {l.at(0.5 * n, 0.02 * w, 0.92 * w, 1.1),
-               l.at(0.76 * n, 0, 0.88 * w, 1.1),
-               l.at(0.91 * n, 0, 0.42 * w, 1.2),
-               l.at(0.985 * n, 0, 0.0, 1.4)});
+    append(s, {l.at(0.5 * n, 0.02 * w, 0.92 * w, 1.1), l.at(0.76 * n, 0, 0.88 * w, 1.1),
+               l.at(0.91 * n, 0, 0.42 * w, 1.2), l.at(0.985 * n, 0, 0.0, 1.4)});
     run_out(s, w);
     return s;
 }
@@ -129,19 +125,17 @@ Stroke shu_wan_gou(Vec2 from, Vec2 bend, Vec2 to, Vec2 hook, double w) {
     const double n = l.length;
     const Vec2 t = glm::normalize(to - bend);
     const double m = glm::length(to - bend);
-    const auto along = [&](double d, double down, double width, double pace, double rest = -1) -> Key {
+    const auto along = [&](double d, double down, double width, double pace,
+                           double rest = -1) -> Key {
         const Vec2 p = bend + d * t + Vec2(0, down);
         return {p.x, p.y, width, pace, rest};
     };
     Stroke s{"shu-wan-gou", {}};
     shu_head(s, l, w);
-    append(s, {l.at(0.5 * n, 0.02 * w, 0.84 * w, 1.05),
-               l.at(n - 2.0 * w, -0.02 * w, 0.74 * w, 0.9),
+    append(s, {l.at(0.5 * n, 0.02 * w, 0.84 * w, 1.05), l.at(n - 2.0 * w, -0.02 * w, 0.74 * w, 0.9),
                l.at(n - 1.0 * w, -0.13 * w, 0.70 * w, 0.7),
-               along(0.46 * w, -0.36 * w, 0.68 * w, 0.6),
-               along(1.35 * w, -0.04 * w, 0.70 * w, 0.7),
-               along(0.5 * m, 0.06 * w, 0.78 * w, 1),
-               along(m - 1.1 * w, 0.0, 0.98 * w, 0.7),
+               along(0.46 * w, -0.36 * w, 0.68 * w, 0.6), along(1.35 * w, -0.04 * w, 0.70 * w, 0.7),
+               along(0.5 * m, 0.06 * w, 0.78 * w, 1), along(m - 1.1 * w, 0.0, 0.98 * w, 0.7),
                along(m - 0.55 * w, -0.12 * w, 0.98 * w, 0.4, 0.03)});
     const Vec2 p{s.keys.back().x, s.keys.back().y}, h = hook - p;
     append(s, {{p.x + 0.40 * h.x + 0.1 * w, p.y + 0.36 * h.y, 0.62 * w, 0.8},
@@ -155,12 +149,9 @@ Stroke pie(Vec2 from, Vec2 to, double w, double sag) {
     const Axis l(from, to);
     const double n = l.length, b = -sag * n;
     Stroke s{"pie", {}};
-    append(s, {l.at(0.12 * w, 0.42 * w, 0, 0.5),
-               l.at(0.55 * w, 0.02 * w, 1.08 * w, 0.5, 0.02),
-               l.at(0.25 * n, 0.62 * b, 0.94 * w, 0.95),
-               l.at(0.5 * n, b, 0.85 * w, 1.05),
-               l.at(0.74 * n, 0.88 * b, 0.66 * w, 1.1),
-               l.at(0.90 * n, 0.46 * b, 0.36 * w, 1.2),
+    append(s, {l.at(0.12 * w, 0.42 * w, 0, 0.5), l.at(0.55 * w, 0.02 * w, 1.08 * w, 0.5, 0.02),
+               l.at(0.25 * n, 0.62 * b, 0.94 * w, 0.95), l.at(0.5 * n, b, 0.85 * w, 1.05),
+               l.at(0.74 * n, 0.88 * b, 0.66 * w, 1.1), l.at(0.90 * n, 0.46 * b, 0.36 * w, 1.2),
                l.at(0.985 * n, 0.06 * b, 0.0, 1.4)});
     run_out(s, w);
     return s;
@@ -171,10 +162,8 @@ Stroke na(Vec2 from, Vec2 foot, Vec2 to, double w) {
     const double n = l.length;
     const Vec2 t = to - foot;
     Stroke s{"na", {}};
-    append(s, {l.at(0, 0, 0, 0.6),
-               l.at(0.08 * n, 0.02 * n, 0.26 * w, 0.8),
-               l.at(0.38 * n, 0.07 * n, 0.48 * w, 1),
-               l.at(0.72 * n, 0.055 * n, 0.80 * w, 0.9),
+    append(s, {l.at(0, 0, 0, 0.6), l.at(0.08 * n, 0.02 * n, 0.26 * w, 0.8),
+               l.at(0.38 * n, 0.07 * n, 0.48 * w, 1), l.at(0.72 * n, 0.055 * n, 0.80 * w, 0.9),
                l.at(0.97 * n, 0, 1.06 * w, 0.45, 0.04)});
     append(s, {{foot.x + 0.34 * t.x, foot.y + 0.30 * t.y, 0.80 * w, 0.6},
                {foot.x + 0.66 * t.x, foot.y + 0.62 * t.y, 0.44 * w, 0.85},
@@ -187,10 +176,9 @@ Stroke dian(Vec2 from, Vec2 to, double w) {
     const Axis l(from, to);
     const double n = l.length;
     Stroke s{"dian", {}};
-    append(s, {l.at(0, 0, 0, 0.6),
-               l.at(0.45 * n, -0.05 * n, 0.72 * w, 0.7),
-               l.at(n - 0.5 * w, 0.0, 1.12 * w, 0.45, 0.03),
-               l.at(n - 0.62 * w, 0.06 * w, 0.0, 0.5)});
+    append(s,
+           {l.at(0, 0, 0, 0.6), l.at(0.45 * n, -0.05 * n, 0.72 * w, 0.7),
+            l.at(n - 0.5 * w, 0.0, 1.12 * w, 0.45, 0.03), l.at(n - 0.62 * w, 0.06 * w, 0.0, 0.5)});
     return s;
 }
 
@@ -198,10 +186,8 @@ Stroke dian_pie(Vec2 from, Vec2 to, double w) {
     const Axis l(from, to);
     const double n = l.length;
     Stroke s{"pie-dian", {}};
-    append(s, {l.at(0.12 * w, 0.4 * w, 0, 0.5),
-               l.at(0.55 * w, 0.0, 1.05 * w, 0.5, 0.02),
-               l.at(0.5 * n, -0.06 * n, 0.82 * w, 1),
-               l.at(0.8 * n, -0.03 * n, 0.42 * w, 1.1),
+    append(s, {l.at(0.12 * w, 0.4 * w, 0, 0.5), l.at(0.55 * w, 0.0, 1.05 * w, 0.5, 0.02),
+               l.at(0.5 * n, -0.06 * n, 0.82 * w, 1), l.at(0.8 * n, -0.03 * n, 0.42 * w, 1.1),
                l.at(n, 0, 0, 1.3)});
     run_out(s, w);
     return s;
@@ -211,10 +197,8 @@ Stroke ti(Vec2 from, Vec2 to, double w) {
     const Axis l(from, to);
     const double n = l.length;
     Stroke s{"ti", {}};
-    append(s, {l.at(0.25 * w, -0.40 * w, 0, 0.5),
-               l.at(0.52 * w, 0.05 * w, 1.05 * w, 0.5, 0.03),
-               l.at(0.42 * n, 0.03 * n, 0.72 * w, 0.9),
-               l.at(0.75 * n, 0.01 * n, 0.34 * w, 1.2),
+    append(s, {l.at(0.25 * w, -0.40 * w, 0, 0.5), l.at(0.52 * w, 0.05 * w, 1.05 * w, 0.5, 0.03),
+               l.at(0.42 * n, 0.03 * n, 0.72 * w, 0.9), l.at(0.75 * n, 0.01 * n, 0.34 * w, 1.2),
                l.at(n, 0, 0, 1.4)});
     run_out(s, w);
     return s;
@@ -225,10 +209,8 @@ namespace {
 /// The way across and the shoulder of a 折.
 void zhe_head(Stroke& s, const Axis& l, double w) {
     const double n = l.length;
-    append(s, {l.at(0.2 * w, -0.20 * w, 0, 0.5),
-               l.at(0.5 * w, 0.0, 0.88 * w, 0.5, 0.01),
-               l.at(1.4 * w, -0.005 * n, 0.82 * w, 0.9),
-               l.at(0.55 * n, -0.02 * n, 0.72 * w, 1),
+    append(s, {l.at(0.2 * w, -0.20 * w, 0, 0.5), l.at(0.5 * w, 0.0, 0.88 * w, 0.5, 0.01),
+               l.at(1.4 * w, -0.005 * n, 0.82 * w, 0.9), l.at(0.55 * n, -0.02 * n, 0.72 * w, 1),
                l.at(n - 1.3 * w, -0.012 * n, 0.76 * w, 0.8),
                l.at(n - 0.72 * w, -0.10 * w, 0.70 * w, 0.45, 0.02),
                l.at(n - 0.46 * w, 0.24 * w, 1.12 * w, 0.4, 0.02)});
@@ -241,10 +223,8 @@ Stroke heng_zhe(Vec2 from, Vec2 corner, Vec2 to, double w) {
     const double m = d.length;
     Stroke s{"heng-zhe", {}};
     zhe_head(s, l, w);
-    append(s, {d.at(1.6 * w, 0, 1.0 * w, 0.8),
-               d.at(0.6 * m, 0, 0.94 * w, 1),
-               d.at(m - 0.6 * w, 0, 1.02 * w, 0.6, 0.02),
-               d.at(m - 0.7 * w, 0, 0, 0.5)});
+    append(s, {d.at(1.6 * w, 0, 1.0 * w, 0.8), d.at(0.6 * m, 0, 0.94 * w, 1),
+               d.at(m - 0.6 * w, 0, 1.02 * w, 0.6, 0.02), d.at(m - 0.7 * w, 0, 0, 0.5)});
     return s;
 }
 
@@ -253,10 +233,8 @@ Stroke heng_pie(Vec2 from, Vec2 corner, Vec2 to, double w) {
     const double m = d.length;
     Stroke s{"heng-pie", {}};
     zhe_head(s, l, w);
-    append(s, {d.at(0.28 * m, -0.075 * m, 0.92 * w, 0.9),
-               d.at(0.55 * m, -0.11 * m, 0.78 * w, 1.05),
-               d.at(0.80 * m, -0.075 * m, 0.50 * w, 1.15),
-               d.at(0.98 * m, 0.0, 0.0, 1.4)});
+    append(s, {d.at(0.28 * m, -0.075 * m, 0.92 * w, 0.9), d.at(0.55 * m, -0.11 * m, 0.78 * w, 1.05),
+               d.at(0.80 * m, -0.075 * m, 0.50 * w, 1.15), d.at(0.98 * m, 0.0, 0.0, 1.4)});
     run_out(s, w);
     return s;
 }

@@ -26,7 +26,8 @@ struct Rim {
     double unrolled = kRadius / std::cos(kSlope);
     Key at(double s, double t, double width, double pace = 1, double rest = -1) const {
         const double a = s / unrolled;
-        return {(unrolled + t) * std::sin(a), unrolled - (unrolled + t) * std::cos(a), width, pace, rest};
+        return {(unrolled + t) * std::sin(a), unrolled - (unrolled + t) * std::cos(a), width, pace,
+                rest};
     }
 };
 
@@ -38,10 +39,10 @@ struct Hand {
 };
 
 struct Leaf {
-    double s = 0, t = 0;    ///< foot, mm
-    double turn = 0;        ///< radians from +s towards +t
+    double s = 0, t = 0;  ///< foot, mm
+    double turn = 0;      ///< radians from +s towards +t
     double length = 10, width = 3;
-    double bend = 0.15;     ///< of the length, to the left
+    double bend = 0.15;  ///< of the length, to the left
 };
 
 Stroke draw(const Leaf& l, const Rim& rim) {
@@ -70,13 +71,15 @@ Stroke stem(const std::vector<Vec2>& points, double width, const Rim& rim) {
 
 /// A round berry: pressed and lifted where it stands.
 Stroke berry(Vec2 p, double width, const Rim& rim) {
-    return {"berry", {rim.at(p.x - 0.7 * width, p.y, 0, 0.4), rim.at(p.x, p.y, width, 0.4, 0.06),
-                      rim.at(p.x - 0.1 * width, p.y, 0, 0.4)}};
+    return {"berry",
+            {rim.at(p.x - 0.7 * width, p.y, 0, 0.4), rim.at(p.x, p.y, width, 0.4, 0.06),
+             rim.at(p.x - 0.1 * width, p.y, 0, 0.4)}};
 }
 
 /// Half a wave: the stem's hollow with its spray, and the leaf on its back. `side` is +1
 /// where the stem runs on the outer half.
-void half_wave(std::vector<Stroke>& out, double s0, double half, double side, const Rim& rim, Hand& hand) {
+void half_wave(std::vector<Stroke>& out, double s0, double half, double side, const Rim& rim,
+               Hand& hand) {
     const double rise = 6.5;
     const auto wave = [&](double x) { return side * rise * std::sin(pi * x); };
     std::vector<Vec2> main;
@@ -87,35 +90,51 @@ void half_wave(std::vector<Stroke>& out, double s0, double half, double side, co
     // A side shoot curls back into the hollow and ends in a spray of three.
     const double x0 = s0 + 0.08 * half;
     const Vec2 end{s0 + hand.vary(0.56, 0.03) * half, side * hand.vary(-5.2, 0.06)};
-    out.push_back(stem({{x0, wave(0.08)}, {s0 + 0.22 * half, side * 1.0}, {s0 + 0.38 * half, side * -2.6}, end},
-                       0.95, rim));
+    out.push_back(stem(
+        {{x0, wave(0.08)}, {s0 + 0.22 * half, side * 1.0}, {s0 + 0.38 * half, side * -2.6}, end},
+        0.95, rim));
     const double along = side * -0.25;
     const double turns[] = {0.0, 0.75, -0.75};
     const double lengths[] = {15.0, 11.5, 11.0};
     for (int k = 0; k < 3; ++k)
-        out.push_back(draw({.s = end.x - 2.0, .t = end.y + side * 0.9,
+        out.push_back(draw({.s = end.x - 2.0,
+                            .t = end.y + side * 0.9,
                             .turn = along + turns[k] + hand.shift(0.08),
-                            .length = hand.vary(lengths[k], 0.06), .width = hand.vary(k ? 3.0 : 3.7, 0.06),
-                            .bend = turns[k] > 0 ? -0.16 : turns[k] < 0 ? 0.16 : 0.10 * side}, rim));
+                            .length = hand.vary(lengths[k], 0.06),
+                            .width = hand.vary(k ? 3.0 : 3.7, 0.06),
+                            .bend = turns[k] > 0   ? -0.16
+                                    : turns[k] < 0 ? 0.16
+                                                   : 0.10 * side},
+                           rim));
     // Two leaves on the outer side of the wave, one before the crest and one behind.
     for (const double x : {0.30, 0.62}) {
         const double slope = std::atan2(side * rise * pi * std::cos(pi * x), half);
-        out.push_back(draw({.s = s0 + x * half, .t = wave(x) + side * 0.4,
+        out.push_back(draw({.s = s0 + x * half,
+                            .t = wave(x) + side * 0.4,
                             .turn = slope + side * (0.75 + hand.shift(0.08)),
-                            .length = hand.vary(x < 0.5 ? 10.0 : 11.5, 0.06), .width = hand.vary(3.0, 0.06),
-                            .bend = -0.16 * side}, rim));
+                            .length = hand.vary(x < 0.5 ? 10.0 : 11.5, 0.06),
+                            .width = hand.vary(3.0, 0.06),
+                            .bend = -0.16 * side},
+                           rim));
     }
     // One under the shoot's start.
-    out.push_back(draw({.s = s0 + 0.22 * half, .t = side * 0.6, .turn = side * (-1.25 + hand.shift(0.1)),
-                        .length = hand.vary(8.0, 0.08), .width = hand.vary(2.7, 0.06), .bend = 0.16 * side}, rim));
-    out.push_back(berry({s0 + 0.93 * half, side * hand.vary(6.6, 0.05)}, hand.vary(2.3, 0.08), rim));
+    out.push_back(draw({.s = s0 + 0.22 * half,
+                        .t = side * 0.6,
+                        .turn = side * (-1.25 + hand.shift(0.1)),
+                        .length = hand.vary(8.0, 0.08),
+                        .width = hand.vary(2.7, 0.06),
+                        .bend = 0.16 * side},
+                       rim));
+    out.push_back(
+        berry({s0 + 0.93 * half, side * hand.vary(6.6, 0.05)}, hand.vary(2.3, 0.08), rim));
 }
 
 }  // namespace
 
 std::vector<stroke::Trace> plate_ornament() {
     const WidthTable table(brush::load_preset(kBrush));
-    const WriteOptions options{.size = 1.0, .centre = {0, 0}, .speed = 0.05};  // keys are millimetres
+    const WriteOptions options{
+        .size = 1.0, .centre = {0, 0}, .speed = 0.05};  // keys are millimetres
     const Rim rim;
     const double period = 2 * pi * rim.unrolled * std::cos(kSlope) / kPeriods;
     std::vector<stroke::Trace> out;

@@ -41,7 +41,7 @@ struct Draft {
     Trace trace;
     bool has_time = false, has_pressure = false, pressure_ranged = true;
     double sample_rate = 0;
-    double duration = 0;     ///< seconds, 0 unknown
+    double duration = 0;  ///< seconds, 0 unknown
     long line = 0;
 };
 
@@ -59,7 +59,8 @@ std::string id_of(const xml_node& node) {
 std::string text_of(const xml_node& node) {
     std::string text;
     for (const xml_node& child : node.children())
-        if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) text += child.value();
+        if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
+            text += child.value();
     return text;
 }
 
@@ -110,7 +111,8 @@ class Reader {
 
   private:
     long line_at(std::ptrdiff_t offset) const {
-        const auto n = std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
+        const auto n =
+            std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
         return 1 + static_cast<long>(std::count(text_.begin(), text_.begin() + n, '\n'));
     }
     [[noreturn]] void fail(const xml_node& node, const std::string& what) const {
@@ -166,11 +168,13 @@ class Reader {
                     if (local_name(channel) == "channel")
                         (name[0] == 'r' ? regular : intermittent).push_back(channel_of(channel));
         }
-        if (regular.size() + intermittent.size() > 1000) fail(node, "a trace format has over 1000 channels");
+        if (regular.size() + intermittent.size() > 1000)
+            fail(node, "a trace format has over 1000 channels");
         InkmlFormat f{std::move(regular), 0};
         f.n_regular = f.channels.size();
         f.channels.insert(f.channels.end(), intermittent.begin(), intermittent.end());
-        if (f.find("X") < 0 || f.find("Y") < 0) fail(node, "a trace format has no X and Y channels");
+        if (f.find("X") < 0 || f.find("Y") < 0)
+            fail(node, "a trace format has no X and Y channels");
         return f;
     }
 
@@ -184,13 +188,16 @@ class Reader {
         const double hi = has_range ? number_of(node, "max") : 1;
         if (c.name == "X" || c.name == "Y" || c.name == "Z") {
             c.scale = length_unit(unit).value_or(options_.metres_per_unit);
-            if (std::string_view(node.attribute("orientation").value()) == "-ve") c.scale = -c.scale;
+            if (std::string_view(node.attribute("orientation").value()) == "-ve")
+                c.scale = -c.scale;
         } else if (c.name == "T") {
             c.scale = unit == "s" ? 1 : unit == "us" ? 1e-6 : 1e-3;
         } else if (c.name == "P" || (c.name == "F" && (has_range || unit == "dev"))) {
             c.ranged = has_range || unit == "%";
-            if (unit == "%") c.scale = 0.01;
-            else if (has_range && hi > lo) c.offset = lo, c.scale = 1 / (hi - lo);
+            if (unit == "%")
+                c.scale = 0.01;
+            else if (has_range && hi > lo)
+                c.offset = lo, c.scale = 1 / (hi - lo);
         } else if (c.name == "F") {
             c.scale = (unit == "mN" ? 1e-3 : 1.0) / options_.full_force;
         } else if (c.name == "OTx" || c.name == "OTy" || c.name == "OA" || c.name == "OE") {
@@ -211,10 +218,12 @@ class Reader {
             if (name == "traceFormat") state.format = format_of(child);
             if (name == "sampleRate") state.sample_rate = number_of(child, "value");
         }
-        if (const xml_node format = referred(node, "traceFormatRef")) state.format = format_of(format);
+        if (const xml_node format = referred(node, "traceFormatRef"))
+            state.format = format_of(format);
         for (const xml_node& child : node.children())
             if (local_name(child) == "channelProperties")
-                for (const xml_node& property : child.children()) apply_property(state, property, node);
+                for (const xml_node& property : child.children())
+                    apply_property(state, property, node);
     }
 
     /// `resolution` in 1/length counts the channel's integers per length.
@@ -240,9 +249,11 @@ class Reader {
 
     void apply_context(State& state, const xml_node& node, int depth) const {
         if (depth > kMaxNesting) fail(node, "contexts refer to each other in a circle");
-        if (const xml_node base = referred(node, "contextRef")) apply_context(state, base, depth + 1);
+        if (const xml_node base = referred(node, "contextRef"))
+            apply_context(state, base, depth + 1);
         if (const xml_node source = referred(node, "inkSourceRef")) apply_source(state, source);
-        if (const xml_node format = referred(node, "traceFormatRef")) state.format = format_of(format);
+        if (const xml_node format = referred(node, "traceFormatRef"))
+            state.format = format_of(format);
         if (const xml_node brush = referred(node, "brushRef")) apply_brush(state, brush, depth + 1);
         for (const xml_node& child : node.children()) {
             const auto name = local_name(child);
@@ -271,7 +282,8 @@ class Reader {
             text.remove_prefix(static_cast<std::size_t>(end - text.data()));
         }
         if (!trimmed(text).empty() && trimmed(text) != "mm")
-            fail(node, std::string(node.attribute("type").value()) + " needs three numbers, millimetres");
+            fail(node,
+                 std::string(node.attribute("type").value()) + " needs three numbers, millimetres");
         return {v[0], v[1], v[2]};
     }
 
@@ -283,18 +295,25 @@ class Reader {
             type.remove_prefix(5);
             const std::string whole = text_of(node);
             const std::string_view text = trimmed(whole);
-            if (type == "brush") marks.brush = text;
-            else if (type == "ink") marks.ink = text;
-            else if (type == "label") marks.label = text;
+            if (type == "brush")
+                marks.brush = text;
+            else if (type == "ink")
+                marks.ink = text;
+            else if (type == "label")
+                marks.label = text;
             else if (type == "origin") {
                 marks.placement.origin = kMillimetre * vector_of(node, text);
                 marks.placed = true;
-            }
-            else if (type == "right") marks.placement.right = direction_of(node, text);
-            else if (type == "down") marks.placement.down = direction_of(node, text);
-            else if (type == "laying" && text == "wrap") marks.placement.laying = stroke::Laying::wrap;
-            else if (type == "laying" && text == "project") marks.placement.laying = stroke::Laying::project;
-            else if (type == "laying") fail(node, "tuft:laying is neither wrap nor project");
+            } else if (type == "right")
+                marks.placement.right = direction_of(node, text);
+            else if (type == "down")
+                marks.placement.down = direction_of(node, text);
+            else if (type == "laying" && text == "wrap")
+                marks.placement.laying = stroke::Laying::wrap;
+            else if (type == "laying" && text == "project")
+                marks.placement.laying = stroke::Laying::project;
+            else if (type == "laying")
+                fail(node, "tuft:laying is neither wrap nor project");
             else if (type == "seed") {
                 const auto [end, error] =
                     std::from_chars(text.data(), text.data() + text.size(), marks.seed);
@@ -322,7 +341,8 @@ class Reader {
                 add_trace(node, state);
             } else if (name == "traceGroup") {
                 State inner = state;
-                if (const xml_node context = referred(node, "contextRef")) apply_context(inner, context, 0);
+                if (const xml_node context = referred(node, "contextRef"))
+                    apply_context(inner, context, 0);
                 if (const xml_node brush = referred(node, "brushRef")) apply_brush(inner, brush, 0);
                 walk(node, inner, depth + 1);
             } else if (name == "context") {
@@ -347,18 +367,20 @@ class Reader {
 
         const xml_node first = node.first_child();
         const long line = line_at((first ? first : node).offset_debug());
-        const InkmlRows rows =
-            decode_inkml(text_of(node), state.format, options_.max_samples - n_samples_, source_, line);
+        const InkmlRows rows = decode_inkml(text_of(node), state.format,
+                                            options_.max_samples - n_samples_, source_, line);
         if (rows.n_rows() == 0) return;
         n_samples_ += rows.n_rows();
 
         Draft draft = draft_of(rows, state, line);
-        if (const auto x = to_number(node.attribute("duration").value())) draft.duration = 1e-3 * *x;
+        if (const auto x = to_number(node.attribute("duration").value()))
+            draft.duration = 1e-3 * *x;
         const std::string_view continuation = node.attribute("continuation").value();
         const std::string_view prior = node.attribute("priorRef").value();
         if (continuation == "middle" || continuation == "end") {
             const auto it = by_id_.find(std::string(prior.substr(prior.rfind('#') + 1)));
-            if (it == by_id_.end()) fail(node, "a continued trace does not say which one it continues");
+            if (it == by_id_.end())
+                fail(node, "a continued trace does not say which one it continues");
             Draft& start = drafts_[it->second];
             start.trace.samples.insert(start.trace.samples.end(), draft.trace.samples.begin(),
                                        draft.trace.samples.end());
@@ -399,8 +421,9 @@ class Reader {
             s.position = {get(x), get(y), get(z)};
             for (int k = 0; k < 3; ++k)
                 if (std::abs(s.position[k]) > options_.max_extent)
-                    throw Error(source_, line, "a coordinate lies " + std::to_string(std::abs(s.position[k])) +
-                                                   " m away; declare the unit of X and Y");
+                    throw Error(source_, line,
+                                "a coordinate lies " + std::to_string(std::abs(s.position[k])) +
+                                    " m away; declare the unit of X and Y");
             s.time = get(t);
             s.pressure = get(p);
             s.tilt = {get(tx), get(ty)};
@@ -409,10 +432,12 @@ class Reader {
                 s.tilt = {std::atan(std::tan(lean) * std::cos(get(oa))),
                           std::atan(std::tan(lean) * std::sin(get(oa)))};
             }
-            for (int k = 0; k < 2; ++k) s.tilt[k] = std::clamp(s.tilt[k], -85 * kDegree, 85 * kDegree);
+            for (int k = 0; k < 2; ++k)
+                s.tilt[k] = std::clamp(s.tilt[k], -85 * kDegree, 85 * kDegree);
             if (turned) {
                 s.rotation = Quat(get(q[0]), get(q[1]), get(q[2]), get(q[3]));
-                if (!(glm::length(s.rotation) > 1e-6)) throw Error(source_, line, "a rotation is zero");
+                if (!(glm::length(s.rotation) > 1e-6))
+                    throw Error(source_, line, "a rotation is zero");
                 s.rotation = glm::normalize(s.rotation);
             } else if (!d.trace.flat) {
                 const Vec3 up = glm::normalize(Vec3(std::tan(s.tilt.x), std::tan(s.tilt.y), 1));
@@ -430,7 +455,8 @@ class Reader {
         double largest = 1;  // of pressures without a range
         for (const Draft& d : drafts_)
             if (!d.pressure_ranged)
-                for (const TraceSample& s : d.trace.samples) largest = std::max(largest, s.pressure);
+                for (const TraceSample& s : d.trace.samples)
+                    largest = std::max(largest, s.pressure);
         for (Draft& d : drafts_) {
             auto& samples = d.trace.samples;
             for (TraceSample& s : samples)
@@ -461,8 +487,10 @@ class Reader {
         for (std::size_t i = 0; i < samples.size(); ++i) {
             if (i > 0) length += glm::length(samples[i].position - samples[i - 1].position);
             double t = length / options_.pen_speed;
-            if (d.has_time) t = samples[i].time - start;
-            else if (d.sample_rate > 0) t = static_cast<double>(i) / d.sample_rate;
+            if (d.has_time)
+                t = samples[i].time - start;
+            else if (d.sample_rate > 0)
+                t = static_cast<double>(i) / d.sample_rate;
             else if (d.duration > 0 && samples.size() > 1)
                 t = d.duration * static_cast<double>(i) / static_cast<double>(samples.size() - 1);
             samples[i].time = last = std::max(t, last);

@@ -12,12 +12,14 @@
 namespace tuft::io {
 
 struct InkmlOptions {
-    double metres_per_unit = 1e-3;    ///< of X, Y, Z where the file declares neither unit nor resolution
-    double flat_width = 0;            ///< metres: scales all flat traces together to this width; 0: as written
-    double full_force = 1;            ///< newtons of F that count as pressure 1 where no maximum is declared
-    double pen_speed = 0.06;          ///< m/s, for traces without a time channel or sample rate
-    double flat_pressure = 0.5;       ///< middle of the default pressure, for traces without P and F
-    double max_extent = 1000;         ///< metres; coordinates beyond are refused
+    double metres_per_unit =
+        1e-3;  ///< of X, Y, Z where the file declares neither unit nor resolution
+    double flat_width =
+        0;  ///< metres: scales all flat traces together to this width; 0: as written
+    double full_force = 1;  ///< newtons of F that count as pressure 1 where no maximum is declared
+    double pen_speed = 0.06;     ///< m/s, for traces without a time channel or sample rate
+    double flat_pressure = 0.5;  ///< middle of the default pressure, for traces without P and F
+    double max_extent = 1000;    ///< metres; coordinates beyond are refused
     std::size_t max_bytes = std::size_t{1} << 30;
     std::size_t max_samples = 10'000'000;
 };

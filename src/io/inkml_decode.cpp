@@ -25,7 +25,11 @@ class Decoder {
   public:
     Decoder(std::string_view text, const InkmlFormat& format, std::size_t max_rows,
             const std::string& source, long line)
-        : text_(text), format_(format), max_rows_(max_rows), source_(source), line_(line),
+        : text_(text),
+          format_(format),
+          max_rows_(max_rows),
+          source_(source),
+          line_(line),
           history_(format.channels.size()) {}
 
     InkmlRows run() {
@@ -48,8 +52,10 @@ class Decoder {
     void skip_space() {
         for (; at_ < text_.size(); ++at_) {
             const char c = text_[at_];
-            if (c == '\n') ++line_;
-            else if (c != ' ' && c != '\t' && c != '\r') return;
+            if (c == '\n')
+                ++line_;
+            else if (c != ' ' && c != '\t' && c != '\r')
+                return;
         }
     }
 
@@ -57,7 +63,8 @@ class Decoder {
         std::size_t n = 0;
         for (skip_space(); at_ < text_.size() && peek() != ','; skip_space(), ++n) {
             if (n == format_.channels.size())
-                fail("a point has more than the " + std::to_string(n) + " values of its trace format");
+                fail("a point has more than the " + std::to_string(n) +
+                     " values of its trace format");
             value(history_[n]);
         }
         if (n < format_.n_regular)
@@ -66,8 +73,10 @@ class Decoder {
         for (std::size_t k = 0; k < history_.size(); ++k) {
             const InkmlChannel& channel = format_.channels[k];
             const History& h = history_[k];
-            const double si = h.reported ? (h.value - channel.offset) * channel.scale : channel.fallback;
-            if (!std::isfinite(si)) fail("channel " + channel.name + " has a value that is not finite");
+            const double si =
+                h.reported ? (h.value - channel.offset) * channel.scale : channel.fallback;
+            if (!std::isfinite(si))
+                fail("channel " + channel.name + " has a value that is not finite");
             rows.values.push_back(si);
         }
     }
@@ -81,11 +90,23 @@ class Decoder {
             skip_space();
         }
         switch (peek()) {
-            case '*': ++at_; carry_on(h); return;
-            case '?': ++at_; return;
-            case 'T': ++at_; set(h, 1); return;
-            case 'F': ++at_; set(h, 0); return;
-            default: set(h, number());
+            case '*':
+                ++at_;
+                carry_on(h);
+                return;
+            case '?':
+                ++at_;
+                return;
+            case 'T':
+                ++at_;
+                set(h, 1);
+                return;
+            case 'F':
+                ++at_;
+                set(h, 0);
+                return;
+            default:
+                set(h, number());
         }
     }
 

@@ -9,10 +9,10 @@ namespace tuft::io {
 
 struct InkmlChannel {
     std::string name;
-    double scale = 1;        ///< to SI; to 0–1 for P
-    double offset = 0;       ///< subtracted before scaling, in the file's unit
-    double fallback = 0;     ///< SI, where an intermittent channel has not been reported yet
-    bool ranged = true;      ///< P and F: the range is known, `scale` brings it to 0–1
+    double scale = 1;     ///< to SI; to 0–1 for P
+    double offset = 0;    ///< subtracted before scaling, in the file's unit
+    double fallback = 0;  ///< SI, where an intermittent channel has not been reported yet
+    bool ranged = true;   ///< P and F: the range is known, `scale` brings it to 0–1
 };
 
 struct InkmlFormat {
@@ -26,7 +26,7 @@ struct InkmlFormat {
 /// Numbers of a trace, row by row.
 struct InkmlRows {
     std::size_t n_channels = 0;
-    std::vector<double> values;          ///< [n_rows * n_channels], SI
+    std::vector<double> values;  ///< [n_rows * n_channels], SI
 
     std::size_t n_rows() const { return n_channels ? values.size() / n_channels : 0; }
     double at(std::size_t row, int channel) const { return values[row * n_channels + channel]; }

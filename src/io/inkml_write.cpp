@@ -29,10 +29,14 @@ constexpr const char* name_of(Kind kind) {
 std::string escaped(const std::string& text) {
     std::string out;
     for (const char c : text) {
-        if (c == '&') out += "&amp;";
-        else if (c == '<') out += "&lt;";
-        else if (c == '>') out += "&gt;";
-        else out += c;
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else
+            out += c;
     }
     return out;
 }
@@ -48,9 +52,11 @@ void add_number(std::string& out, double x, int decimals) {
     if (std::string_view(out).substr(start) == "-0") out.replace(start, 2, "0");
 }
 
-void add_annotation(std::string& out, const char* indent, const char* type, const std::string& text) {
+void add_annotation(std::string& out, const char* indent, const char* type,
+                    const std::string& text) {
     if (!text.empty())
-        out += fmt::format("{}<annotation type=\"tuft:{}\">{}</annotation>\n", indent, type, escaped(text));
+        out += fmt::format("{}<annotation type=\"tuft:{}\">{}</annotation>\n", indent, type,
+                           escaped(text));
 }
 
 std::string vector_text(const Vec3& v, int decimals) {
@@ -84,8 +90,9 @@ void add_format(std::string& out, Kind kind) {
     }
     if (kind == Kind::space)
         for (const char* name : {"QW", "QX", "QY", "QZ"}) channel(name, "");
-    out += fmt::format("    </traceFormat>\n    <context xml:id=\"{0}\" traceFormatRef=\"#{0}-format\"/>\n",
-                       name_of(kind));
+    out += fmt::format(
+        "    </traceFormat>\n    <context xml:id=\"{0}\" traceFormatRef=\"#{0}-format\"/>\n",
+        name_of(kind));
 }
 
 void add_trace(std::string& out, const Trace& trace, Kind kind) {
@@ -124,12 +131,15 @@ void add_trace(std::string& out, const Trace& trace, Kind kind) {
 }  // namespace
 
 std::string inkml_text(std::span<const Trace> traces, const std::string& title) {
-    std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                      "<ink xmlns=\"http://www.w3.org/2003/InkML\">\n";
-    if (!title.empty()) out += fmt::format("  <annotation type=\"title\">{}</annotation>\n", escaped(title));
+    std::string out =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<ink xmlns=\"http://www.w3.org/2003/InkML\">\n";
+    if (!title.empty())
+        out += fmt::format("  <annotation type=\"title\">{}</annotation>\n", escaped(title));
     out += "  <definitions>\n";
     for (const Kind kind : {Kind::flat, Kind::leaned, Kind::space})
-        if (std::any_of(traces.begin(), traces.end(), [&](const Trace& t) { return kind_of(t) == kind; }))
+        if (std::any_of(traces.begin(), traces.end(),
+                        [&](const Trace& t) { return kind_of(t) == kind; }))
             add_format(out, kind);
     out += "  </definitions>\n";
     for (std::size_t i = 0; i < traces.size();) {
@@ -138,7 +148,8 @@ std::string inkml_text(std::span<const Trace> traces, const std::string& title) 
         add_annotation(out, "    ", "brush", first.brush);
         add_annotation(out, "    ", "ink", first.ink);
         if (first.flat) {
-            add_annotation(out, "    ", "origin", vector_text(first.placement.origin / kMillimetre, 7));
+            add_annotation(out, "    ", "origin",
+                           vector_text(first.placement.origin / kMillimetre, 7));
             add_annotation(out, "    ", "right", vector_text(first.placement.right, 10));
             add_annotation(out, "    ", "down", vector_text(first.placement.down, 10));
             add_annotation(out, "    ", "laying",

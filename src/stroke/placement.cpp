@@ -24,7 +24,8 @@ struct Corners {
 };
 
 Corners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
-    Corners c{{mesh.position(triangle, 0), mesh.position(triangle, 1), mesh.position(triangle, 2)}, {}};
+    Corners c{{mesh.position(triangle, 0), mesh.position(triangle, 1), mesh.position(triangle, 2)},
+              {}};
     c.normal = glm::normalize(glm::cross(c.p[1] - c.p[0], c.p[2] - c.p[0]));
     return c;
 }
@@ -222,8 +223,8 @@ struct Ground {
 };
 
 std::vector<Ground> level_out(std::span<const LaidSample> samples, double steady) {
-    constexpr std::size_t kMost = 64;       // samples looked at to each side
-    constexpr double kNear = 0.5;           // radians: normals further off belong to a groove's wall
+    constexpr std::size_t kMost = 64;  // samples looked at to each side
+    constexpr double kNear = 0.5;      // radians: normals further off belong to a groove's wall
     std::vector<double> along(samples.size(), 0);
     for (std::size_t i = 1; i < samples.size(); ++i)
         along[i] = along[i - 1] + glm::length(samples[i].position - samples[i - 1].position);
@@ -250,7 +251,8 @@ std::vector<Ground> level_out(std::span<const LaidSample> samples, double steady
                 const Vec3 axis = glm::normalize(mean);
                 mean = Vec3(0);
                 for (const std::size_t j : window) {
-                    const double off = std::acos(std::clamp(glm::dot(axis, samples[j].normal), -1.0, 1.0));
+                    const double off =
+                        std::acos(std::clamp(glm::dot(axis, samples[j].normal), -1.0, 1.0));
                     mean += std::max(0.0, 1 - off * off / (kNear * kNear)) * samples[j].normal;
                 }
             }
@@ -258,7 +260,8 @@ std::vector<Ground> level_out(std::span<const LaidSample> samples, double steady
             heights.clear();
             for (const std::size_t j : window)
                 heights.push_back(glm::dot(samples[j].position - samples[i].position, g.normal));
-            std::nth_element(heights.begin(), heights.begin() + std::ptrdiff_t(heights.size() / 2), heights.end());
+            std::nth_element(heights.begin(), heights.begin() + std::ptrdiff_t(heights.size() / 2),
+                             heights.end());
             g.height = heights[heights.size() / 2];
         }
         grounds.push_back(g);
@@ -331,7 +334,9 @@ LaidTrace lay(const mesh::SurfaceQuery& query, const Trace& trace) {
                                                   : lay_projected(query, trace);
 }
 
-double working_depth(const brush::Preset& preset) { return 0.5 * preset.length; }
+double working_depth(const brush::Preset& preset) {
+    return 0.5 * preset.length;
+}
 
 HoldOptions hold_options(const brush::Preset& preset) {
     return {.tuft_length = preset.length,
@@ -389,8 +394,7 @@ std::vector<brush::Pose> hold(std::span<const LaidSample> samples, const HoldOpt
         const Vec2 tilt = lean > 0 ? s.tilt * (lean / glm::length(s.tilt)) : Vec2{0};
         const Vec3 up = glm::normalize(ground.normal + std::tan(tilt.x) * axes.right +
                                        std::tan(tilt.y) * axes.down);
-        const double depth =
-            s.pressure > 0 ? s.pressure * options.working_depth : -options.hover;
+        const double depth = s.pressure > 0 ? s.pressure * options.working_depth : -options.hover;
         const Vec3 x = into_plane(axes.right, up);
         brush::Pose pose;
         pose.position =
@@ -410,7 +414,8 @@ std::vector<brush::Pose> spatial_poses(const Trace& trace) {
     return poses;
 }
 
-HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HoldOptions& options) {
+HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace,
+                   const HoldOptions& options) {
     if (!trace.flat) return {{}, spatial_poses(trace)};
     HandPath path;
     path.laid = lay(query, lead_hand(trace, options));

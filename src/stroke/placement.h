@@ -14,16 +14,16 @@ namespace tuft::stroke {
 
 /// A flat sample on the model.
 struct LaidSample {
-    mesh::SurfacePoint on;     ///< where it lies; past an edge: the last point of the surface
-    Vec3 position{0};          ///< metres, model frame: `on.position`, or beyond the edge the
-                               ///< place where the surface would be if it went on flat
-    Vec3 normal{0, 0, 1};      ///< unit, smooth, out of the surface
-    Vec3 right{1, 0, 0};       ///< unit, along the surface: the direction of +x there
-    Vec3 down{0, -1, 0};       ///< unit, along the surface, normal to `right`: that of +y
-    bool on_surface = true;    ///< false past an edge, or where the ray met nothing
-    double time = 0;           ///< seconds
-    double pressure = 0;       ///< 0–1 of the working depth
-    Vec2 tilt{0};              ///< radians, towards right, towards down
+    mesh::SurfacePoint on;   ///< where it lies; past an edge: the last point of the surface
+    Vec3 position{0};        ///< metres, model frame: `on.position`, or beyond the edge the
+                             ///< place where the surface would be if it went on flat
+    Vec3 normal{0, 0, 1};    ///< unit, smooth, out of the surface
+    Vec3 right{1, 0, 0};     ///< unit, along the surface: the direction of +x there
+    Vec3 down{0, -1, 0};     ///< unit, along the surface, normal to `right`: that of +y
+    bool on_surface = true;  ///< false past an edge, or where the ray met nothing
+    double time = 0;         ///< seconds
+    double pressure = 0;     ///< 0–1 of the working depth
+    Vec2 tilt{0};            ///< radians, towards right, towards down
 };
 
 struct LaidTrace {
@@ -50,9 +50,9 @@ LaidTrace lay(const mesh::SurfaceQuery& query, const Trace& trace);
 
 /// The point a straightest line of the given length reaches, and the frame carried to it.
 struct Walk {
-    mesh::SurfacePoint end;    ///< `distance`: length walked on the surface
-    Vec3 direction{1, 0, 0};   ///< unit, in the plane of the last triangle: where the line points
-    double beyond = 0;         ///< metres left when it met a border
+    mesh::SurfacePoint end;   ///< `distance`: length walked on the surface
+    Vec3 direction{1, 0, 0};  ///< unit, in the plane of the last triangle: where the line points
+    double beyond = 0;        ///< metres left when it met a border
 };
 
 /// Walks from `start` (a point of the mesh) along `direction`, which is taken into the
@@ -62,19 +62,19 @@ Walk walk(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& start, const
 
 /// How far the hand runs ahead of the ink at one depth.
 struct Lead {
-    double depth = 0;          ///< metres, of the unbent tip below the surface
-    double length = 0;         ///< metres
+    double depth = 0;   ///< metres, of the unbent tip below the surface
+    double length = 0;  ///< metres
 };
 
 struct HoldOptions {
-    double tuft_length = 0.02;      ///< metres from the ferrule's mouth to the unbent tip
-    double working_depth = 0.010;   ///< metres of the unbent tip below the surface at pressure 1
-    double hover = 0.002;           ///< metres of the tip above the surface when not pressed
-    double max_tilt = 1.2;          ///< radians; more lean than this is cut
-    double steady = 0.008;          ///< metres of travel, to both sides, over which the hand levels
-                                    ///< out height and normal: it does not dip into narrow grooves
-    std::vector<Lead> lead;         ///< rising in depth, linear between, constant outside; empty: none
-    double lead_turn = 0.0015;      ///< metres of travel in which the lead follows a turn
+    double tuft_length = 0.02;     ///< metres from the ferrule's mouth to the unbent tip
+    double working_depth = 0.010;  ///< metres of the unbent tip below the surface at pressure 1
+    double hover = 0.002;          ///< metres of the tip above the surface when not pressed
+    double max_tilt = 1.2;         ///< radians; more lean than this is cut
+    double steady = 0.008;         ///< metres of travel, to both sides, over which the hand levels
+                                   ///< out height and normal: it does not dip into narrow grooves
+    std::vector<Lead> lead;     ///< rising in depth, linear between, constant outside; empty: none
+    double lead_turn = 0.0015;  ///< metres of travel in which the lead follows a turn
 };
 
 /// Working depth of a brush: half of the free hair.

@@ -38,7 +38,8 @@ std::string message(const std::string& text, const InkmlOptions& options = {}) {
 std::vector<std::pair<double, double>> millimetres(const Trace& trace) {
     std::vector<std::pair<double, double>> out;
     for (const auto& s : trace.samples)
-        out.emplace_back(std::round(s.position.x * 1e9) / 1e6, std::round(s.position.y * 1e9) / 1e6);
+        out.emplace_back(std::round(s.position.x * 1e9) / 1e6,
+                         std::round(s.position.y * 1e9) / 1e6);
     return out;
 }
 
@@ -57,8 +58,9 @@ TEST(Inkml, DecodesDifferencesAsTheRecommendationDoes) {
       <trace>1125 18432,'23'43,"7"-8,3-5,7 -3,6 2,6 8,3 6 T,2 4*T,3 6,3-6 F F</trace>)");
     ASSERT_EQ(traces.size(), 1u);
     // velocity: 23 43, 30 35, 33 30, 40 27, 46 29, 52 37, 55 43, 57 47, 60 53, 63 47
-    const Points want{{1125, 18432}, {1148, 18475}, {1178, 18510}, {1211, 18540}, {1251, 18567}, {1297, 18596},
-                      {1349, 18633}, {1404, 18676}, {1461, 18723}, {1521, 18776}, {1584, 18823}};
+    const Points want{{1125, 18432}, {1148, 18475}, {1178, 18510}, {1211, 18540},
+                      {1251, 18567}, {1297, 18596}, {1349, 18633}, {1404, 18676},
+                      {1461, 18723}, {1521, 18776}, {1584, 18823}};
     EXPECT_EQ(millimetres(traces[0]), want);
 }
 
@@ -76,12 +78,14 @@ TEST(Inkml, ReadsHexadecimalAndExponents) {
 }
 
 TEST(Inkml, UnitsAndResolutionsBringLengthsToMetres) {
-    const std::pair<const char*, double> units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}, {"in", 0.0254},
-                                                    {"pt", 0.0254 / 72}, {"himetric", 1e-5}, {"dev", 1e-3}};
+    const std::pair<const char*, double> units[] = {
+        {"mm", 1e-3},        {"cm", 1e-2},       {"m", 1},     {"in", 0.0254},
+        {"pt", 0.0254 / 72}, {"himetric", 1e-5}, {"dev", 1e-3}};
     for (const auto& [unit, metres] : units) {
         const std::string u = unit;
-        const auto t = parse("<traceFormat><channel name='X' units='" + u + "'/><channel name='Y' units='" + u +
-                             "'/></traceFormat><trace>2 3</trace>");
+        const auto t =
+            parse("<traceFormat><channel name='X' units='" + u + "'/><channel name='Y' units='" +
+                  u + "'/></traceFormat><trace>2 3</trace>");
         EXPECT_NEAR(t[0].samples[0].position.x, 2 * metres, 1e-12) << unit;
         EXPECT_NEAR(t[0].samples[0].position.y, 3 * metres, 1e-12) << unit;
     }
@@ -104,8 +108,10 @@ TEST(Inkml, UnitsAndResolutionsBringLengthsToMetres) {
 }
 
 TEST(Inkml, TimesAreRebasedAndNeverFall) {
-    const std::string format = "<traceFormat><channel name='X'/><channel name='Y'/><channel name='T'%/></traceFormat>";
-    for (const auto& [unit, scale] : {std::pair{"", 1e-3}, {" units='s'", 1.0}, {" units='us'", 1e-6}}) {
+    const std::string format =
+        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='T'%/></traceFormat>";
+    for (const auto& [unit, scale] :
+         {std::pair{"", 1e-3}, {" units='s'", 1.0}, {" units='us'", 1e-6}}) {
         std::string f = format;
         f.replace(f.find('%'), 1, unit);
         const auto t = parse(f + "<trace>0 0 1000,1 0 1010,2 0 1005,3 0 1030</trace>");
@@ -114,7 +120,8 @@ TEST(Inkml, TimesAreRebasedAndNeverFall) {
         EXPECT_NEAR(t[0].samples[2].time, 10 * scale, 1e-12);
         EXPECT_NEAR(t[0].samples[3].time, 30 * scale, 1e-12);
     }
-    const auto rated = parse("<inkSource><sampleRate value='50'/></inkSource><trace>0 0,1 0,2 0</trace>");
+    const auto rated =
+        parse("<inkSource><sampleRate value='50'/></inkSource><trace>0 0,1 0,2 0</trace>");
     EXPECT_NEAR(rated[0].samples[2].time, 0.04, 1e-12);
     const auto lasting = parse("<trace duration='300'>0 0,1 0,2 0,2 0</trace>");
     EXPECT_NEAR(lasting[0].samples[2].time, 0.2, 1e-12);
@@ -137,43 +144,55 @@ TEST(Inkml, PlanarHandwritingGetsPressureThatSwellsAndTapers) {
 }
 
 TEST(Inkml, FlatTracesScaleTogether) {
-    const auto t = parse("<trace>0 0,1000 0</trace><trace>3000 500,4000 0</trace>", {.flat_width = 0.1});
+    const auto t =
+        parse("<trace>0 0,1000 0</trace><trace>3000 500,4000 0</trace>", {.flat_width = 0.1});
     EXPECT_NEAR(t[1].samples[1].position.x - t[0].samples[0].position.x, 0.1, 1e-12);
     EXPECT_NEAR(t[1].samples[0].position.y - t[0].samples[0].position.y, 0.0125, 1e-12);
 }
 
 TEST(Inkml, PressureWithoutARangeIsScaledByTheLargest) {
-    const std::string f = "<traceFormat><channel name='X'/><channel name='Y'/><channel name='P'/></traceFormat>";
+    const std::string f =
+        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='P'/></traceFormat>";
     EXPECT_NEAR(parse(f + "<trace>0 0 0.25</trace>")[0].samples[0].pressure, 0.25, 1e-12);
     const auto t = parse(f + "<trace>0 0 256</trace><trace>0 0 1024</trace>");
     EXPECT_NEAR(t[0].samples[0].pressure, 0.25, 1e-12);
     EXPECT_NEAR(t[1].samples[0].pressure, 1, 1e-12);
-    const auto force = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='F' units='N'/></traceFormat>"
-                             "<trace>0 0 0.6,0 0 9</trace>", {.full_force = 2});
+    const auto force = parse(
+        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='F' "
+        "units='N'/></traceFormat>"
+        "<trace>0 0 0.6,0 0 9</trace>",
+        {.full_force = 2});
     EXPECT_NEAR(force[0].samples[0].pressure, 0.3, 1e-12);
     EXPECT_NEAR(force[0].samples[1].pressure, 1, 1e-12);
 }
 
 TEST(Inkml, TiltAzimuthAndQuaternionsAgree) {
-    const auto tilted = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='OTx' units='deg'/>"
-                              "<channel name='OTy' units='deg'/></traceFormat><trace>0 0 20 -10</trace>");
+    const auto tilted = parse(
+        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='OTx' units='deg'/>"
+        "<channel name='OTy' units='deg'/></traceFormat><trace>0 0 20 -10</trace>");
     EXPECT_NEAR(tilted[0].samples[0].tilt.x, 20 * kDegree, 1e-12);
     EXPECT_NEAR(tilted[0].samples[0].tilt.y, -10 * kDegree, 1e-12);
-    const auto polar = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='OA' units='deg'/>"
-                             "<channel name='OE' units='deg'/></traceFormat><trace>0 0 90 60</trace>");
+    const auto polar = parse(
+        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='OA' units='deg'/>"
+        "<channel name='OE' units='deg'/></traceFormat><trace>0 0 90 60</trace>");
     EXPECT_NEAR(polar[0].samples[0].tilt.x, 0, 1e-12);
     EXPECT_NEAR(polar[0].samples[0].tilt.y, 30 * kDegree, 1e-12);
     // In space the holder leans by the same angles from +z.
-    const auto space = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='Z'/><channel name='OTx'/>"
-                             "<channel name='OTy'/></traceFormat><trace>1 2 3 20 -10</trace>");
+    const auto space = parse(
+        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='Z'/><channel "
+        "name='OTx'/>"
+        "<channel name='OTy'/></traceFormat><trace>1 2 3 20 -10</trace>");
     EXPECT_FALSE(space[0].flat);
     EXPECT_NEAR(space[0].samples[0].position.z, 0.003, 1e-12);
     const Vec3 up = space[0].samples[0].rotation * Vec3(0, 0, 1);
     EXPECT_NEAR(up.x / up.z, std::tan(20 * kDegree), 1e-12);
     EXPECT_NEAR(up.y / up.z, std::tan(-10 * kDegree), 1e-12);
-    const auto turned = parse("<traceFormat><channel name='X'/><channel name='Y'/><channel name='Z'/><channel name='QW'/>"
-                              "<channel name='QX'/><channel name='QY'/><channel name='QZ'/></traceFormat><trace>1 2 3 2 0 0 2</trace>");
-    EXPECT_NEAR(glm::length(turned[0].samples[0].rotation * Vec3(1, 0, 0) - Vec3(0, 1, 0)), 0, 1e-12);
+    const auto turned = parse(
+        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='Z'/><channel name='QW'/>"
+        "<channel name='QX'/><channel name='QY'/><channel name='QZ'/></traceFormat><trace>1 2 3 2 "
+        "0 0 2</trace>");
+    EXPECT_NEAR(glm::length(turned[0].samples[0].rotation * Vec3(1, 0, 0) - Vec3(0, 1, 0)), 0,
+                1e-12);
 }
 
 TEST(Inkml, AnnotationsInheritThroughGroupsAndBrushes) {
@@ -204,8 +223,9 @@ TEST(Inkml, AnnotationsInheritThroughGroupsAndBrushes) {
 }
 
 TEST(Inkml, PenUpTracesAreSkippedAndContinuationsJoined) {
-    const auto t = parse("<trace type='penUp'>0 0</trace><trace xml:id='a' continuation='begin'>1 1,2 2</trace>"
-                         "<trace>9 9</trace><trace xml:id='b' continuation='end' priorRef='#a'>3 3</trace>");
+    const auto t = parse(
+        "<trace type='penUp'>0 0</trace><trace xml:id='a' continuation='begin'>1 1,2 2</trace>"
+        "<trace>9 9</trace><trace xml:id='b' continuation='end' priorRef='#a'>3 3</trace>");
     ASSERT_EQ(t.size(), 2u);
     EXPECT_EQ(millimetres(t[0]), (Points{{1, 1}, {2, 2}, {3, 3}}));
 }
@@ -223,15 +243,18 @@ TEST(Inkml, WritesWhatItReads) {
         t.label = "横 " + std::to_string(k);
         t.seed = k * 0x123456789abcdefULL;
         if (t.flat)
-            t.placement = {{0.1, -0.02 * double(k / 2), 1e-4 / 3}, glm::normalize(Vec3(1, 2, 3)),
-                           glm::normalize(Vec3(2, -1, 0)), k == 3 ? stroke::Laying::project : stroke::Laying::wrap};
+            t.placement = {{0.1, -0.02 * double(k / 2), 1e-4 / 3},
+                           glm::normalize(Vec3(1, 2, 3)),
+                           glm::normalize(Vec3(2, -1, 0)),
+                           k == 3 ? stroke::Laying::project : stroke::Laying::wrap};
         for (int i = 0; i < 50; ++i) {
             stroke::TraceSample s;
             s.time = 0.005 * i + (i ? 1e-3 * random(0, 1) : 0);
             s.position = {random(-0.2, 0.2), random(-0.2, 0.2), t.flat ? 0 : random(-1, 1)};
             s.pressure = random(0, 1);
             if (t.flat && k % 2) s.tilt = {random(-1, 1), random(-1, 1)};
-            if (!t.flat) s.rotation = glm::normalize(Quat(random(-1, 1), random(-1, 1), random(-1, 1), 1));
+            if (!t.flat)
+                s.rotation = glm::normalize(Quat(random(-1, 1), random(-1, 1), random(-1, 1), 1));
             t.samples.push_back(s);
         }
     }
@@ -265,15 +288,19 @@ TEST(Inkml, WritesWhatItReads) {
 }
 
 TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
-    EXPECT_THAT(message("<ink>\n<trace>1 2</trace>\n<oops></ink>"), HasSubstr("test.inkml:3: not well-formed XML"));
+    EXPECT_THAT(message("<ink>\n<trace>1 2</trace>\n<oops></ink>"),
+                HasSubstr("test.inkml:3: not well-formed XML"));
     EXPECT_THAT(message("hello"), HasSubstr("test.inkml:1: not well-formed XML"));
     EXPECT_THAT(message(""), HasSubstr("not well-formed XML"));
     EXPECT_THAT(message("<svg/>"), HasSubstr("not InkML"));
     EXPECT_THAT(message(ink("")), HasSubstr("no pen-down traces"));
     EXPECT_THAT(message(ink("<trace></trace>")), HasSubstr("no pen-down traces"));
-    EXPECT_THAT(message(ink("<trace>1 2,\n3 4,\n5 x</trace>")), HasSubstr("test.inkml:4: 'x' is not a number"));
-    EXPECT_THAT(message(ink("<trace>1 2,\n3</trace>")), HasSubstr("test.inkml:3: a point has 1 values"));
-    EXPECT_THAT(message(ink("<trace>1 2 3</trace>")), HasSubstr("test.inkml:2: a point has more than the 2"));
+    EXPECT_THAT(message(ink("<trace>1 2,\n3 4,\n5 x</trace>")),
+                HasSubstr("test.inkml:4: 'x' is not a number"));
+    EXPECT_THAT(message(ink("<trace>1 2,\n3</trace>")),
+                HasSubstr("test.inkml:3: a point has 1 values"));
+    EXPECT_THAT(message(ink("<trace>1 2 3</trace>")),
+                HasSubstr("test.inkml:2: a point has more than the 2"));
     EXPECT_THAT(message(ink("<trace>1 2,,3 4</trace>")), HasSubstr("a point has 0 values"));
     EXPECT_THAT(message(ink("<trace>1 nan</trace>")), HasSubstr("not finite"));
     EXPECT_THAT(message(ink("<trace>1 inf</trace>")), HasSubstr("not finite"));
@@ -282,13 +309,21 @@ TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
     EXPECT_THAT(message(ink("<trace>1 9e30</trace>")), HasSubstr("declare the unit"));
     EXPECT_THAT(message(ink("<trace>'1 2</trace>")), HasSubstr("before any explicit value"));
     EXPECT_THAT(message(ink("<trace>1 2,\"1 2</trace>")), HasSubstr("before any first difference"));
-    EXPECT_THAT(message(ink("<trace contextRef='#nowhere'>1 2</trace>")), HasSubstr("'nowhere', which is not in the file"));
-    EXPECT_THAT(message(ink("<traceFormat><channel name='Y'/></traceFormat><trace>1</trace>")), HasSubstr("no X and Y"));
-    EXPECT_THAT(message(ink("<annotation type='tuft:origin'>1 2</annotation><trace>1 2</trace>")), HasSubstr("three numbers"));
-    EXPECT_THAT(message(ink("<annotation type='tuft:right'>0 0 0</annotation><trace>1 2</trace>")), HasSubstr("direction is zero"));
-    EXPECT_THAT(message(ink("<annotation type='tuft:laying'>flat</annotation><trace>1 2</trace>")), HasSubstr("neither wrap nor project"));
-    EXPECT_THAT(message(ink("<context xml:id='a' contextRef='#b'/><context xml:id='b' contextRef='#a'/><trace>1 2</trace>")), HasSubstr("in a circle"));
-    EXPECT_THAT(message(ink("<trace>1 2,3 4,5 6</trace>"), {.max_samples = 2}), HasSubstr("more samples than 2"));
+    EXPECT_THAT(message(ink("<trace contextRef='#nowhere'>1 2</trace>")),
+                HasSubstr("'nowhere', which is not in the file"));
+    EXPECT_THAT(message(ink("<traceFormat><channel name='Y'/></traceFormat><trace>1</trace>")),
+                HasSubstr("no X and Y"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:origin'>1 2</annotation><trace>1 2</trace>")),
+                HasSubstr("three numbers"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:right'>0 0 0</annotation><trace>1 2</trace>")),
+                HasSubstr("direction is zero"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:laying'>flat</annotation><trace>1 2</trace>")),
+                HasSubstr("neither wrap nor project"));
+    EXPECT_THAT(message(ink("<context xml:id='a' contextRef='#b'/><context xml:id='b' "
+                            "contextRef='#a'/><trace>1 2</trace>")),
+                HasSubstr("in a circle"));
+    EXPECT_THAT(message(ink("<trace>1 2,3 4,5 6</trace>"), {.max_samples = 2}),
+                HasSubstr("more samples than 2"));
     std::string deep;
     for (int i = 0; i < 5000; ++i) deep += "<traceGroup>";
     for (int i = 0; i < 5000; ++i) deep += "</traceGroup>";
@@ -298,13 +333,15 @@ TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
 
 TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
     Trace t;
-    for (int i = 0; i < 20; ++i) t.samples.push_back({.time = 0.005 * i, .position = {0.001 * i, 0, 0}, .pressure = 0.5});
+    for (int i = 0; i < 20; ++i)
+        t.samples.push_back({.time = 0.005 * i, .position = {0.001 * i, 0, 0}, .pressure = 0.5});
     const std::string whole = inkml_text(std::vector{t, t});
     const auto survives = [](const std::string& text) {
         try {
             for (const Trace& trace : parse_inkml(text, "garbled"))
                 for (const auto& s : trace.samples)
-                    ASSERT_TRUE(std::isfinite(s.position.x) && std::isfinite(s.time) && s.pressure >= 0 && s.pressure <= 1);
+                    ASSERT_TRUE(std::isfinite(s.position.x) && std::isfinite(s.time) &&
+                                s.pressure >= 0 && s.pressure <= 1);
         } catch (const Error&) {
         }
     };
@@ -312,7 +349,8 @@ TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
     for (std::uint64_t i = 0; i < 2000; ++i) {
         std::string garbled = whole;
         for (int k = 0; k < 3; ++k)
-            garbled[hash_bits(i, 2 * k) % garbled.size()] = static_cast<char>(hash_bits(i, 2 * k + 1) % 128);
+            garbled[hash_bits(i, 2 * k) % garbled.size()] =
+                static_cast<char>(hash_bits(i, 2 * k + 1) % 128);
         survives(garbled);
     }
 }

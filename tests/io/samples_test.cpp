@@ -50,9 +50,13 @@ TEST(Samples, CharactersFitTheBowl) {
     expect_fits("man-bu-ren-sheng", "bowl", 14 + 7 + 2 + 5);
 }
 
-TEST(Samples, OrnamentFitsThePlate) { expect_fits("plate-ornament", "plate", 12 * 2 * 9); }
+TEST(Samples, OrnamentFitsThePlate) {
+    expect_fits("plate-ornament", "plate", 12 * 2 * 9);
+}
 
-TEST(Samples, PinstripesFitTheCar) { expect_fits("car-pinstripe", "car", 2); }
+TEST(Samples, PinstripesFitTheCar) {
+    expect_fits("car-pinstripe", "car", 2);
+}
 
 }  // namespace
 }  // namespace tuft::io

@@ -43,8 +43,10 @@ TriangleMesh make_grid(int nu, int nv, const std::function<Vec3(double, double)>
         for (int i = 0; i < nu; ++i) {
             const auto a = id[j * (nu + 1) + i], b = id[j * (nu + 1) + i + 1];
             const auto c = id[(j + 1) * (nu + 1) + i + 1], d = id[(j + 1) * (nu + 1) + i];
-            if ((i + j) % 2) add(a, b, c), add(a, c, d);
-            else add(a, b, d), add(b, c, d);
+            if ((i + j) % 2)
+                add(a, b, c), add(a, c, d);
+            else
+                add(a, b, d), add(b, c, d);
         }
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> owner;
     for (std::uint32_t t = 0; t < m.triangles.size(); ++t)
@@ -58,8 +60,9 @@ TriangleMesh make_grid(int nu, int nv, const std::function<Vec3(double, double)>
 }
 
 TriangleMesh make_sheet(double side = 0.2, int n = 23) {
-    return make_grid(n, n, [=](double u, double v) { return Vec3((u - 0.5) * side, (v - 0.5) * side, 0); },
-                     [](const Vec3&) { return Vec3(0, 0, 1); });
+    return make_grid(
+        n, n, [=](double u, double v) { return Vec3((u - 0.5) * side, (v - 0.5) * side, 0); },
+        [](const Vec3&) { return Vec3(0, 0, 1); });
 }
 
 constexpr double kCylinderRadius = 0.04;
@@ -68,7 +71,8 @@ TriangleMesh make_cylinder(int around = 180) {
         around, 40,
         [](double u, double v) {
             const double a = 2 * pi * u;
-            return Vec3(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a), 0.12 * (v - 0.5));
+            return Vec3(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a),
+                        0.12 * (v - 0.5));
         },
         [](const Vec3& p) { return glm::normalize(Vec3(p.x, p.y, 0)); });
 }
@@ -79,7 +83,8 @@ TriangleMesh make_sphere(int n = 96) {
         2 * n, n,
         [](double u, double v) {
             const double a = 2 * pi * u, b = pi * (v - 0.5);
-            return kSphereRadius * Vec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
+            return kSphereRadius *
+                   Vec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
         },
         [](const Vec3& p) { return glm::normalize(p); });
 }
@@ -88,14 +93,16 @@ Trace make_trace(const Placement& placement, const std::vector<Vec2>& points) {
     Trace t;
     t.placement = placement;
     for (std::size_t i = 0; i < points.size(); ++i)
-        t.samples.push_back({.time = 0.005 * double(i), .position = Vec3(points[i], 0), .pressure = 0.5});
+        t.samples.push_back(
+            {.time = 0.005 * double(i), .position = Vec3(points[i], 0), .pressure = 0.5});
     return t;
 }
 
 std::vector<Vec2> scattered(std::size_t n, double reach) {
     std::vector<Vec2> out;
     for (std::size_t i = 0; i < n; ++i)
-        out.push_back({reach * (2 * uniform(7, 2 * i) - 1), reach * (2 * uniform(7, 2 * i + 1) - 1)});
+        out.push_back(
+            {reach * (2 * uniform(7, 2 * i) - 1), reach * (2 * uniform(7, 2 * i + 1) - 1)});
     return out;
 }
 
@@ -110,7 +117,8 @@ TEST(Placement, WrapAndProjectOnTheSheetAreTheIdentity) {
         EXPECT_EQ(laid.missed, 0u);
         EXPECT_NEAR(laid.origin_gap, 0.003, 1e-9);
         for (std::size_t i = 0; i < laid.samples.size(); ++i) {
-            const Vec3 want(0.012 + trace.samples[i].position.x, -0.007 - trace.samples[i].position.y, 0);
+            const Vec3 want(0.012 + trace.samples[i].position.x,
+                            -0.007 - trace.samples[i].position.y, 0);
             // Vertices are floats: 0.1 m carries 7e-9 m.
             EXPECT_LT(glm::length(laid.samples[i].position - want), 5e-8);
             EXPECT_LT(glm::length(laid.samples[i].right - Vec3(1, 0, 0)), 1e-6);
@@ -125,7 +133,10 @@ TEST(Placement, WrapOnACylinderUnrollsIt) {
     const TriangleMesh cylinder = make_cylinder();
     const SurfaceQuery query(cylinder);
     const double a0 = 2 * pi * 0.5 / 180;
-    const Placement place{{0.05 * std::cos(a0), 0.05 * std::sin(a0), 0.01}, {-std::sin(a0), std::cos(a0), 0}, {0, 0, -1}, Laying::wrap};
+    const Placement place{{0.05 * std::cos(a0), 0.05 * std::sin(a0), 0.01},
+                          {-std::sin(a0), std::cos(a0), 0},
+                          {0, 0, -1},
+                          Laying::wrap};
     const Trace trace = make_trace(place, scattered(300, 0.045));
     const LaidTrace laid = lay(query, trace);
     EXPECT_EQ(laid.missed, 0u);
@@ -133,7 +144,8 @@ TEST(Placement, WrapOnACylinderUnrollsIt) {
     for (std::size_t i = 0; i < laid.samples.size(); ++i) {
         const Vec3 flat = trace.samples[i].position;
         const double a = a0 + flat.x / kCylinderRadius;
-        const Vec3 want(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a), 0.01 - flat.y);
+        const Vec3 want(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a),
+                        0.01 - flat.y);
         EXPECT_LT(glm::length(laid.samples[i].position - want), 2 * sagitta + 0.045 * 1e-4);
         // The frame does not turn; the facets' normals differ from the circle's by pi/180 at most.
         EXPECT_LT(glm::length(laid.samples[i].right - Vec3(-std::sin(a), std::cos(a), 0)), 0.02);
@@ -178,7 +190,8 @@ TEST(Placement, WalkThereAndBackReturns) {
     const TriangleMesh sphere = make_sphere();
     const SurfaceQuery query(sphere);
     for (int i = 0; i < 50; ++i) {
-        const Vec3 p{uniform(1, 3 * i) - 0.5, uniform(1, 3 * i + 1) - 0.5, uniform(1, 3 * i + 2) - 0.5};
+        const Vec3 p{uniform(1, 3 * i) - 0.5, uniform(1, 3 * i + 1) - 0.5,
+                     uniform(1, 3 * i + 2) - 0.5};
         const auto start = query.closest_point(p);
         ASSERT_TRUE(start);
         const Walk there = walk(sphere, *start, Vec3(0.3, 1, -0.2), 0.1);
@@ -229,9 +242,11 @@ TEST(Placement, ProjectTakesTheFirstSurfaceFromOutside) {
         EXPECT_NEAR(p.y, points[i].x, 1e-8);
         EXPECT_NEAR(p.z, -points[i].y, 1e-8);
         // On the facets: at most their sagitta below the sphere, steeper where it turns away.
-        EXPECT_NEAR(p.x, std::sqrt(kSphereRadius * kSphereRadius - glm::dot(points[i], points[i])), 5e-5);
+        EXPECT_NEAR(p.x, std::sqrt(kSphereRadius * kSphereRadius - glm::dot(points[i], points[i])),
+                    5e-5);
     }
-    const LaidTrace off = lay(query, make_trace(place, {{0.03, 0}, {0.049, 0}, {0.06, 0}, {0.08, 0}}));
+    const LaidTrace off =
+        lay(query, make_trace(place, {{0.03, 0}, {0.049, 0}, {0.06, 0}, {0.08, 0}}));
     EXPECT_EQ(off.missed, 2u);
     EXPECT_NEAR(off.samples[3].position.y, 0.08, 1e-12);
     EXPECT_NEAR(off.samples[3].position.x, off.samples[1].position.x, 1e-12);
@@ -240,12 +255,14 @@ TEST(Placement, ProjectTakesTheFirstSurfaceFromOutside) {
 TEST(Placement, HeldTuftReachesThePressedDepth) {
     const TriangleMesh sphere = make_sphere();
     const SurfaceQuery query(sphere);
-    Trace trace = make_trace({{0, -1, 0}, {1, 0, 0}, {0, 0, -1}, Laying::wrap}, scattered(40, 0.02));
+    Trace trace =
+        make_trace({{0, -1, 0}, {1, 0, 0}, {0, 0, -1}, Laying::wrap}, scattered(40, 0.02));
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         trace.samples[i].pressure = double(i % 5) / 4;
         trace.samples[i].tilt = {0.3 * uniform(3, i), -0.4 * uniform(4, i)};
     }
-    const HoldOptions options{.tuft_length = 0.03, .working_depth = 0.01, .hover = 0.004, .lead = {}};
+    const HoldOptions options{
+        .tuft_length = 0.03, .working_depth = 0.01, .hover = 0.004, .lead = {}};
     const HandPath path = hand_path(query, trace, options);
     ASSERT_EQ(path.poses.size(), trace.samples.size());
     for (std::size_t i = 0; i < path.poses.size(); ++i) {
@@ -283,7 +300,8 @@ TEST(Placement, SteadyHandKeepsItsHeightOnCurvedSurfaces) {
     const SurfaceQuery query(cylinder);
     std::vector<Vec2> points;
     for (int i = 0; i <= 400; ++i) points.push_back({1e-4 * i, 0});
-    Trace trace = make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, Laying::wrap}, points);
+    Trace trace =
+        make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, Laying::wrap}, points);
     const HoldOptions options{.lead = {}};
     const double shift = options.steady * options.steady / (8 * kCylinderRadius);
     for (const brush::Pose& pose : hand_path(query, trace, options).poses) {
@@ -299,7 +317,8 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     std::vector<Vec2> points;
     for (int i = 0; i <= 100; ++i) points.push_back({1e-4 * i, 0});
     Trace trace = make_trace({}, points);
-    const HoldOptions options{.working_depth = 0.008, .lead = {{0.002, 0.001}, {0.006, 0.005}}, .lead_turn = 1e-3};
+    const HoldOptions options{
+        .working_depth = 0.008, .lead = {{0.002, 0.001}, {0.006, 0.005}}, .lead_turn = 1e-3};
     Trace led = lead_hand(trace, options);
     EXPECT_NEAR(led.samples[0].position.x, 0.003, 1e-12);
     EXPECT_NEAR(led.samples[100].position.x, 0.01 + 0.003, 1e-12);  // depth 4 mm
@@ -307,10 +326,12 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     // sin φ = l/R with the string tangent to the inner circle of radius sqrt(R² - l²).
     const double radius = 0.01, l = options.lead_turn;
     points.clear();
-    for (int i = 0; i <= 20000; ++i) points.push_back(radius * Vec2(std::cos(1e-3 * i), std::sin(1e-3 * i)));
+    for (int i = 0; i <= 20000; ++i)
+        points.push_back(radius * Vec2(std::cos(1e-3 * i), std::sin(1e-3 * i)));
     trace = make_trace({}, points);
     led = lead_hand(trace, options);
-    const Vec2 p(trace.samples.back().position), d = (Vec2(led.samples.back().position) - p) / 0.003;
+    const Vec2 p(trace.samples.back().position),
+        d = (Vec2(led.samples.back().position) - p) / 0.003;
     EXPECT_NEAR(glm::length(d), 1, 1e-9);
     EXPECT_NEAR(glm::dot(d, p / radius), l / radius, 6e-4);  // half a sample's step over R: 5e-4
     // There and back: the lead passes through zero and turns round.
