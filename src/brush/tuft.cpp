@@ -65,6 +65,10 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
         throw Error("brush: " + std::to_string(planes.size()) + " contact planes for " +
                     std::to_string(expected) + " nodes; give one per node, one for all, or none");
     }
+    if (!std::isfinite(glm::dot(pose.position, pose.position)) ||
+        std::abs(glm::length(pose.rotation) - 1) > 1e-3) {
+        throw Error("brush: the pose is not a place and a unit rotation");
+    }
     const rod::Clamp clamp = clamp_of(p, pose);
     if (!tuft.posed) {
         // The first pose is where the hand starts: the tuft comes with it, from above.

@@ -49,7 +49,8 @@ std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose);
 /// of `predicted_nodes`, in that order; or one that serves all; or none (free in air).
 /// `dt` in seconds since the last step. Always finite and in bounded time: `converged`
 /// is false where it stopped early. Cost: 20–60 µs at 16 segments.
-/// Throws nothing but `Error` when the number of planes fits none of the three cases.
+/// Throws nothing but `Error`: the number of planes fits none of the three cases, or the pose
+/// is not finite and of unit rotation.
 TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt);
 
 /// Forgets everything that happened since `make_tuft`; wetness and ink stay.

@@ -61,6 +61,19 @@ TEST(Rod, EndMomentGivesTheArc) {
     }
 }
 
+TEST(Rod, TipTurnsTowardsTheLoadButNeverPastIt) {
+    for (const double degrees : {45.0, 90.0, 120.0}) {
+        double before = 0;
+        for (const double load : {0.05, 0.3, 1.0, 4.0, 12.0}) {
+            const double a = degrees * kDegree;
+            const Bent b = bend({-1, -0.8}, 16, {load * std::cos(a), load * std::sin(a), 0}, 0, 30);
+            EXPECT_LT(b.tip_angle, a);
+            EXPECT_GT(b.tip_angle, before);
+            before = b.tip_angle;
+        }
+    }
+}
+
 TEST(Rod, VariableStiffnessElasticaMatchesShooting) {
     for (const Row& row : read_rows("elastica_variable.csv")) {
         const double a = row["load_angle_deg"] * kDegree, p = row["PL2_E0I0"];

@@ -247,6 +247,16 @@ TEST(Tuft, OnePlanePerNodeOfTheSamePlaneIsOnePlane) {
     EXPECT_THROW(step(a, a.pose, std::span(planes).first(5), 0.01), Error);
 }
 
+TEST(Tuft, RefusesPosesThatAreNone) {
+    Tuft tuft = make_tuft(load_preset("mixed-medium"));
+    Pose pose;
+    pose.position.y = std::nan("");
+    EXPECT_THROW(step(tuft, pose, {}, 0.01), Error);
+    pose = {};
+    pose.rotation = {0, 0, 0, 0};
+    EXPECT_THROW(step(tuft, pose, {}, 0.01), Error);
+}
+
 TEST(Tuft, SplitsWhenBentAndDryAndMergesWhenWetAgain) {
     Tuft tuft = make_tuft(load_preset("mixed-medium"));
     tuft.ink_left = 0.02;
