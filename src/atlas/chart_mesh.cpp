@@ -129,7 +129,7 @@ FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv, double ga
         above += a3;
         if (above > 1e-3 * area) break;
     }
-    if (check.flips == 0 && chart.disk) check.crosses = crosses_itself(chart.loop, uv, gap);
+    if (check.flips == 0 && chart.disk) check.crosses = crosses_itself(chart, uv, gap);
     return check;
 }
 
@@ -184,7 +184,8 @@ struct EdgeGrid {
 
 }  // namespace
 
-bool crosses_itself(std::span<const std::uint32_t> loop, std::span<const Vec2> uv, double gap) {
+bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap) {
+    const std::vector<std::uint32_t>& loop = chart.loop;
     const std::size_t n = loop.size();
     if (n < 4) return false;
     Vec2 lo(std::numeric_limits<double>::infinity()), hi = -lo;
@@ -218,8 +219,13 @@ bool crosses_itself(std::span<const std::uint32_t> loop, std::span<const Vec2> u
         if (std::min(apart, along[n] - apart) < 16 * gap) return false;
         // The chart lies left of its border: only what is near on the right is too near.
         if (height(a, b - a, 0.5 * (c + d)) > 0 || height(c, d - c, 0.5 * (a + b)) > 0) return false;
-        return std::min(std::min(point_segment(a, c, d), point_segment(b, c, d)),
-                        std::min(point_segment(c, a, b), point_segment(d, a, b))) < gap;
+        if (std::min(std::min(point_segment(a, c, d), point_segment(b, c, d)),
+                     std::min(point_segment(c, a, b), point_segment(d, a, b))) >= gap)
+            return false;
+        const Vec3 middle_i = chart.position[loop[i]] + chart.position[loop[(i + 1) % n]];
+        const Vec3 middle_j = chart.position[loop[j]] + chart.position[loop[(j + 1) % n]];
+        const double lengths = along[i + 1] - along[i] + along[j + 1] - along[j];
+        return 0.5 * glm::length(middle_i - middle_j) > 2 * gap + 0.5 * lengths;
     };
     for (std::size_t c = 0; c + 1 < grid.start.size(); ++c)
         for (std::uint32_t x = grid.start[c]; x < grid.start[c + 1]; ++x)

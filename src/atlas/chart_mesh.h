@@ -45,9 +45,9 @@ struct FlatCheck {
 /// `gap`: see `crosses_itself`.
 FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv, double gap = 0);
 
-/// Whether the closed polygon of `loop` crosses itself, or comes nearer than `gap` to a
-/// part of itself that is more than 16 gaps away along it. (Nearer parts may be the two
-/// sides of a slit, which meet at its tip.) Touching alone is no crossing.
-bool crosses_itself(std::span<const std::uint32_t> loop, std::span<const Vec2> uv, double gap);
+/// Whether the chart's border crosses itself, or comes nearer than `gap` to a part of
+/// itself that is more than 16 gaps away along it and twice as far on the surface. (What
+/// is nearer may be the two sides of a slit.) Touching alone is no crossing.
+bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap);
 
 }  // namespace tuft::atlas

@@ -11,7 +11,7 @@
 namespace tuft::atlas {
 
 struct ChartOptions {
-    double l2 = 1.006;       ///< stretch that a chart may have on average
+    double l2 = 1.005;       ///< stretch that a chart may have on average
     double largest = 1.35;   ///< and at 99.9 % of its area
     double gap = 0;          ///< that parts of a chart's border keep from each other, over the unit
 };

@@ -9,13 +9,17 @@
 #include <unordered_map>
 
 #include "core/hash.h"
+#include "core/random.h"
 
 namespace tuft::atlas {
 namespace {
 
 constexpr double kSmallest = 0.25;   // texels: extent below which a chart is enlarged
-constexpr double kLeastUse = 0.01;   // part of the page that charts must cover to "fit"
+constexpr double kLeastUse = 1e-3;   // part of the page that charts must cover to "fit"
 constexpr std::uint32_t kCells = 1024;  // cells per side of the page that masks are made on, at most
+constexpr std::uint32_t kCoarseCells = 512;  // the same while searching
+constexpr double kStep = 1.01;          // by which the search raises the scale
+constexpr double kTrials = 8000;       // charts placed while searching, about
 
 struct Run {
     std::uint32_t row, first, last;
@@ -28,6 +32,7 @@ struct Mask {
     std::uint32_t width = 0, height = 0;
     double c = 1, s = 0;
     Vec2 corner{0};  // of the rotated, scaled chart, texels
+    std::uint64_t hash = 0;  // of the runs
 };
 
 double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
@@ -130,14 +135,15 @@ Mask make_mask(const Shape& shape, double scale, double angle, double cell) {
             mask.runs.push_back({row, first, i});
         }
     }
-    // Rows far from each other first: most places are ruled out by the first few tests.
+    // The widest runs of sparse rows first: most places are ruled out by the first few tests.
+    const auto stride = [&](const Run& r) {
+        return std::min(std::countr_zero(r.row | 1u << 31), 4);
+    };
     std::stable_sort(mask.runs.begin(), mask.runs.end(), [&](const Run& a, const Run& b) {
-        const auto rank = [&](const Run& r) {
-            const std::uint32_t from_end = std::min(r.row, mask.height - 1 - r.row);
-            return std::countr_zero(r.row | 1024u) * -100000 + static_cast<int>(from_end);
-        };
-        return rank(a) < rank(b);
+        if (stride(a) != stride(b)) return stride(a) > stride(b);
+        return a.last - a.first > b.last - b.first;
     });
+    mask.hash = hash_bytes(mask.runs.data(), mask.runs.size() * sizeof(Run));
     return mask;
 }
 
@@ -267,9 +273,26 @@ class Strip {
 };
 
 struct Layout {
-    bool placed = false;      // all charts, below the limit
-    std::uint32_t rows = 0;   // cells
+    double unplaced = 0;      // area of the charts that found no place
+    std::uint32_t first_unplaced = kNone;
+    std::uint32_t rows = 0;   // cells, up to the highest chart
+    double scale = 0;
     std::vector<Placement> placements;
+
+    bool complete() const { return scale > 0 && first_unplaced == kNone; }
+};
+
+/// What the search varies: which chart comes when, and how each is turned to begin with.
+struct Plan {
+    std::vector<std::uint32_t> order;
+    std::vector<double> turn;  // radians, added to the smallest rectangle's angle
+};
+
+/// A square page as masks see it.
+struct Page {
+    std::uint32_t size;   // texels per side
+    std::uint32_t cell;   // texels per cell
+    std::uint32_t cells;  // per side, within the margin
 };
 
 class Packer {
@@ -281,112 +304,192 @@ class Packer {
             shapes_.push_back(make_shape(border));
             area_ += shapes_.back().area;
         }
-        order_.resize(shapes_.size());
-        std::iota(order_.begin(), order_.end(), std::size_t{0});
-        std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+        plan_.order.resize(shapes_.size());
+        plan_.turn.assign(shapes_.size(), 0);
+        std::iota(plan_.order.begin(), plan_.order.end(), 0u);
+        std::stable_sort(plan_.order.begin(), plan_.order.end(), [&](auto a, auto b) {
             return shapes_[a].area > shapes_[b].area;
         });
+        cache_.resize(shapes_.size());
     }
 
     double area() const { return area_; }
 
-    std::uint32_t margin() const { return (gutter_ + 1) / 2; }
-    std::uint32_t cell(std::uint32_t size) const { return (size + kCells - 1) / kCells; }
-    std::uint32_t cells(std::uint32_t size) const {
-        const std::uint32_t free = size > 2 * margin() ? size - 2 * margin() : 0;
-        return free / cell(size);
+    Page page(std::uint32_t size, std::uint32_t most_cells) const {
+        Page page{size, std::max(1u, (size + most_cells - 1) / most_cells), 0};
+        if (size > 2 * margin()) page.cells = (size - 2 * margin()) / page.cell;
+        return page;
     }
 
-    /// Fills a strip as wide as the page, at most `limit` times as high.
-    Layout fill(std::uint32_t size, double scale, double limit) const {
+    /// Fills a strip as wide as the page, at most `limit` times as high; gives up when
+    /// charts of more than `hopeless` area found no place.
+    Layout fill(const Page& page, double scale, double limit,
+                double hopeless = std::numeric_limits<double>::infinity()) {
         Layout layout;
-        const std::uint32_t cell = this->cell(size), width = cells(size);
-        const auto rows = static_cast<std::uint32_t>(limit * width);
-        if (width == 0) return layout;
-        // Cells d apart (in x and y) are nearer than the gutter when |(max(d − 1, 0)) cell| < gutter.
-        const double g = static_cast<double>(gutter_) / cell;
-        std::vector<int> reach;
-        for (int dy = 0; std::max(dy - 1, 0) < g; ++dy) {
-            const double left = g * g - std::pow(std::max(dy - 1, 0), 2);
-            int dx = 0;
-            while (std::pow(std::max(dx, 0), 2) < left) ++dx;  // dx + 1 is still too near
-            reach.push_back(dx);
-        }
-        if (gutter_ == 0) reach.assign(1, 0);
-        Strip strip(width, static_cast<int>(reach.size()) - 1, reach);
-
+        layout.scale = scale;
         layout.placements.resize(shapes_.size());
-        std::unordered_map<std::uint64_t, std::uint32_t> lowest;  // by the mask's hash
-        for (const std::size_t i : order_) {
-            const Shape& shape = shapes_[i];
-            const double chart_scale =
-                std::max(scale, shape.extent > 0 ? kSmallest / shape.extent : scale);
-            Mask best;
+        const double cell = page.cell;
+        const auto most_rows = static_cast<std::uint32_t>(limit * page.cells);
+        const std::vector<int> reach = reach_of_gutter(page.cell);
+        Strip strip(page.cells, static_cast<int>(reach.size()) - 1, reach);
+        std::unordered_map<std::uint64_t, std::uint32_t> lowest;  // row, by the mask's hash
+        for (const std::uint32_t i : plan_.order) {
+            const Masks& masks = masks_of(i, scale, cell);
+            const Mask* best = nullptr;
             Strip::Spot spot;
-            std::uint32_t best_top = rows + 1;
-            const int turns = shape.extent * chart_scale < 2 * cell ? 1 : 8;
-            for (int k = 0; k < turns; ++k) {
-                Mask mask = make_mask(shape, chart_scale,
-                                      shape.angle + k % 4 * (std::numbers::pi / 2) +
-                                          k / 4 * (std::numbers::pi / 4), cell);
-                const std::uint64_t key =
-                    hash_bytes(mask.runs.data(), mask.runs.size() * sizeof(Run));
-                std::uint32_t& from = lowest[key];
+            std::uint32_t best_top = most_rows + 1;
+            for (const Mask& mask : masks.turned) {
+                std::uint32_t& from = lowest[mask.hash];
                 if (from + mask.height >= best_top) continue;
-                const Strip::Spot s = strip.find(mask, from, std::min(best_top - 1, rows));
+                const Strip::Spot s = strip.find(mask, from, std::min(best_top - 1, most_rows));
                 if (s.y == kNone) continue;
                 from = s.y;
                 best_top = s.y + mask.height;
                 spot = s;
-                best = std::move(mask);
+                best = &mask;
             }
-            if (spot.y == kNone) return layout;
-            strip.place(best, spot);
-            Placement& p = layout.placements[i];
-            p = {chart_scale, best.c, best.s,
-                 Vec2(spot.x, spot.y) * double(cell) + Vec2(margin()) - best.corner};
+            if (best == nullptr) {
+                if (layout.first_unplaced == kNone) layout.first_unplaced = i;
+                layout.unplaced += shapes_[i].area;
+                if (layout.unplaced > hopeless) break;
+                continue;
+            }
+            strip.place(*best, spot);
+            layout.placements[i] = {masks.chart_scale, best->c, best->s,
+                                    Vec2(spot.x, spot.y) * cell + Vec2(margin()) - best->corner};
         }
-        layout.placed = true;
         layout.rows = strip.top();
         return layout;
     }
 
-    /// The largest scale at which everything fits the page; nothing placed if none does.
-    std::pair<Layout, double> largest(std::uint32_t size) const {
-        const double side = size;
-        const double least = std::sqrt(kLeastUse / area_) * side;
-        double low = 0, high = std::sqrt(1 / area_) * side;
-        double scale = 0.85 * high;
+    /// The largest scale found at which everything fits the page: after a first fit, a
+    /// search on coarse masks raises the scale step by step and looks for an order and
+    /// turns that fit, then the masks are refined. Not complete when nothing fits.
+    Layout largest(std::uint32_t size, bool quick) {
+        const int trials = std::clamp(static_cast<int>(kTrials / std::max<std::size_t>(shapes_.size(), 1)), 8, 300);
+        const double full = size / std::sqrt(area_);
+        const double least = std::sqrt(kLeastUse) * full;
+        const Page coarse = page(size, kCoarseCells), fine = page(size, kCells);
         Layout best;
-        for (int trial = 0; trial < 12 && scale >= least; ++trial) {
-            report(progress_, "pack", trial / 12.0);
-            Layout layout = fill(size, scale, 2);
-            const double filled = layout.placed
-                                      ? static_cast<double>(layout.rows) / cells(size)
-                                      : 2.5;
-            if (layout.placed && layout.rows <= cells(size)) {
-                low = scale;
-                best = std::move(layout);
-            } else {
-                high = std::min(high, scale);
-            }
-            if (low > 0 && high < 1.004 * low) break;
-            const double guess = scale / std::sqrt(filled);
-            const double slack = 0.001 * scale;
-            if (low > 0)
-                scale = guess > low + slack && guess < high - slack ? guess : 0.5 * (low + high);
-            else
-                scale = std::max(std::min(0.98 * guess, 0.98 * high),
-                                 scale > least ? least : 0.5 * least);
+        if (fine.cells == 0) return best;
+        double step = 0.97;
+        for (double scale = 0.85 * full; !best.complete(); scale *= step) {
+            if (scale < least) scale = least;
+            Layout layout = fill(coarse, scale, 1);
+            if (layout.complete()) best = std::move(layout);
+            if (scale == least) break;
+            if (scale < 0.6 * full) step = 0.9;
         }
-        return {std::move(best), low};
+        if (!best.complete()) {
+            best = fill(fine, least, 1);
+            return best;
+        }
+        if (quick) return best;
+        Random random(shapes_.size());
+        double unplaced = std::numeric_limits<double>::infinity();
+        std::uint32_t failed = kNone;
+        double target = kStep * best.scale;
+        for (int trial = 0; trial < trials; ++trial) {
+            if (trial % 8 == 0) report(progress_, "pack", 0.9 * trial / trials);
+            const Plan before = plan_;
+            if (trial > 0) vary(random, failed);
+            Layout layout = fill(coarse, target, 1, unplaced);
+            if (layout.complete()) {
+                best = std::move(layout);
+                target = kStep * best.scale;
+                unplaced = std::numeric_limits<double>::infinity();
+                failed = kNone;
+            } else if (layout.unplaced <= unplaced) {
+                unplaced = layout.unplaced;
+                failed = layout.first_unplaced;
+            } else {
+                plan_ = before;
+            }
+        }
+        if (fine.cell < coarse.cell) {
+            for (double scale = 1.03 * best.scale; scale > best.scale; scale *= 0.996) {
+                Layout layout = fill(fine, scale, 1);
+                if (!layout.complete()) continue;
+                best = std::move(layout);
+                break;
+            }
+        }
+        return best;
+    }
+
+    /// All charts at a given scale within the page.
+    Layout at_scale(std::uint32_t size, double scale, double limit) {
+        return fill(page(size, kCells), scale, limit);
     }
 
   private:
+    /// The masks of one chart in four directions, for one scale and turn.
+    struct Masks {
+        double scale = 0, cell = 0, turn = 0, chart_scale = 0;
+        std::vector<Mask> turned;
+    };
+
+    std::uint32_t margin() const { return (gutter_ + 1) / 2; }
+
+    const Masks& masks_of(std::uint32_t i, double scale, double cell) {
+        Masks& m = cache_[i];
+        const Shape& shape = shapes_[i];
+        if (m.scale == scale && m.cell == cell && m.turn == plan_.turn[i]) return m;
+        m.scale = scale;
+        m.cell = cell;
+        m.turn = plan_.turn[i];
+        m.chart_scale = std::max(scale, shape.extent > 0 ? kSmallest / shape.extent : scale);
+        m.turned.clear();
+        const int turns = shape.extent * m.chart_scale < 2 * cell ? 1 : 4;
+        for (int k = 0; k < turns; ++k)
+            m.turned.push_back(make_mask(shape, m.chart_scale,
+                                         shape.angle + m.turn + k * (std::numbers::pi / 2), cell));
+        return m;
+    }
+
+    /// A chance change of the plan: what found no place comes earlier, two charts change
+    /// places, one is turned. Large charts are changed more often.
+    void vary(Random& random, std::uint32_t failed) {
+        auto& order = plan_.order;
+        const auto pick = [&] {
+            const double u = random.uniform();
+            return static_cast<std::size_t>(u * u * static_cast<double>(order.size()));
+        };
+        const double kind = random.uniform();
+        if (failed != kNone && kind < 0.3) {
+            const auto at = std::find(order.begin(), order.end(), failed);
+            const auto earlier = static_cast<std::ptrdiff_t>(
+                random.uniform() * static_cast<double>(at - order.begin()));
+            std::rotate(order.begin() + earlier, at, at + 1);
+            if (kind < 0.15) plan_.turn[failed] = random.uniform(0, std::numbers::pi / 2);
+        } else if (kind < 0.65) {
+            std::swap(order[pick()], order[pick()]);
+        } else {
+            plan_.turn[order[pick()]] =
+                kind < 0.75 ? 0 : random.uniform(0, std::numbers::pi / 2);
+        }
+    }
+
+    /// Cells to block on both sides of a taken one, by row distance: those less than a
+    /// gutter away. Cells d apart (in x and y) have |(max(d − 1, 0)) cell| between them.
+    std::vector<int> reach_of_gutter(std::uint32_t cell) const {
+        std::vector<int> reach;
+        const double g = static_cast<double>(gutter_) / cell;
+        for (int dy = 0; std::max(dy - 1, 0) < g; ++dy) {
+            const double left = g * g - std::pow(std::max(dy - 1, 0), 2);
+            int dx = 0;
+            while (dx * dx < left) ++dx;
+            reach.push_back(dx);
+        }
+        if (reach.empty()) reach.push_back(0);
+        return reach;
+    }
+
     std::uint32_t gutter_;
     ProgressFn progress_;
     std::vector<Shape> shapes_;
-    std::vector<std::size_t> order_;
+    std::vector<Masks> cache_;
+    Plan plan_;
     double area_ = 0;
 };
 
@@ -413,19 +516,18 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
 
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options) {
     Packing packing;
-    const Packer packer(borders, options.gutter, options.progress);
+    Packer packer(borders, options.gutter, options.progress);
     if (options.size > 0) {
-        auto [layout, scale] = packer.largest(options.size);
+        Layout layout = packer.largest(options.size, options.quick);
         packing.size = options.size;
-        packing.fits = layout.placed;
-        packing.texels_per_unit = scale;
+        packing.fits = layout.complete();
+        packing.texels_per_unit = layout.scale;
         packing.placements = std::move(layout.placements);
         // A page too small for the gutters: grow it until charts cover their least part.
         for (double size = options.size; !packing.fits && size < 1e6; size *= 1.25) {
             packing.size = static_cast<std::uint32_t>(size * 1.25 / 16 + 1) * 16;
             const double least = std::sqrt(kLeastUse / packer.area()) * packing.size;
-            const Layout trial = packer.fill(packing.size, least, 1);
-            if (trial.placed) break;
+            if (packer.at_scale(packing.size, least, 1).complete()) break;
         }
         return packing;
     }
@@ -434,14 +536,14 @@ Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& o
     for (int trial = 0; trial < 24; ++trial) {
         report(options.progress, "pack", trial / 24.0);
         packing.size = static_cast<std::uint32_t>(size / 16 + 1) * 16;
-        Layout layout = packer.fill(packing.size, options.texels_per_unit, 2);
-        if (layout.placed && layout.rows <= packer.cells(packing.size)) {
+        const std::uint32_t cells = packer.page(packing.size, kCells).cells;
+        Layout layout = packer.at_scale(packing.size, options.texels_per_unit, 2);
+        if (layout.complete() && layout.rows <= cells) {
             packing.fits = true;
             packing.placements = std::move(layout.placements);
             break;
         }
-        const double filled =
-            layout.placed ? static_cast<double>(layout.rows) / packer.cells(packing.size) : 2;
+        const double filled = layout.complete() ? static_cast<double>(layout.rows) / cells : 2;
         size = std::max(packing.size + 15.0, packing.size * std::sqrt(filled) * 0.995);
     }
     return packing;

@@ -13,6 +13,7 @@ struct PackOptions {
     std::uint32_t size = 0;      ///< texels per side; 0: as many as `texels_per_unit` needs
     double texels_per_unit = 0;  ///< scale; 0: the largest that fits `size`
     std::uint32_t gutter = 4;    ///< texels free between charts; half of it along the page's edge
+    bool quick = false;          ///< take the first layout that fits
     ProgressFn progress;
 };
 
@@ -23,7 +24,7 @@ struct Placement {
 };
 
 struct Packing {
-    bool fits = false;           ///< with at least 1 % of the page covered
+    bool fits = false;           ///< with at least 0.1 % of the page covered
     std::uint32_t size = 0;      ///< of the page; when it does not fit, one that would
     double texels_per_unit = 0;
     std::vector<Placement> placements;  ///< [n_charts]

@@ -9,7 +9,6 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr double kBand = 0.25;       // how far a path may leave its chain, over the chain's length
 constexpr double kCreaseDiscount = 0.6;  // part of the length that an edge bent by kCrease saves
 constexpr double kCrease = 0.7;      // radians
 constexpr int kRounds = 2;
@@ -34,14 +33,17 @@ class Straightener {
             corner_[v] = border_[v] || std::abs(angle[v] - 2 * std::numbers::pi) > kSlitDefect;
     }
 
-    void run() {
+    void run(std::span<const float> reach) {
         std::vector<std::uint8_t> seen(seam_.size(), 0);
         for (std::uint32_t h = 0; h < seam_.size(); ++h) {
             if (!seam_[h] || patch_.twin[h] == kNone || seen[h] || !is_corner(origin(h))) continue;
             std::vector<std::uint32_t> chain{h};
             while (!is_corner(end(chain.back()))) chain.push_back(onward(chain.back()));
             for (const std::uint32_t g : chain) seen[g] = seen[patch_.twin[g]] = 1;
-            shorten(chain);
+            const std::uint32_t twin = patch_.twin[h];
+            const float r = reach.empty() ? kSeamReach : std::min(reach[h / 3], reach[twin / 3]);
+            path_.clear();
+            if (r > 0) shorten(chain, r);
             for (const std::uint32_t g : path_) seen[g] = seen[patch_.twin[g]] = 1;
         }
     }
@@ -120,8 +122,7 @@ class Straightener {
         }
     }
 
-    void shorten(const std::vector<std::uint32_t>& chain) {
-        path_.clear();
+    void shorten(const std::vector<std::uint32_t>& chain, float reach) {
         const std::uint32_t from = origin(chain.front()), to = end(chain.back());
         if (from == to || chain.size() < 2) return;
         float length = 0, now = 0;
@@ -129,7 +130,7 @@ class Straightener {
             length += patch_.length[h];
             now += weight(h);
         }
-        mark_band(chain, float(kBand) * length);
+        mark_band(chain, reach * length);
 
         // Only edges inside the two charts may leave and enter the corners.
         std::vector<std::uint32_t> first, last;
@@ -189,8 +190,9 @@ class Straightener {
 
 }  // namespace
 
-void straighten_seams(const Patch& patch, std::vector<std::uint8_t>& seam) {
-    for (int round = 0; round < kRounds; ++round) Straightener(patch, seam).run();
+void straighten_seams(const Patch& patch, std::vector<std::uint8_t>& seam,
+                      std::span<const float> reach) {
+    for (int round = 0; round < kRounds; ++round) Straightener(patch, seam).run(reach);
 }
 
 }  // namespace tuft::atlas

@@ -9,10 +9,13 @@
 #include "atlas/file_uvs.h"
 #include "atlas/merge.h"
 #include "atlas/pack.h"
+#include "atlas/polish.h"
 #include "atlas/snap.h"
 
 namespace tuft::atlas {
 namespace {
+
+constexpr int kMostRepairs = 24;
 
 class Stopwatch {
   public:
@@ -36,7 +39,7 @@ double mean_texel_size(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
     return std::sqrt(mesh::surface_area(mesh) / area_uv) / atlas.size;
 }
 
-Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options) {
+Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options, bool quick) {
     std::vector<std::vector<Vec2>> borders;
     borders.reserve(cut.charts.size());
     for (const FlatChart& chart : cut.charts) {
@@ -45,6 +48,7 @@ Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options) {
     }
     PackOptions pack_options;
     pack_options.gutter = options.gutter;
+    pack_options.quick = quick;
     pack_options.progress = options.progress;
     if (options.size > 0)
         pack_options.size = options.size;
@@ -103,20 +107,28 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     watch.lap(out.report, "charts");
     merge_charts(mesh, cut, chart_options, {}, options.progress);
     watch.lap(out.report, "merge");
+    polish_charts(mesh, cut, chart_options, options.progress);
+    watch.lap(out.report, "polish");
     Atlas& atlas = out.atlas;
     atlas.gutter = options.gutter;
     atlas.corner_uvs.resize(3 * mesh.n_triangles());
     atlas.triangle_chart.resize(mesh.n_triangles());
     // Slivers that vanish in rounding become charts of their own; charts that overlap
-    // after all are cut. Both end, at single triangles at the latest.
-    for (int round = 0;; ++round) {
-        const Packing packing = pack_charts(cut, options);
+    // after all are cut. Both end, at single triangles at the latest. A quick layout is
+    // enough to find them; the best one is made at the end and checked again.
+    bool quick = true;
+    for (int round = 0; round < kMostRepairs; ++round) {
+        const Packing packing = pack_charts(cut, options, quick);
         watch.lap(out.report, "pack");
         std::vector<std::uint32_t> roomless = place_charts(cut, packing, atlas);
         const Coverage coverage = cover(atlas.corner_uvs, atlas.triangle_chart, atlas.size);
         report(options.progress, "check", 1);
         watch.lap(out.report, "check");
-        if (round == 16 || (roomless.empty() && coverage.twice == 0)) break;
+        if (roomless.empty() && coverage.twice == 0) {
+            if (!quick) break;
+            quick = false;
+            continue;
+        }
         if (!roomless.empty()) {
             std::sort(roomless.begin(), roomless.end());
             cut_out(mesh, cut, roomless, chart_options, options.progress);

@@ -13,7 +13,7 @@ TEST(Unwrap, AnyCleanMeshGetsAnAtlas) {
     for (const test::NastyMesh& nasty : meshes) {
         SCOPED_TRACE(nasty.name);
         UnwrapOptions options;
-        options.size = 512;
+        options.size = 256;
         Unwrapped u;
         ASSERT_NO_THROW(u = unwrap(nasty.mesh, options));
         EXPECT_EQ(u.report.flips, 0u);

@@ -80,7 +80,7 @@ TEST(Unwrap, ShapesKeepTheInvariants) {
         const Unwrapped u = unwrap(m, options);
         expect_sound(m, u);
         EXPECT_EQ(u.atlas.size, 512u);
-        EXPECT_LE(u.report.l2_stretch, 1.006);  // each chart is cut until it stays below that
+        EXPECT_LE(u.report.l2_stretch, 1.006);  // what charts may have, straight seams included
         EXPECT_GE(u.report.utilisation, 0.4);
     }
 }
