@@ -106,6 +106,17 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->check(CLI::IsMember({"surface", "plane"}));
     p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
         ->check(CLI::IsMember({"exact", "vertices"}));
+    p->add_option("--dip", paint.dip, "dip a fresh brush for each stroke, or carry hair and ink on until told")
+        ->check(CLI::IsMember({"each", "carry"}));
+    p->add_option("--pressure", paint.pressure,
+                  "pressure for flat strokes that have none: none, speed, dwell or speed+dwell")
+        ->check(CLI::IsMember({"none", "speed", "dwell", "speed+dwell"}));
+    p->add_option("--smooth", paint.smooth, "steady a shaky hand: 1 takes the jitter of a mouse away, 0 is off")
+        ->check(CLI::Range(0.0, 100.0));
+    p->add_option("--stabilise", paint.stabilise_mm, "pull the tip on a string of so many millimetres")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->type_name("MM");
+    p->add_option("--habit", paint.habit, "undo a writer's habit (.toml, made by 'tuft habit')");
     p->add_option_function<std::string>(
          "--place",
          [&paint](const std::string& text) {
@@ -119,7 +130,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("--project", paint.project, "write a project file (.tuft)");
     p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
     p->add_option("--preview", paint.preview, "write a picture (.png)");
-    p->add_option("--forces", paint.forces, "write time, pose, force and moment of every stamp (.csv)");
+    p->add_option("--forces", paint.forces, "write time, pose, force, force on the hand and moment at every step (.csv)");
     add_view(p, paint.view);
     add_common(p, paint.common);
 
@@ -179,6 +190,13 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     fit->add_option("-o,--output", brush.output, "brush preset to write (.toml)")->required();
     add_common(b, brush.common);
 
+    Habit habit;
+    auto* h = app.add_subcommand("habit", "learn how a writer's strokes differ from those that were meant");
+    h->add_option("INTENDED", habit.intended, "strokes as they should be (.inkml)")->required();
+    h->add_option("WRITTEN", habit.written, "the same strokes as the writer makes them (.inkml)")->required();
+    h->add_option("-o,--output", habit.output, "habit to write (.toml)")->required();
+    add_common(h, habit.common);
+
     Bench bench;
     auto* n = app.add_subcommand("bench", "measure the speed on this machine");
     n->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones");
@@ -210,6 +228,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     else if (e->parsed()) command = exported;
     else if (d->parsed()) command = render;
     else if (b->parsed()) command = brush;
+    else if (h->parsed()) command = habit;
     else command = bench;
     return true;
 }

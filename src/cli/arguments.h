@@ -39,6 +39,11 @@ struct Paint {
     std::string spine = "rod";      ///< rod | table
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";  ///< exact | vertices
+    std::string dip = "each";       ///< each | carry
+    std::string pressure = "none";  ///< none | speed | dwell | speed+dwell, for strokes without any
+    double smooth = 0;              ///< strength of the hand's filter; 0: off
+    double stabilise_mm = 0;        ///< length of the string; 0: off
+    std::filesystem::path habit;    ///< habit to undo, or empty
     std::vector<double> place_mm;   ///< x,y,z of the placement for flat strokes, or empty
     Surface surface;
     std::filesystem::path project, exported, preview, forces;
@@ -87,13 +92,19 @@ struct Brush {
     Common common;
 };
 
+/// `tuft habit INTENDED.inkml WRITTEN.inkml -o HABIT.toml`
+struct Habit {
+    std::filesystem::path intended, written, output;
+    Common common;
+};
+
 struct Bench {
     std::filesystem::path model;    ///< empty: models made by the benchmark
     bool quick = false;
     Common common;
 };
 
-using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Bench>;
+using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench>;
 
 /// Reads the command line. Prints help or version and returns false with `status` set
 /// when there is nothing to run; a wrong command line gives one line on standard error

@@ -33,6 +33,8 @@ int inspect_project(const Inspect& a) {
                          {"strokes", nlohmann::json::array()}};
         for (const stroke::Stroke& s : strokes)
             j["strokes"].push_back({{"id", s.id},
+                                    {"action", stroke::name_of(s.action)},
+                                    {"dip", s.settings.dip},
                                     {"label", s.trace.label},
                                     {"brush", s.trace.brush},
                                     {"ink", s.trace.ink},
@@ -47,7 +49,7 @@ int inspect_project(const Inspect& a) {
                model.mesh.n_triangles(), size.x, size.y, size.z, model.atlas.size, model.atlas.size,
                model.atlas.n_charts, model.atlas.texel_size / kMillimetre);
     for (const stroke::Stroke& s : strokes)
-        fmt::print("  stroke {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", s.id, s.trace.brush,
+        fmt::print("  {:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", stroke::name_of(s.action), s.id, s.trace.brush,
                    s.trace.ink, s.trace.samples.size(), s.trace.label, s.hidden ? " (hidden)" : "");
     return 0;
 }

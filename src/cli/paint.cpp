@@ -18,24 +18,36 @@ double seconds_since(Clock::time_point start) {
 }
 
 std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
-    std::string csv = "stroke,time_s,x_m,y_m,z_m,qw,qx,qy,qz,force_x_N,force_y_N,force_z_N,moment_Nm\n";
+    std::string csv =
+        "stroke,time_s,x_m,y_m,z_m,qw,qx,qy,qz,force_x_N,force_y_N,force_z_N,"
+        "hand_x_N,hand_y_N,hand_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,moment_Nm\n";
     for (const stroke::StrokeReport& report : reports)
         for (const stroke::ForceRecord& f : report.forces) {
             const brush::Pose& p = f.pose;
-            csv += fmt::format("{},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{:.6g}\n",
-                               report.stroke_id, p.time, p.position.x, p.position.y, p.position.z,
-                               p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z, f.force.x,
-                               f.force.y, f.force.z, f.moment);
+            csv += fmt::format("{},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", report.stroke_id,
+                               p.time, p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x,
+                               p.rotation.y, p.rotation.z);
+            for (const Vec3& v : {f.force, f.hand_force, f.torque})
+                csv += fmt::format(",{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
+            csv += fmt::format(",{:.6g}\n", f.moment);
         }
     return csv;
 }
 
+// What was painted: the journal without the actions of the brush, one entry per report.
+std::vector<const stroke::Stroke*> painted_strokes(const stroke::Journal& journal) {
+    std::vector<const stroke::Stroke*> strokes;
+    for (const stroke::Stroke& s : journal.strokes())
+        if (s.action == stroke::Action::stroke) strokes.push_back(&s);
+    return strokes;
+}
+
 // Warnings for strokes that never met the model.
 void note_misses(const std::vector<stroke::StrokeReport>& reports,
-                 const std::vector<stroke::Stroke>& strokes, Console& console) {
+                 const std::vector<const stroke::Stroke*>& strokes, Console& console) {
     for (std::size_t i = 0; i < reports.size(); ++i) {
         if (reports[i].touched()) continue;
-        const std::string& label = strokes[i].trace.label;
+        const std::string& label = strokes[i]->trace.label;
         console.note(fmt::format("warning: stroke {}{} never touches the model; it stays {:.2f} mm away",
                                  reports[i].stroke_id, label.empty() ? "" : " (" + label + ")",
                                  reports[i].nearest / kMillimetre));
@@ -71,17 +83,19 @@ int run(const Paint& a) {
     std::vector<stroke::StrokeReport> reports;
     const ProgressFn progress = console.progress();
     for (std::size_t i = 0; i < strokes.size(); ++i) {
-        reports.push_back(painting.paint(strokes[i], [&](std::string_view phase, double fraction) {
+        stroke::StrokeReport report = painting.paint(strokes[i], [&](std::string_view phase, double fraction) {
             if (first_stamp == 0) first_stamp = seconds_since(start);
             return progress(phase, (static_cast<double>(i) + fraction) / static_cast<double>(strokes.size()));
-        }));
+        });
+        if (strokes[i].action == stroke::Action::stroke) reports.push_back(std::move(report));
         if (project) project->append(painting.journal().strokes().back());
     }
     if (project && !strokes.empty())
         project->save_canvas(painting.canvas(), painting.journal().strokes().back().id);
     const double painted = seconds_since(painting_start);
     console.clear();
-    note_misses(reports, strokes, console);
+    const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal());
+    note_misses(reports, done, console);
 
     write_outputs(outputs, painting, console);
     if (!a.forces.empty()) {
@@ -101,7 +115,7 @@ int run(const Paint& a) {
         j["atlas"] = to_json(model.atlas, model.atlas_report);
         j["strokes"] = nlohmann::json::array();
         for (std::size_t i = 0; i < reports.size(); ++i)
-            j["strokes"].push_back(to_json(reports[i], painting.journal().strokes()[i]));
+            j["strokes"].push_back(to_json(reports[i], *done[i]));
         j["stamps"] = stamps;
         j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
         j["canvas_hash"] = fmt::format("{:016x}", painting.canvas().hash());

@@ -14,6 +14,7 @@
 #include "io/image.h"
 #include "io/inkml.h"
 #include "io/read_model.h"
+#include "stroke/habit.h"
 
 namespace fs = std::filesystem;
 
@@ -89,17 +90,34 @@ void check_extension(const fs::path& path, const std::vector<std::string>& allow
 }
 
 std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
+    stroke::Settings settings;
+    settings.spine = a.spine;
+    settings.footprint = a.footprint;
+    settings.contact = a.contact;
+    settings.dip = a.dip;
+    settings.smooth = a.smooth;
+    settings.stabilise = a.stabilise_mm * kMillimetre;
+    std::optional<stroke::Habit> habit;
+    if (!a.habit.empty()) habit = stroke::load_habit(a.habit);
+
     std::vector<stroke::Stroke> strokes;
     for (const fs::path& file : a.strokes) {
-        for (stroke::Trace& trace : io::read_inkml(file)) {
+        std::vector<stroke::Trace> traces = io::read_inkml(file);
+        if (habit) traces = stroke::undo_habit(*habit, std::move(traces));
+        for (stroke::Trace& trace : traces) {
             if (trace.brush.empty() || !a.brush.empty())
                 trace.brush = a.brush.empty() ? "wolf-medium" : a.brush;
             if (trace.ink.empty() || !a.ink.empty()) trace.ink = a.ink.empty() ? "carbon" : a.ink;
-            stroke::Stroke s;
+            for (const stroke::Care& care : std::exchange(trace.before, {})) {
+                stroke::Stroke entry{.settings = settings, .action = care.action};
+                entry.trace.flat = false;
+                entry.trace.brush = trace.brush;
+                entry.trace.ink = care.ink.empty() ? trace.ink : care.ink;
+                strokes.push_back(std::move(entry));
+            }
+            stroke::Stroke s{.settings = settings};
+            if (trace.flat && !trace.pressed) s.settings.pressure = a.pressure;
             s.trace = std::move(trace);
-            s.settings.spine = a.spine;
-            s.settings.footprint = a.footprint;
-            s.settings.contact = a.contact;
             strokes.push_back(std::move(s));
         }
         report(console.progress(), "strokes", 1);

@@ -11,6 +11,7 @@
 #include "core/files.h"
 #include "core/units.h"
 #include "io/inkml_decode.h"
+#include "stroke/journal.h"
 
 namespace tuft::io {
 
@@ -293,6 +294,8 @@ class Reader {
             std::string_view type = node.attribute("type").value();
             if (type.rfind("tuft:", 0) != 0) continue;
             type.remove_prefix(5);
+            if (is_care(type) && local_name(parent) != "trace")
+                fail(node, "tuft:" + std::string(type) + " belongs on the trace before which it is done");
             const std::string whole = text_of(node);
             const std::string_view text = trimmed(whole);
             if (type == "brush")
@@ -321,6 +324,25 @@ class Reader {
                     fail(node, "tuft:seed is not a whole number");
             }
         }
+    }
+
+    static bool is_care(std::string_view type) {
+        return type == "dip" || type == "rinse" || type == "reshape";
+    }
+
+    /// What is to be done with the brush before this trace, in the order written.
+    std::vector<stroke::Care> care_of(const xml_node& trace) const {
+        std::vector<stroke::Care> care;
+        for (const xml_node& node : trace.children()) {
+            if (local_name(node) != "annotation") continue;
+            std::string_view type = node.attribute("type").value();
+            if (type.rfind("tuft:", 0) != 0 || !is_care(type.substr(5))) continue;
+            type.remove_prefix(5);
+            const std::string text = text_of(node);
+            const stroke::Action action = stroke::action_of(std::string(type));
+            care.push_back({action, action == stroke::Action::dip ? std::string(trimmed(text)) : ""});
+        }
+        return care;
     }
 
     Vec3 direction_of(const xml_node& node, std::string_view text) const {
@@ -373,6 +395,7 @@ class Reader {
         n_samples_ += rows.n_rows();
 
         Draft draft = draft_of(rows, state, line);
+        draft.trace.before = care_of(node);
         if (const auto x = to_number(node.attribute("duration").value()))
             draft.duration = 1e-3 * *x;
         const std::string_view continuation = node.attribute("continuation").value();
@@ -385,7 +408,7 @@ class Reader {
             start.trace.samples.insert(start.trace.samples.end(), draft.trace.samples.begin(),
                                        draft.trace.samples.end());
             start.has_time = start.has_time && draft.has_time;
-            start.has_pressure = start.has_pressure && draft.has_pressure;
+            start.has_pressure = start.trace.pressed = start.has_pressure && draft.has_pressure;
             by_id_[id_of(node)] = it->second;
             return;
         }
@@ -414,6 +437,7 @@ class Reader {
         d.trace.ink = state.marks.ink;
         d.trace.seed = state.marks.seed;
         d.trace.label = state.marks.label;
+        d.trace.pressed = d.has_pressure;
         d.trace.samples.reserve(rows.n_rows());
         for (std::size_t i = 0; i < rows.n_rows(); ++i) {
             const auto get = [&](int k) { return k >= 0 ? rows.at(i, k) : 0.0; };

@@ -44,6 +44,9 @@ struct InkmlOptions {
 ///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
 ///     tuft:label    any text             tuft:laying  wrap | project
 ///
+/// and, on a `trace` only, what is done with the brush before it, in the order written:
+/// tuft:dip (an ink's name, or empty: the trace's own), tuft:rinse, tuft:reshape.
+///
 /// Flat traces without P and F get pressure that swells in and tapers out over their length
 /// and falls with speed; P without a declared range is 0–1, or scaled by its largest value.
 ///

@@ -6,6 +6,7 @@
 #include "core/files.h"
 #include "core/units.h"
 #include "io/inkml.h"
+#include "stroke/journal.h"
 
 namespace tuft::io {
 
@@ -98,6 +99,9 @@ void add_format(std::string& out, Kind kind) {
 void add_trace(std::string& out, const Trace& trace, Kind kind) {
     out += fmt::format("    <trace contextRef=\"#{}\">\n", name_of(kind));
     add_annotation(out, "      ", "label", trace.label);
+    for (const stroke::Care& care : trace.before)
+        out += fmt::format("      <annotation type=\"tuft:{}\">{}</annotation>\n", stroke::name_of(care.action),
+                           escaped(care.ink));
     if (trace.seed) add_annotation(out, "      ", "seed", std::to_string(trace.seed));
     const int decimals = trace.flat ? 3 : 7;
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {

@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/steps.h"
+#include "core/files.h"
+#include "io/inkml.h"
+#include "stroke/habit.h"
+
+namespace tuft::cli {
+
+int run(const Habit& a) {
+    check_extension(a.output, {".toml"});
+    check_output(a.output);
+    const std::vector<stroke::Trace> intended = io::read_inkml(a.intended), written = io::read_inkml(a.written);
+    stroke::Habit habit;
+    try {
+        habit = stroke::learn_habit(intended, written);
+    } catch (const Error& error) {
+        throw Error(a.written.string(), error.what());
+    }
+    const std::string toml = stroke::habit_toml(habit);
+    write_file(a.output, toml.data(), toml.size());
+    double ratio = 0;
+    for (const stroke::HabitPiece& p : habit.pieces)
+        for (const double r : p.pressure_ratio) ratio += r / (4.0 * static_cast<double>(habit.pieces.size()));
+    const glm::dmat2& m = habit.linear;
+    if (a.common.json)
+        std::cout << nlohmann::json{{"wrote", a.output.string()},
+                                    {"strokes", written.size()},
+                                    {"pieces", habit.pieces.size()},
+                                    {"pressure_ratio", ratio},
+                                    {"linear", {{m[0][0], m[1][0]}, {m[0][1], m[1][1]}}}}
+                         .dump(2)
+                  << '\n';
+    else
+        fmt::print("wrote {}: {} strokes in {} pieces; mean pressure x {:.2f}, slant {:+.2f}, width x {:.2f}, height x {:.2f}\n",
+                   a.output.string(), written.size(), habit.pieces.size(), ratio, m[1][0], m[0][0], m[1][1]);
+    return 0;
+}
+
+}  // namespace tuft::cli
