@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kPosesPerReport = 16;
 // Bending moment of a firm press over B0/L: what a hand reaches at the working depth.
 constexpr double kFirmPress = 0.1;
+constexpr double kForceTime = 5e-3;  // seconds of the low-pass on the force to the hand
 
 footprint::StampOptions stamp_options(const Settings& settings) {
     footprint::StampOptions o;
@@ -48,6 +49,7 @@ struct Painting::Hand {
     brush::TuftState state;
     double last_time = 0;
     bool moved = false, was_touching = false;
+    Vec3 force{0};  // to the hand
     Vec3 last_position{0};
 
     Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& model, ink::Canvas& canvas,
@@ -209,12 +211,14 @@ void Painting::draw_poses() {
         if (!h.moved && h.tuft.posed) brush::step(h.tuft, pose, {}, 0);
         contact::Result contact =
             contact::step(h.tuft, pose, *model_->query, h.memory, dt, h.contact_options);
+        h.force += -std::expm1(-std::max(dt, 0.0) / kForceTime) * (contact.hand_force - h.force);
+        if (!h.moved) h.force = contact.hand_force;
         h.last_time = pose.time;
         h.moved = true;
         h.state = contact.tuft;
         h.report.nearest = std::min(h.report.nearest, contact.distance);
         if (options_.record_forces)
-            h.report.forces.push_back({pose, contact.tuft.force, contact.hand_force,
+            h.report.forces.push_back({pose, contact.tuft.force, h.force,
                                        contact.tuft.moment, contact.tuft.root_moment});
         if (!contact.tuft.touching || contact.triangle == kNone) {
             h.was_touching = false;
@@ -333,6 +337,7 @@ ink::ComposeOptions Painting::compose_options() const {
     return {.gutter = model_->atlas.gutter, .seams = gutter_.get()};
 }
 
+Vec3 Painting::hand_force() const { return hand_ ? hand_->force : Vec3{0}; }
 const brush::TuftState* Painting::tuft() const { return hand_ ? &hand_->state : nullptr; }
 
 std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const ProgressFn& progress) {

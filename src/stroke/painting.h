@@ -24,7 +24,9 @@ namespace tuft::stroke {
 struct ForceRecord {
     brush::Pose pose;
     Vec3 force{0};             ///< newtons, of the surface on the tuft: normal and friction
-    Vec3 hand_force{0};        ///< newtons, for a haptic device (contact::Result::hand_force)
+    Vec3 hand_force{0};        ///< newtons, for a haptic device: contact::Result::hand_force (gain,
+                               ///< proximity, clamp) under a low-pass of 5 ms, so that a tip that
+                               ///< slips or buckles does not knock
     Vec3 torque{0};            ///< N·m, of `force` about the ferrule's mouth
     double moment = 0;         ///< N·m, bending moment at the ferrule
 };
@@ -94,6 +96,8 @@ class Painting {
     bool in_stroke() const { return hand_ != nullptr; }
     /// The bent tuft at the last sample, for drawing it; empty between strokes.
     const brush::TuftState* tuft() const;
+    /// What a haptic device shall give at the last sample, newtons; 0 between strokes.
+    Vec3 hand_force() const;
 
     /// The brush as the last entry with it left it; null when this painting does not hold it.
     const BrushInHand* held(const std::string& brush) const;

@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "program.h"
 
@@ -85,6 +88,116 @@ TEST_F(Commands, BrushPrintsItsTableAndListsItself) {
         last = row["moment_mNm"];
     }
     EXPECT_TRUE(read(path("b.csv")).starts_with("z_mm,width_mm,drag_mm,offset_mm\n"));
+}
+
+TEST_F(Commands, ABrushIsCarriedOnAndReplaysTheSame) {
+    // Three strokes beside each other; before the third the brush is dipped into another ink.
+    std::string ink = stroke_file();
+    const std::size_t at = ink.find("<trace>"), end = ink.find("</trace>") + 8;
+    const std::string trace = ink.substr(at, end - at);
+    std::string told = trace;
+    told.insert(7, "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dip\">cinnabar</annotation>");
+    write("s.inkml", ink.substr(0, at) + trace + trace + told + ink.substr(end));
+    const std::string common = "paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --json";
+    const Ran carried = tuft(common + " --dip carry --project " + path("p.tuft"));
+    ASSERT_EQ(carried.status, 0) << carried.err;
+    const json j = json::parse(carried.out);
+    ASSERT_EQ(j["strokes"].size(), 3u);
+    EXPECT_NE(j["canvas_hash"], json::parse(tuft(common).out)["canvas_hash"]) << "a fresh brush each time";
+    const Ran replayed = tuft("replay " + path("p.tuft") + " --json");
+    ASSERT_EQ(replayed.status, 0) << replayed.err;
+    EXPECT_EQ(json::parse(replayed.out)["canvas_hash"], j["canvas_hash"]);
+    EXPECT_EQ(json::parse(replayed.out)["strokes"], 3);
+    const json entries = json::parse(tuft("inspect " + path("p.tuft") + " --json").out)["strokes"];
+    ASSERT_EQ(entries.size(), 5u);
+    EXPECT_EQ(entries[2]["action"], "reshape");
+    EXPECT_EQ(entries[3]["action"], "dip");
+    EXPECT_EQ(entries[3]["ink"], "cinnabar");
+}
+
+// A wavy line without pressure; `slant` leans it, `width` of the way in mm.
+std::string plain_pen(double slant, bool with_pressure, double pressure = 0.5) {
+    std::ostringstream ink;
+    ink << "<ink><traceFormat><channel name=\"X\" type=\"decimal\" units=\"mm\"/>"
+           "<channel name=\"Y\" type=\"decimal\" units=\"mm\"/>";
+    if (with_pressure) ink << "<channel name=\"P\" type=\"decimal\" min=\"0\" max=\"1\"/>";
+    ink << "<channel name=\"T\" type=\"decimal\" units=\"ms\"/></traceFormat>";
+    for (int stroke = 0; stroke < 4; ++stroke) {
+        ink << "<trace>";
+        for (int i = 0; i <= 60; ++i) {
+            const double u = i / 60.0, x = 10 * u - 5 + stroke, y = (stroke - 1.5) * 4 * u * u - 2 * u;
+            ink << (i ? ", " : "") << x + slant * y << ' ' << y;
+            if (with_pressure) ink << ' ' << pressure;
+            ink << ' ' << 10 * i;
+        }
+        ink << "</trace>";
+    }
+    return ink.str() + "</ink>";
+}
+
+TEST_F(Commands, AHandWithoutPressureGetsItWhenAsked) {
+    write("plain.inkml", plain_pen(0, false));
+    write("pressed.inkml", plain_pen(0, true));
+    const auto hash = [&](const std::string& file, const std::string& more) {
+        const Ran ran = tuft("paint " + model("sheet.ply") + " --place 0,0,0 --strokes " + path(file) +
+                             " --brush wolf-small --atlas-size 256 --json --project " + path("p.tuft") + " " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        const std::string painted = json::parse(ran.out)["canvas_hash"];
+        EXPECT_EQ(json::parse(tuft("replay " + path("p.tuft") + " --json").out)["canvas_hash"], painted) << more;
+        return painted;
+    };
+    const std::string plain = hash("plain.inkml", "");
+    EXPECT_NE(hash("plain.inkml", "--pressure speed"), plain);
+    EXPECT_NE(hash("plain.inkml", "--pressure speed+dwell"), hash("plain.inkml", "--pressure speed"));
+    EXPECT_NE(hash("plain.inkml", "--stabilise 2 --smooth 1"), plain);
+    // A pen that has pressure keeps it.
+    EXPECT_EQ(hash("pressed.inkml", "--pressure speed"), hash("pressed.inkml", ""));
+    EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --pressure guess").status, 2);
+    EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --stabilise -1").status, 2);
+}
+
+TEST_F(Commands, AHabitIsLearnedAndTakenBack) {
+    write("meant.inkml", plain_pen(0, true, 0.5));
+    write("written.inkml", plain_pen(-0.3, true, 0.4));
+    const Ran learned = tuft("habit " + path("meant.inkml") + " " + path("written.inkml") + " -o " + path("h.toml") + " --json");
+    ASSERT_EQ(learned.status, 0) << learned.err;
+    const json j = json::parse(learned.out);
+    EXPECT_NEAR(j["pressure_ratio"].get<double>(), 1.25, 0.01);
+    EXPECT_NEAR(j["linear"][0][1].get<double>(), 0.3, 0.02);  // the pull to the identity
+    const auto ink_of = [&](const std::string& file, const std::string& more) {
+        const Ran ran = tuft("paint " + model("sheet.ply") + " --place 0,0,0 --strokes " + path(file) +
+                             " --brush wolf-small --atlas-size 256 --json " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return json::parse(ran.out)["ink_mm3"].get<double>();
+    };
+    const double meant = ink_of("meant.inkml", ""), written = ink_of("written.inkml", "");
+    const double corrected = ink_of("written.inkml", "--habit " + path("h.toml"));
+    EXPECT_LT(std::abs(corrected - meant), 0.2 * std::abs(written - meant));
+    write("one.inkml", plain_pen(0, true).substr(0, plain_pen(0, true).find("</trace>")) + "</trace></ink>");
+    const Ran bad = tuft("habit " + path("one.inkml") + " " + path("written.inkml") + " -o " + path("x.toml"));
+    EXPECT_EQ(bad.status, 1);
+    EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 1) << bad.err;
+    EXPECT_FALSE(std::filesystem::exists(path("x.toml")));
+}
+
+TEST_F(Commands, ForcesAreATableOfNumbers) {
+    write("s.inkml", stroke_file());
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --forces " + path("f.csv")).status, 0);
+    std::istringstream csv(read(path("f.csv")));
+    std::string line;
+    std::getline(csv, line);
+    EXPECT_EQ(line, "stroke,time_s,x_m,y_m,z_m,qw,qx,qy,qz,force_x_N,force_y_N,force_z_N,"
+                    "hand_x_N,hand_y_N,hand_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,moment_Nm");
+    int rows = 0;
+    double last = -1;
+    while (std::getline(csv, line)) {
+        ++rows;
+        EXPECT_EQ(std::count(line.begin(), line.end(), ','), 18);
+        const double time = std::stod(line.substr(line.find(',') + 1));
+        EXPECT_GE(time, last);
+        last = time;
+    }
+    EXPECT_GT(rows, 20);
 }
 
 TEST_F(Commands, RenderDrawsATurntable) {

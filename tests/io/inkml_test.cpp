@@ -222,6 +222,38 @@ TEST(Inkml, AnnotationsInheritThroughGroupsAndBrushes) {
     EXPECT_EQ(t[2].placement.laying, stroke::Laying::wrap);
 }
 
+TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
+    const std::string text =
+        "<ink><traceGroup><annotation type=\"tuft:ink\">carbon</annotation>"
+        "<trace><annotation type=\"tuft:rinse\"/><annotation type=\"tuft:dip\"> cinnabar </annotation>"
+        "<annotation type=\"tuft:reshape\"/>0 0, 1 1</trace>"
+        "<trace><annotation type=\"tuft:dip\"/>0 0, 1 1</trace><trace>0 0, 1 1</trace></traceGroup></ink>";
+    const auto traces = parse_inkml(text, "care.inkml");
+    ASSERT_EQ(traces.size(), 3u);
+    ASSERT_EQ(traces[0].before.size(), 3u);
+    EXPECT_EQ(traces[0].before[0].action, stroke::Action::rinse);
+    EXPECT_EQ(traces[0].before[1].action, stroke::Action::dip);
+    EXPECT_EQ(traces[0].before[1].ink, "cinnabar");
+    EXPECT_EQ(traces[0].before[2].action, stroke::Action::reshape);
+    ASSERT_EQ(traces[1].before.size(), 1u);
+    EXPECT_EQ(traces[1].before[0].ink, "");
+    EXPECT_TRUE(traces[2].before.empty());
+    EXPECT_FALSE(traces[0].pressed) << "no P and no F";
+
+    const auto back = parse_inkml(inkml_text(traces), "back.inkml");
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+        ASSERT_EQ(back[i].before.size(), traces[i].before.size());
+        for (std::size_t k = 0; k < traces[i].before.size(); ++k) {
+            EXPECT_EQ(back[i].before[k].action, traces[i].before[k].action);
+            EXPECT_EQ(back[i].before[k].ink, traces[i].before[k].ink);
+        }
+    }
+    // For a whole group it would say nothing about when.
+    EXPECT_THROW(parse_inkml("<ink><traceGroup><annotation type=\"tuft:dip\"/><trace>0 0</trace></traceGroup></ink>",
+                             "group.inkml"),
+                 Error);
+}
+
 TEST(Inkml, PenUpTracesAreSkippedAndContinuationsJoined) {
     const auto t = parse(
         "<trace type='penUp'>0 0</trace><trace xml:id='a' continuation='begin'>1 1,2 2</trace>"

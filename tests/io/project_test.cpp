@@ -158,6 +158,34 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
     EXPECT_EQ(project.n_strokes(), changed.size());
 }
 
+TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
+    const Folder folder("project_actions");
+    std::vector<stroke::Stroke> entries{sample_stroke(1)};
+    entries[0].settings.dip = "carry";
+    entries[0].settings.stabilise = 1.0 / 3;
+    entries[0].settings.pressure = "speed";
+    for (const auto action : {stroke::Action::rinse, stroke::Action::dip, stroke::Action::reshape}) {
+        stroke::Stroke entry;
+        entry.id = entries.size() + 1;
+        entry.action = action;
+        entry.trace.brush = "wolf-small";
+        entry.trace.ink = "cinnabar";
+        entry.settings.dip = "carry";
+        entries.push_back(entry);
+    }
+    {
+        Project project = Project::create(folder / "a.tuft", sample_model());
+        project.append(entries);
+    }
+    const auto back = Project::open(folder / "a.tuft").strokes();
+    ASSERT_EQ(back.size(), entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        expect_equal(back[i], entries[i]);
+        EXPECT_EQ(back[i].action, entries[i].action);
+        EXPECT_EQ(back[i].settings, entries[i].settings);
+    }
+}
+
 TEST(Project, PresetsAreReplacedByName) {
     const Folder folder("project_presets");
     Project project = Project::create(folder / "a.tuft", sample_model());

@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+const std::string kBrush = "wolf-small";
+
+// A stroke on its own place of the sheet, row by row.
+Stroke carried(int row, const std::string& ink = "carbon", const std::string& brush = kBrush,
+               double depth = 4e-3) {
+    Stroke s = line(brush, depth, make_frame({0, 0.004 * row - 0.012, 0}, {0, 0, 1}, {1, 0, 0}));
+    s.trace.ink = ink;
+    s.settings.dip = "carry";
+    s.settings.spacing = 3;  // coarse is enough here, and quick
+    return s;
+}
+
+Stroke action(Action what, const std::string& ink = {}, const std::string& brush = kBrush) {
+    Stroke s;
+    s.action = what;
+    s.trace.flat = false;
+    s.trace.brush = brush;
+    s.trace.ink = ink;
+    s.settings.dip = "carry";
+    return s;
+}
+
+// How far the hair has yielded, radians.
+double set_of(const BrushInHand& brush) {
+    double sum = 0;
+    for (const auto& joint : brush.tuft.spine.memory.joint)
+        if (joint.yielded)
+            for (const Vec2& stop : joint.stop) sum += glm::length(stop);
+    return sum;
+}
+
+TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
+    const Model model = sheet();
+    Painting painting(model);
+    const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
+    double left = capacity;
+    for (int row = 0; row < 3; ++row) {
+        const StrokeReport r = painting.paint(carried(row));
+        // What was there is given or left.
+        EXPECT_NEAR((r.ink_given + r.ink_left) / left, 1, 1e-9);
+        EXPECT_LT(r.ink_left, left);
+        left = r.ink_left;
+        EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), left);
+    }
+    painting.paint(action(Action::dip, "carbon"));
+    EXPECT_NEAR(painting.held(kBrush)->reservoir.remaining() / capacity, 1, 1e-12);
+    painting.paint(action(Action::rinse));
+    EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), 0);
+    const StrokeReport dry = painting.paint(carried(3));
+    EXPECT_TRUE(dry.touched());
+    EXPECT_EQ(dry.ink_given, 0);
+}
+
+TEST(Carry, HairKeepsItsSetUntilItIsCombed) {
+    const Model model = sheet();
+    Painting painting(model);
+    painting.paint(carried(0, "carbon", kBrush, 0.6 * painting.brush(kBrush).length));
+    const double set = set_of(*painting.held(kBrush));
+    ASSERT_GT(set, 0);
+    painting.paint(action(Action::dip, "carbon"));
+    EXPECT_EQ(set_of(*painting.held(kBrush)), set);
+    const double ink = painting.held(kBrush)->reservoir.remaining();
+    painting.paint(action(Action::reshape));
+    EXPECT_EQ(set_of(*painting.held(kBrush)), 0);
+    EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), ink);
+}
+
+TEST(Carry, ACombedFullBrushIsAFreshOne) {
+    const Model model = sheet();
+    Painting carry(model), each(model);
+    carry.paint(carried(0));
+    carry.paint(action(Action::reshape));
+    carry.paint(action(Action::dip, "carbon"));
+    carry.paint(carried(1));
+    Stroke a = carried(0), b = carried(1);
+    a.settings.dip = b.settings.dip = "each";
+    each.paint(a);
+    each.paint(b);
+    // The same up to the rounding of a refilled reservoir and a hair brought from elsewhere.
+    EXPECT_NEAR(carry.canvas().total(model.texels, 0) / each.canvas().total(model.texels, 0), 1, 1e-3);
+}
+
+TEST(Carry, AnotherInkIsDippedIntoUnlessItWasToldBefore) {
+    const Model model = sheet();
+    Painting painting(model);
+    painting.paint(carried(0, "carbon"));
+    painting.paint(carried(1, "cinnabar"));
+    EXPECT_EQ(painting.held(kBrush)->dipped, "cinnabar");
+    EXPECT_EQ(painting.held(kBrush)->reservoir.pigment[0], 0) << "washed before";
+    // Told: a dip on top of what is left, which the next stroke keeps whichever of the two it names.
+    painting.paint(action(Action::dip, "carbon"));
+    const double mixed = painting.held(kBrush)->reservoir.pigment[0];
+    EXPECT_GT(mixed, 0);
+    painting.paint(carried(2, "cinnabar"));
+    EXPECT_GT(painting.held(kBrush)->reservoir.pigment[0], 0);
+    EXPECT_LT(painting.held(kBrush)->reservoir.pigment[0], mixed);
+    EXPECT_GT(painting.held(kBrush)->reservoir.pigment[1], 0);
+}
+
+// Strokes and actions of two brushes.
+std::vector<Stroke> session() {
+    return {carried(0),
+            carried(1),
+            carried(1, "cinnabar", "goat-small"),
+            action(Action::reshape),
+            carried(2),
+            action(Action::dip, "cinnabar"),
+            carried(3),
+            action(Action::rinse, {}, "goat-small"),
+            action(Action::dip, "carbon", "goat-small"),
+            carried(4, "cinnabar", "goat-small")};
+}
+
+TEST(Carry, ReplayIsTheSameToTheBitForAnyThreadCount) {
+    const Model model = sheet();
+    std::uint64_t hash = 0;
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        Painting painting(model);
+        for (const Stroke& s : session()) painting.paint(s);
+        if (threads == 1) hash = painting.canvas().hash();
+        EXPECT_EQ(painting.canvas().hash(), hash);
+        Painting again(model);
+        const auto reports = again.replay(painting.journal().strokes());
+        EXPECT_EQ(reports.size(), 6u) << "one for each stroke, none for the actions";
+        EXPECT_EQ(again.canvas().hash(), hash);
+        EXPECT_EQ(again.held(kBrush)->reservoir.remaining(), painting.held(kBrush)->reservoir.remaining());
+    }
+    set_thread_count(0);
+}
+
+TEST(Carry, UndoBringsTheBrushBackToo) {
+    const Model model = sheet();
+    for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
+        Painting painting(model, {.undo_bytes = undo_bytes});
+        for (const char* name : {"carbon", "cinnabar"})  // a canvas never forgets a pigment it has met
+            ink::mix_of(painting.canvas(), painting.ink(name));
+        const std::vector<Stroke> entries = session();
+        struct Moment {
+            std::uint64_t canvas;
+            double ink, set;
+        };
+        std::vector<Moment> moments;
+        const auto now = [&]() -> Moment {
+            const BrushInHand* brush = painting.held(kBrush);
+            return {painting.canvas().hash(), brush ? brush->reservoir.remaining() : -1, brush ? set_of(*brush) : -1};
+        };
+        for (const Stroke& s : entries) {
+            moments.push_back(now());
+            painting.paint(s);
+        }
+        const std::uint64_t end = painting.canvas().hash();
+        for (std::size_t i = entries.size(); i-- > 1;) {
+            ASSERT_TRUE(painting.undo());
+            const Moment m = now();
+            EXPECT_EQ(m.canvas, moments[i].canvas) << i;
+            EXPECT_EQ(m.ink, moments[i].ink) << i;
+            EXPECT_EQ(m.set, moments[i].set) << i;
+        }
+        while (painting.redo()) {}
+        EXPECT_EQ(painting.canvas().hash(), end);
+    }
+}
+
+TEST(Carry, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
+    const Model model = sheet();
+    Painting first(model);
+    first.paint(carried(0));
+    EXPECT_EQ(first.journal().strokes()[0].settings.dip, "each") << "nothing to carry on from";
+    first.paint(carried(1));
+    EXPECT_EQ(first.journal().strokes()[1].settings.dip, "carry");
+    Painting second(model);
+    second.adopt(first.journal().strokes(), first.canvas());
+    EXPECT_EQ(second.held(kBrush), nullptr);
+    second.paint(carried(2));
+    EXPECT_EQ(second.journal().strokes()[2].settings.dip, "each");
+    second.paint(carried(3));
+    Painting replayed(model);
+    replayed.replay(second.journal().strokes());
+    EXPECT_EQ(replayed.canvas().hash(), second.canvas().hash());
+}
+
+TEST(Carry, ACancelledStrokeLeavesTheBrushAsItWas) {
+    const Model model = sheet();
+    Painting painting(model);
+    painting.paint(carried(0));
+    const double ink = painting.held(kBrush)->reservoir.remaining(), set = set_of(*painting.held(kBrush));
+    painting.begin(carried(1));
+    const auto poses = spatial_poses(carried(1).trace);
+    painting.extend(std::span(poses).first(poses.size() / 2));
+    painting.cancel();
+    EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), ink);
+    EXPECT_EQ(set_of(*painting.held(kBrush)), set);
+    EXPECT_THROW(painting.paint(action(Action::dip, "no-such-ink")), Error);
+    EXPECT_EQ(painting.journal().strokes().size(), 1u);
+}
+
+TEST(Steady, AStrokeInPiecesIsTheWholeStrokeAndReplays) {
+    const Model model = sheet();
+    Stroke whole = line(kBrush, 4e-3);
+    for (std::size_t i = 0; i < whole.trace.samples.size(); ++i)  // a shaky hand
+        whole.trace.samples[i].position.y += 3e-4 * std::sin(1.9 * static_cast<double>(i));
+    whole.settings.smooth = 1;
+    whole.settings.stabilise = 1e-3;
+    Painting at_once(model), in_pieces(model), again(model);
+    at_once.paint(whole);
+    Stroke header = whole;
+    header.trace.samples.clear();
+    in_pieces.begin(header);
+    for (const brush::Pose& pose : spatial_poses(whole.trace)) in_pieces.extend(std::span(&pose, 1));
+    in_pieces.end();
+    EXPECT_EQ(in_pieces.canvas().hash(), at_once.canvas().hash());
+    // The journal keeps the hand as it was, so that the settings can still be changed.
+    EXPECT_EQ(in_pieces.journal().strokes()[0].trace.samples[20].position, whole.trace.samples[20].position);
+    again.replay(in_pieces.journal().strokes());
+    EXPECT_EQ(again.canvas().hash(), at_once.canvas().hash());
+}
+
+}  // namespace
+}  // namespace tuft::stroke

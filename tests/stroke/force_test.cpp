@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kTolerance = 1e-3;  // metres, of contact::Options
+constexpr double kProximity = 0.1;   // newtons
+
+// Comes down, drags and lifts, each in smooth motion, sampled at 1 kHz; the pose moves at most
+// 40 mm/s down and 60 mm/s along.
+Stroke press_drag_lift(const std::string& brush, double depth) {
+    const double length = brush::load_preset(brush).length;
+    const auto ease = [](double x) {
+        x = std::clamp(x, 0.0, 1.0);
+        return x * x * (3 - 2 * x);
+    };
+    Stroke s;
+    s.trace.flat = false;
+    s.trace.brush = brush;
+    s.trace.ink = "carbon";
+    for (int i = 0; i <= 1000; ++i) {
+        const double t = i * 1e-3;
+        const double press = ease(t / 0.3) * ease((1 - t) / 0.3);
+        s.trace.samples.push_back(
+            {.time = t,
+             .position = {-0.012 + 0.024 * ease((t - 0.25) / 0.5), 0, length + 2e-3 - (depth + 2e-3) * press},
+             .rotation = {1, 0, 0, 0}});
+    }
+    return s;
+}
+
+TEST(Forces, GrowAndFallWithoutJumpsAndStayWithinTheClamp) {
+    const Model model = sheet();
+    for (const char* name : {"wolf-small", "goat-medium", "wolf-medium"}) {
+        Painting painting(model, {.record_forces = true});
+        const brush::Preset& preset = painting.brush(name);
+        const StrokeReport r = painting.paint(press_drag_lift(name, 0.3 * preset.length));
+        ASSERT_GT(r.forces.size(), 500u);
+        double greatest = 0, fastest = 0;
+        for (std::size_t i = 0; i < r.forces.size(); ++i) {
+            const ForceRecord& f = r.forces[i];
+            ASSERT_TRUE(std::isfinite(glm::length(f.hand_force)) && std::isfinite(glm::length(f.torque)));
+            EXPECT_LE(glm::length(f.hand_force), preset.force_limit * (1 + 1e-12));
+            greatest = std::max(greatest, glm::length(f.hand_force));
+            if (i == 0) continue;
+            const double dt = f.pose.time - r.forces[i - 1].pose.time;
+            if (dt > 1e-5)
+                fastest = std::max(fastest, glm::distance(f.hand_force, r.forces[i - 1].hand_force) / dt);
+        }
+        // A hand tells changes of a tenth of a newton apart; the hair's onset and slip (up to
+        // 1.5 N at once under a gain of 15) come spread over the low-pass of 5 ms.
+        EXPECT_LT(fastest * 1e-3, 0.3) << name << ", newtons in 1 ms";
+        EXPECT_GT(greatest, 0.5) << name;
+        // On, along and off again: nothing is left in the air.
+        EXPECT_LT(glm::length(r.forces.back().hand_force), 1e-3) << name;
+    }
+}
+
+TEST(Forces, PullBackAndTurnAsTheyMust) {
+    const Model model = sheet();
+    Painting painting(model, {.record_forces = true});
+    const brush::Preset& preset = painting.brush("wolf-medium");
+    const StrokeReport r = painting.paint(press_drag_lift("wolf-medium", 0.25 * preset.length));
+    bool dragged = false;
+    for (const ForceRecord& f : r.forces) {
+        if (!(f.force.z > 0.01)) continue;
+        // Friction lies in the cone of the driest hair pushed tip first.
+        EXPECT_LE(std::hypot(f.force.x, f.force.y), (preset.friction_dry + preset.pore_grip) * f.force.z * 1.05);
+        // The torque is that of a force somewhere on the hair, which cannot be stretched.
+        EXPECT_LE(glm::length(f.torque), 1.01 * preset.length * glm::length(f.force));
+        if (f.pose.time > 0.45 && f.pose.time < 0.55) {
+            dragged = true;
+            EXPECT_LT(f.force.x, 0) << "the hand goes along +x, the surface holds the hair back";
+        }
+    }
+    EXPECT_TRUE(dragged);
+}
+
+TEST(Forces, TellWhenTheSurfaceIsNear) {
+    const Model model = sheet();
+    Painting painting(model, {.record_forces = true});
+    const double length = painting.brush("wolf-small").length;
+    const auto resting = [&](double height) {
+        Stroke s = line("wolf-small", 4e-3);
+        for (TraceSample& p : s.trace.samples) p.position.z = length + height;
+        return painting.paint(s).forces.back().hand_force;
+    };
+    EXPECT_EQ(glm::length(resting(1.5 * kTolerance)), 0);
+    // The wet tip is drawn to the surface a little already.
+    EXPECT_NEAR(glm::length(resting(0.5 * kTolerance)), kProximity, 1e-3);
+    EXPECT_GT(resting(0.5 * kTolerance).z, 0);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
