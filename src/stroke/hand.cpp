@@ -22,9 +22,19 @@ Trace steady(Trace trace, const Settings& settings) {
     auto& samples = trace.samples;
     if (samples.empty() || !trace.flat) return trace;
     if (settings.smooth > 0) {
-        HandFilter filter;
         const HandFilterOptions options = hand_filter_options(settings.smooth);
-        for (TraceSample& s : samples) s = smooth(filter, s, options);
+        const double end = samples.back().time;
+        for (int way = 0; way < 2; ++way) {
+            HandFilter filter;
+            for (TraceSample& s : samples) {
+                TraceSample now = s;
+                if (way == 1) now.time = end - s.time;
+                now = smooth(filter, now, options);
+                now.time = s.time;
+                s = now;
+            }
+            std::reverse(samples.begin(), samples.end());
+        }
     }
     if (settings.stabilise > 0) {
         const double speed = mean_speed(samples);

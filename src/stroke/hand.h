@@ -8,7 +8,8 @@
 /// then pressure from motion. The journal keeps the hand as it was.
 namespace tuft::stroke {
 
-/// A flat trace, all at once; at its end the tip catches up with the hand.
+/// A flat trace, all at once: the filter runs to its end and back again, so that nothing lags
+/// and both ends stay; where the string ends, the tip catches up with the hand.
 Trace steady(Trace trace, const Settings& settings);
 
 /// Poses in space as they come. Filter and string only: a pose has its depth.

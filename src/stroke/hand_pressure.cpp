@@ -11,7 +11,6 @@ namespace {
 constexpr const char* kNames[] = {"none", "speed", "dwell", "speed+dwell"};
 constexpr double kTaper = 3e-3;        // metres over which the hand lifts
 constexpr double kTaperShare = 0.25;   // of the way, at most
-constexpr double kTaperEnd = 0.2;      // of the pressure, where it leaves the surface
 constexpr double kLook = 0.03;         // seconds of the trace that tell its first speed
 
 // Part of the way to its goal that a first-order lag goes in dt.
@@ -75,7 +74,7 @@ Trace press(Trace trace, const PressureOptions& o) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double p = press(state, samples[i].position, samples[i].time, o);
         const double x = taper > 0 ? std::clamp(left[i] / taper, 0.0, 1.0) : 1.0;
-        samples[i].pressure = p * (kTaperEnd + (1 - kTaperEnd) * x * x * (3 - 2 * x));
+        samples[i].pressure = p * x * (2 - x);
     }
     samples.back().pressure = 0;
     return trace;

@@ -99,6 +99,30 @@ TEST(HandFilter, JitterLosesItsPower) {
     EXPECT_LT(power_left(0.02, 1000), 1.0 / 20);
 }
 
+TEST(HandFilter, AWholeTraceDoesNotLagAndKeepsItsEnds) {
+    Settings settings;
+    settings.smooth = 1;
+    Trace t;
+    Random random(9);
+    double in = 0, out = 0;
+    for (int i = 0; i <= 500; ++i)
+        t.samples.push_back({.time = 0.008 * i, .position = Vec3(0.03 * 0.008 * i, 0, 0) + jitter(random), .pressure = 0.5});
+    const Trace steadied = steady(t, settings);
+    ASSERT_EQ(steadied.samples.size(), t.samples.size());
+    double behind = 0;
+    for (std::size_t i = 50; i <= 450; ++i) {
+        EXPECT_EQ(steadied.samples[i].time, t.samples[i].time);
+        behind += (0.03 * t.samples[i].time - steadied.samples[i].position.x) / 401;
+        in += t.samples[i].position.y * t.samples[i].position.y;
+        out += steadied.samples[i].position.y * steadied.samples[i].position.y;
+    }
+    EXPECT_LT(std::abs(behind), 0.1 * kPixel);  // the mean of 401 jitters alone is 0.05 pixels
+    EXPECT_LT(out / in, 1.0 / 6);
+    // The ends are off by no more than the jitter itself.
+    EXPECT_LT(glm::distance(steadied.samples.front().position, t.samples.front().position), 4 * kPixel);
+    EXPECT_LT(glm::distance(steadied.samples.back().position, t.samples.back().position), 4 * kPixel);
+}
+
 TEST(HandFilter, TurningTheHandTurnsWhatComesOut) {
     const Quat turn = glm::angleAxis(1.1, glm::normalize(Vec3(1, 2, -1)));
     HandFilter a, b;
