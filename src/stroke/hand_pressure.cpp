@@ -11,6 +11,10 @@ namespace {
 constexpr const char* kNames[] = {"none", "speed", "dwell", "speed+dwell"};
 constexpr double kTaper = 3e-3;        // metres over which the hand lifts
 constexpr double kTaperShare = 0.25;   // of the way, at most
+constexpr double kTaperEnd = 0.08;     // of the pressure, where the way ends
+constexpr double kBackShare = 0.6;     // of the taper that the lifting hand goes back
+constexpr double kLift = 0.06;         // seconds of it
+constexpr int kLiftSamples = 8;
 constexpr double kLook = 0.03;         // seconds of the trace that tell its first speed
 
 // Part of the way to its goal that a first-order lag goes in dt.
@@ -31,6 +35,24 @@ double first_speed(const std::vector<TraceSample>& samples) {
         if (dt > 0 && (dt >= kLook || i + 1 == samples.size())) return way / dt;
     }
     return 0;
+}
+
+// The tip is taken back over the end of the stroke while it lifts, so that the hair springs
+// onto ink and draws no drop beyond the end. `left`: metres from each sample to the end.
+void lift_back(std::vector<TraceSample>& samples, const std::vector<double>& left, double way) {
+    const TraceSample end = samples.back();
+    std::size_t i = samples.size() - 1;
+    for (int k = 1; k <= kLiftSamples; ++k) {
+        const double part = static_cast<double>(k) / kLiftSamples;
+        while (i > 0 && (i + 1 == left.size() || left[i] < part * way)) --i;
+        const double span = left[i] - left[i + 1];
+        const double w = span > 0 ? (part * way - left[i + 1]) / span : 0;
+        TraceSample s = end;
+        s.position = samples[i + 1].position + w * (samples[i].position - samples[i + 1].position);
+        s.time = end.time + part * kLift;
+        s.pressure = end.pressure * (1 - part);
+        samples.push_back(s);
+    }
 }
 
 }  // namespace
@@ -74,8 +96,9 @@ Trace press(Trace trace, const PressureOptions& o) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double p = press(state, samples[i].position, samples[i].time, o);
         const double x = taper > 0 ? std::clamp(left[i] / taper, 0.0, 1.0) : 1.0;
-        samples[i].pressure = p * x * (2 - x);
+        samples[i].pressure = p * (kTaperEnd + (1 - kTaperEnd) * x * (2 - x));
     }
+    if (taper > 0) lift_back(samples, left, kBackShare * taper);
     samples.back().pressure = 0;
     return trace;
 }

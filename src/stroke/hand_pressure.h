@@ -49,8 +49,8 @@ double press(PressureState& state, const Vec3& position, double time, const Pres
 
 /// The pressures of a whole flat trace: as above, but the hand is in motion when it
 /// touches (its first speed is that of its first samples), and lifts while it still moves:
-/// over the last 3 mm, at most a quarter of the way, the pressure runs out to 0. `none`
-/// changes nothing.
+/// over the last 3 mm, at most a quarter of the way, the pressure runs out, and in 60 ms more
+/// (samples are added) the tip is taken back over ink as it leaves. `none` changes nothing.
 Trace press(Trace trace, const PressureOptions& options);
 
 }  // namespace tuft::stroke

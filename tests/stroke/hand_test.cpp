@@ -294,7 +294,8 @@ TEST(Pressure, ATraceBecomesLightWhereItIsFastAndEndsLifted) {
     EXPECT_EQ(out.samples.back().pressure, 0);
     for (std::size_t i = 1; i + 1 < out.samples.size(); ++i) {
         EXPECT_GT(out.samples[i].pressure, 0);
-        EXPECT_LT(std::abs(out.samples[i].pressure - out.samples[i - 1].pressure), 0.12);
+        // At 0.2 m/s the 3 mm of the run-out are three samples, which share 0.25 of pressure.
+        EXPECT_LT(std::abs(out.samples[i].pressure - out.samples[i - 1].pressure), 0.15);
     }
     // A tap is a dot, not nothing.
     Trace tap;
