@@ -51,9 +51,9 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
         return s.centre + r * (x * right + y * away + z * up);
     };
     s.boxes[0] =
-        make_box(at(-2.1f, -0.9f, 2.7f), s.centre, 1.35f * r, 1.0f * r, {9.0f, 8.85f, 8.6f});
+        make_box(at(-2.0f, -1.8f, 2.2f), s.centre, 1.35f * r, 1.0f * r, {9.0f, 8.85f, 8.6f});
     s.boxes[1] =
-        make_box(at(3.1f, -0.6f, 0.9f), s.centre, 0.55f * r, 1.3f * r, {1.9f, 1.95f, 2.05f});
+        make_box(at(2.9f, -1.5f, 0.9f), s.centre, 0.6f * r, 1.3f * r, {3.6f, 3.68f, 3.85f});
     s.boxes[2] = make_box(at(0.7f, 3.0f, 1.7f), s.centre, 1.7f * r, 0.5f * r, {4.2f, 4.25f, 4.35f});
 
     const Vec3f to_key = glm::normalize(s.boxes[0].centre - s.centre);
