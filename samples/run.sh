@@ -11,19 +11,20 @@ out=${1:-results}
 mkdir -p "$out"
 export TUFT_DATA=$PWD
 
-# paint NAME MODEL STROKES AZIMUTH,ELEVATION OPTIONS...
+# paint NAME MODEL STROKES "PAINT OPTIONS" RENDER OPTIONS...
 paint() {
-  local name=$1 model=$2 strokes=$3 view=$4
+  local name=$1 model=$2 strokes=$3 options=$4
   shift 4
   say "$name"
-  "$tuft" paint "models/$model.ply" --strokes "samples/strokes/$strokes.inkml" "$@" \
+  # shellcheck disable=SC2086  # several options in one word
+  "$tuft" paint "models/$model.ply" --strokes "samples/strokes/$strokes.inkml" --atlas-size 4096 $options \
     --project "$out/$name.tuft" --export "$out/$name.glb"
-  "$tuft" render "$out/$name.tuft" -o "$out/$name.png" --view "$view"
+  "$tuft" render "$out/$name.tuft" -o "$out/$name.png" "$@"
 }
-paint bowl-inside bowl qi-shang-ba-xia 0,52 --atlas-size 4096
-paint bowl-outside bowl man-bu-ren-sheng 0,12 --atlas-size 4096
-paint plate plate plate-ornament 0,62 --atlas-size 4096
-paint car car car-pinstripe 62,14 --atlas-size 4096
+paint bowl-inside bowl qi-shang-ba-xia "" --view 0,58 --light 150
+paint bowl-outside bowl man-bu-ren-sheng "" --view 0,12
+paint plate plate plate-ornament "" --view 0,60
+paint car car car-pinstripe "--substrate clay" --view 25,12
 
 say "done: models (.glb), projects (.tuft) and pictures (.png) are in $out/"
 ls -1 "$out"

@@ -72,6 +72,7 @@ void add_view(CLI::App* app, View& v) {
            },
            "where to look from, in degrees: AZIMUTH,ELEVATION")
         ->type_name("AZ,EL");
+    app->add_option("--light", v.light, "turn the lights by so many degrees (they follow the camera)");
     app->add_option("--zoom", v.zoom, "magnification (1: the whole model)")->check(CLI::Range(0.05, 100.0));
     app->add_option_function<std::string>(
            "--target",

@@ -29,6 +29,7 @@ struct View {
     int width = 1280, height = 720;
     double azimuth = 30, elevation = 25;
     double zoom = 1;
+    double light = 0;               ///< degrees the lights are turned about z
     std::vector<double> target_mm;  ///< three numbers, or empty: the middle of the model
 };
 

@@ -184,6 +184,7 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
         options.view.target = model.mesh->bounds.centre();
         options.view.width_at_target = 1.3 * model.mesh->bounds.diagonal() / v.zoom;
     }
+    options.light_azimuth = v.light * kDegree;
     options.progress = console.progress();
     if (count > 1) options = render::turntable_frame(options, frame, count);
     return render::render_picture(*model.mesh, *model.query, look, options);
