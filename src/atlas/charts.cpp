@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atlas/flatten.h"
 #include "atlas/seam_graph.h"
 #include "atlas/straighten.h"
 #include "core/parallel.h"
@@ -19,8 +18,10 @@ struct Piece {
     int depth = 0;
 };
 
-bool good(const FlatCheck& check, const ChartOptions& options) {
-    return check.sound() && check.l2 <= options.l2 && check.stretch_999 <= options.largest;
+bool good(const FlatCheck& check, const ChartOptions& options, int depth) {
+    constexpr int kPatience = 3;  // cuts that are made for the sake of single triangles
+    return check.sound() && check.l2 <= options.l2 && check.stretch_999 <= options.largest &&
+           (check.linf <= options.worst || depth >= kPatience);
 }
 
 void cut_edge(CutMesh& cut, std::uint32_t h) {
@@ -110,10 +111,11 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
                 for (std::size_t i = begin; i < end; ++i) {
                     flat[i].mesh =
                         make_chart(mesh, cut.glued, pieces[first + i].triangles, cut.unit);
-                    flat[i].uv = flatten(flat[i].mesh);
-                    accepted[i] = flat[i].mesh.faces.size() == 1 ||
-                                  (!flat[i].uv.empty() &&
-                                   good(check_flat(flat[i].mesh, flat[i].uv, options.gap), options));
+                    flat[i].uv = flatten(flat[i].mesh, trial_arap(options));
+                    if (flat[i].uv.empty()) continue;
+                    const FlatCheck check = check_flat(flat[i].mesh, flat[i].uv, options.gap);
+                    flat[i].worst = check.linf;
+                    accepted[i] = flat[i].mesh.faces.size() == 1 || good(check, options, pieces[first + i].depth);
                 }
             });
             for (std::size_t i = 0; i < flat.size(); ++i) {
@@ -133,6 +135,15 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
 }
 
 }  // namespace
+
+ArapOptions trial_arap(const ChartOptions& options) {
+    ArapOptions arap;
+    arap.iterations = 16;
+    arap.tolerance = 1e-2;
+    // For small strains L2 − 1 lies between half the energy and all of it.
+    arap.hopeless = 4 * (options.l2 - 1);
+    return arap;
+}
 
 CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options,
                         const ProgressFn& progress) {

@@ -5,22 +5,28 @@
 #include <vector>
 
 #include "atlas/chart_mesh.h"
+#include "atlas/flatten.h"
 #include "core/progress.h"
 
 /// The mesh cut into charts that lie flat.
 namespace tuft::atlas {
 
 struct ChartOptions {
-    double l2 = 1.005;       ///< stretch that a chart may have on average
+    double l2 = 1.0045;      ///< stretch that a chart may have on average
     double largest = 1.35;   ///< and at 99.9 % of its area
+    double worst = 3;        ///< and anywhere, where that can be helped
     double gap = 0;          ///< that parts of a chart's border keep from each other, over the unit
 };
+
+/// How well charts are laid out to see whether they can be: stops early where that is clear.
+ArapOptions trial_arap(const ChartOptions& options);
 
 /// A chart and its UVs, over the same unit; every triangle has positive area and the
 /// border does not cross itself.
 struct FlatChart {
     ChartMesh mesh;
     std::vector<Vec2> uv;
+    double worst = 1;  ///< largest stretch of a triangle
 };
 
 struct CutMesh {

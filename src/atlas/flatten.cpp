@@ -63,6 +63,12 @@ bool all_positive(const ChartMesh& chart, const std::vector<Vec2>& uv) {
                        [&](const auto& f) { return signed_area(f, uv) > 0; });
 }
 
+bool all_finite(const std::vector<Vec2>& uv) {
+    return std::all_of(uv.begin(), uv.end(), [](const Vec2& p) {
+        return std::isfinite(p.x) && std::isfinite(p.y);
+    });
+}
+
 /// UVs of a plane chart, seen from its normal; empty when it is not plane.
 std::vector<Vec2> project_plane(const ChartMesh& chart, bool only_if_plane) {
     Vec3 sum(0);
@@ -111,45 +117,63 @@ Matrix stiffness(const ChartMesh& chart, const std::vector<Reference>& reference
     return matrix;
 }
 
-}  // namespace
-
-void arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options) {
-    const std::size_t n = chart.n_vertices();
-    if (n < 3) return;
+std::vector<Reference> reference_triangles(const ChartMesh& chart) {
     std::vector<Reference> references(chart.faces.size());
     for (std::size_t t = 0; t < references.size(); ++t) references[t] = reference_triangle(chart, t);
-    const Eigen::SimplicialLDLT<Matrix> solver(stiffness(chart, references));
-    if (solver.info() != Eigen::Success) return;
+    return references;
+}
 
+struct Rotation {
+    double c = 1, s = 0;  // cosine and sine
+    double energy = 0;    // left after it
+};
+
+/// Closest rotation (c, −s; s, c) to Σ w (u_i − u_j)(x_i − x_j)ᵀ over the edges of a triangle.
+Rotation closest_rotation(const std::array<std::uint32_t, 3>& f, const Reference& r,
+                          const std::vector<Vec2>& uv) {
+    double c = 0, s = 0, square = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3;
+        const Vec2 du = uv[f[k]] - uv[f[l]], dx = r.corner[k] - r.corner[l];
+        const double w = r.half_cot[k];
+        c += w * (du.x * dx.x + du.y * dx.y);
+        s += w * (du.y * dx.x - du.x * dx.y);
+        square += w * (glm::dot(du, du) + glm::dot(dx, dx));
+    }
+    const double norm = std::sqrt(c * c + s * s);
+    if (!(norm > 0)) return {1, 0, std::max(0.0, square)};
+    return {c / norm, s / norm, std::max(0.0, square - 2 * norm)};
+}
+
+/// Energy of a start, per area.
+double start_energy(const ChartMesh& chart, const std::vector<Reference>& references,
+                    const std::vector<Vec2>& uv) {
+    double energy = 0;
+    for (std::size_t t = 0; t < references.size(); ++t)
+        energy += closest_rotation(chart.faces[t], references[t], uv).energy;
+    return energy / std::max(chart.area, 1e-300);
+}
+
+}  // namespace
+
+double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options) {
+    const std::size_t n = chart.n_vertices();
+    if (n < 3) return 0;
+    const std::vector<Reference> references = reference_triangles(chart);
+    const double area = std::max(chart.area, 1e-300);
+    Eigen::SimplicialLDLT<Matrix> solver;
     Eigen::MatrixX2d rhs(static_cast<Eigen::Index>(n), 2);
     Eigen::MatrixX2d solution;
     const Vec2 pin = uv[0];
-    double before = -1;
+    double before = -1, energy = 0;
     for (int step = 0; step < options.iterations; ++step) {
         rhs.setZero();
-        double energy = 0;
+        energy = 0;
         for (std::size_t t = 0; t < references.size(); ++t) {
             const auto& f = chart.faces[t];
             const Reference& r = references[t];
-            // Closest rotation (c, −s; s, c) to Σ w (u_i − u_j)(x_i − x_j)ᵀ.
-            double c = 0, s = 0, uu = 0, xx = 0;
-            for (int k = 0; k < 3; ++k) {
-                const int l = (k + 1) % 3;
-                const Vec2 du = uv[f[k]] - uv[f[l]], dx = r.corner[k] - r.corner[l];
-                c += r.half_cot[k] * (du.x * dx.x + du.y * dx.y);
-                s += r.half_cot[k] * (du.y * dx.x - du.x * dx.y);
-                uu += r.half_cot[k] * glm::dot(du, du);
-                xx += r.half_cot[k] * glm::dot(dx, dx);
-            }
-            const double norm = std::hypot(c, s);
-            energy += std::max(0.0, uu + xx - 2 * norm);
-            if (norm > 0) {
-                c /= norm;
-                s /= norm;
-            } else {
-                c = 1;
-                s = 0;
-            }
+            const auto [c, s, e] = closest_rotation(f, r, uv);
+            energy += e;
             for (int k = 0; k < 3; ++k) {
                 const int l = (k + 1) % 3;
                 const Vec2 dx = r.corner[k] - r.corner[l];
@@ -161,17 +185,27 @@ void arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& opti
                 rhs(f[l], 1) -= by;
             }
         }
+        energy /= area;
+        if (energy < options.enough) break;
         if (before >= 0 && before - energy < options.tolerance * energy) break;
-        if (energy < 1e-12 * chart.area) break;
+        if (step >= 3) {
+            // What is left after the remaining steps if each helps as much as the last one.
+            const double left = energy * std::pow(energy / before, options.iterations - step);
+            if (left > options.hopeless) break;
+        }
         before = energy;
-        solution = solver.solve(rhs.bottomRows(static_cast<Eigen::Index>(n) - 1));
+        if (step == 0) {
+            solver.compute(stiffness(chart, references));
+            if (solver.info() != Eigen::Success) break;
+        }
         // Vertex 0 is pinned at the origin while solving, then all is moved to where it was.
-        uv[0] = pin;
+        solution = solver.solve(rhs.bottomRows(static_cast<Eigen::Index>(n) - 1));
         for (std::size_t v = 1; v < n; ++v) {
             const auto row = static_cast<Eigen::Index>(v) - 1;
             uv[v] = pin + Vec2(solution(row, 0), solution(row, 1));
         }
     }
+    return energy;
 }
 
 bool untangle(const ChartMesh& chart, std::vector<Vec2>& uv) {
@@ -244,14 +278,25 @@ std::vector<Vec2> flatten(const ChartMesh& chart, const ArapOptions& options) {
     }
     std::vector<Vec2> uv = project_plane(chart, true);
     if (!uv.empty() && all_positive(chart, uv)) return uv;
-    if (auto start = lscm(chart))
-        uv = std::move(*start);
+    uv.clear();
+    // Where the projection does not shrink much it is as good a start as any.
+    constexpr double kGoodStart = 0.4;
+    const std::vector<Reference> references = reference_triangles(chart);
+    std::vector<std::vector<Vec2>> starts{project_plane(chart, false)};
+    if (starts[0].empty() || start_energy(chart, references, starts[0]) > kGoodStart)
+        starts.insert(starts.begin(), {});
     else
-        uv = project_plane(chart, false);
+        starts.push_back({});
+    for (std::vector<Vec2>& start : starts) {
+        if (start.empty())
+            if (auto conformal = lscm(chart)) start = std::move(*conformal);
+        if (start.empty()) continue;
+        arap(chart, start, options);
+        if (!all_finite(start)) continue;
+        uv = std::move(start);
+        if (all_positive(chart, uv)) break;
+    }
     if (uv.empty()) return {};
-    arap(chart, uv, options);
-    for (const Vec2& p : uv)
-        if (!std::isfinite(p.x) || !std::isfinite(p.y)) return {};
     if (!all_positive(chart, uv)) untangle(chart, uv);
     scale_to_area(chart, uv);
     return uv;

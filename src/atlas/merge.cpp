@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "atlas/flatten.h"
 #include "atlas/pack.h"
 #include "atlas/seam_graph.h"
 #include "core/parallel.h"
@@ -207,14 +206,14 @@ class Merger {
         const double flat_enough = 1 + 0.1 * (options_.l2 - 1);
         FlatCheck check = check_flat(mesh, t.flat.uv, options_.gap);
         if (!check.sound() || check.l2 > flat_enough) {
-            ArapOptions options;
-            options.iterations = 12;
-            options.tolerance = 1e-2;
-            arap(mesh, t.flat.uv, options);
+            arap(mesh, t.flat.uv, trial_arap(options_));
             scale_to_area(mesh, t.flat.uv);
             check = check_flat(mesh, t.flat.uv, options_.gap);
         }
-        if (!check.sound() || check.l2 > options_.l2 || check.stretch_999 > options_.largest) return;
+        if (!check.sound() || check.l2 > options_.l2 || check.stretch_999 > options_.largest ||
+            check.linf > std::max({options_.worst, a.worst, b.worst}))
+            return;
+        t.flat.worst = check.linf;
         const double parts = std::min(hull_fill(a), hull_fill(b));
         t.outcome = hull_fill(t.flat) < std::min(merge_.least_fill, parts) ? Outcome::misshapen
                                                                            : Outcome::merged;

@@ -14,7 +14,7 @@ namespace {
 constexpr int kRounds = 8;
 constexpr float kFirstReach = 0.12f;  // how far seams may move at first, over their length
 constexpr float kLeastReach = 0.02f;  // seams that may move less stay
-constexpr double kSlack = 1.15;  // stretch that straighter seams may cost, over what charts may have
+constexpr double kSlack = 1.1;  // stretch that straighter seams may cost, over what charts may have
 
 /// Where the triangles of the mesh lie now.
 struct OldPlaces {
@@ -179,12 +179,20 @@ class Polisher {
             arap(chart.mesh, chart.uv);
             scale_to_area(chart.mesh, chart.uv);
             const FlatCheck check = check_flat(chart.mesh, chart.uv, options_.gap);
+            chart.worst = check.linf;
             if (check.sound() && check.stretch_999 <= options_.largest &&
-                check.l2 <= 1 + kSlack * (options_.l2 - 1))
+                check.l2 <= 1 + kSlack * (options_.l2 - 1) &&
+                check.linf <= std::max(options_.worst, worst_before(part)))
                 return true;
         }
         if (as_before) chart.uv = cut_.charts[places_.chart[part[0]]].uv;
         return as_before;
+    }
+
+    double worst_before(const std::vector<std::uint32_t>& part) const {
+        double worst = 0;
+        for (const std::uint32_t t : part) worst = std::max(worst, cut_.charts[places_.chart[t]].worst);
+        return worst;
     }
 
     const mesh::TriangleMesh& mesh_;
