@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "atlas/log_map.h"
+#include "footprint/picture.h"
 
 namespace tuft::footprint {
 namespace {
@@ -13,6 +14,8 @@ namespace {
 constexpr double kFacingAway = atlas::kLogMapMinCos;  // normals beyond this are never touched
 constexpr float kAgree = 0.25f;  // of a hop: neighbours that differ by more went other ways
 constexpr float kSlack = 1.1f;   // of a piece's radius: the log map stretches it a little
+constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // pieces that surely face the stamp
+constexpr float kDetour = 2;  // piece radii round the picture in which ways to it are looked for
 
 enum : std::uint8_t { kOpen, kFinal, kOutside };
 
@@ -40,7 +43,6 @@ struct Walk {
 
     /// `key`: squared distance from the stamp's origin.
     void push(PlanScratch::Node& n, std::uint32_t piece, float key) {
-        if (key >= n.key) return;
         n.key = key;
         scratch.heap.emplace_back(key, piece);
         std::push_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
@@ -111,6 +113,16 @@ struct Walk {
         return du * du + dv * dv <= r * r;
     }
 
+    /// Worth a visit where one neighbour sees it: in the picture or on a way into it. Its final
+    /// place may be a little nearer.
+    bool near_picture(const atlas::Piece& piece, float u, float v) const {
+        const float r = kDetour * piece.radius;
+        const float du = std::max({std::min(reach.lo.x, 0.0f) - u, u - std::max(reach.hi.x, 0.0f), 0.0f});
+        const float dv = std::max({std::min(reach.lo.y, 0.0f) - v, v - std::max(reach.hi.y, 0.0f), 0.0f});
+        const float far = reach.radius + (kSlack + kAgree) * piece.radius;
+        return du * du + dv * dv <= r * r && u * u + v * v <= far * far;
+    }
+
     /// Dijkstra over the pieces by distance from the stamp's origin; leaves those that the
     /// picture reaches in scratch.reached, in order of their numbers.
     void run(std::uint32_t first) {
@@ -134,7 +146,9 @@ struct Walk {
                 if (other.state != kOpen) continue;
                 const float u = n.u + n.c * e.hop_u - n.s * e.hop_v;
                 const float v = n.v + n.s * e.hop_u + n.c * e.hop_v;
-                push(other, e.to, u * u + v * v);
+                const float distance2 = u * u + v * v;
+                if (distance2 < other.key && near_picture(graph.pieces[e.to], u, v))
+                    push(other, e.to, distance2);
             }
         }
         std::sort(scratch.reached.begin(), scratch.reached.end());
@@ -166,22 +180,6 @@ PieceFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn
     f.u0 = static_cast<float>((place.x - footprint.lo.x) * scale - 0.5);
     f.v0 = static_cast<float>((place.y - footprint.lo.y) * scale - 0.5);
     return f;
-}
-
-void pack_picture(const Footprint& footprint, StampJobs& jobs) {
-    const int w = footprint.width - 1, h = footprint.height - 1;
-    jobs.width = w;
-    jobs.height = h;
-    jobs.corners.resize(static_cast<std::size_t>(w) * h);
-    for (int j = 0; j < h; ++j) {
-        const std::uint8_t* low =
-            footprint.coverage.data() + static_cast<std::size_t>(j) * footprint.width;
-        const std::uint8_t* high = low + footprint.width;
-        std::uint32_t* out = jobs.corners.data() + static_cast<std::size_t>(j) * w;
-        for (int i = 0; i < w; ++i)
-            out[i] = low[i] | std::uint32_t{low[i + 1]} << 8 | std::uint32_t{high[i]} << 16 |
-                     std::uint32_t{high[i + 1]} << 24;
-    }
 }
 
 /// Poses of the picture at the middles of equal parts of the motion. At a part σ before
@@ -236,6 +234,65 @@ double disagreement(const Frame& frame, const atlas::Piece& piece, const PlanScr
                        Vec2(n.u, n.v));
 }
 
+/// Lists the reached pieces that the picture may cover, with what is known of its coverage
+/// there, and takes the greatest disagreement; scratch.reached is left with those listed.
+void list_pieces(const atlas::PieceGraph& graph, const Footprint& footprint, const Motion& motion,
+                 PlanScratch& scratch, StampJobs& jobs) {
+    BlockTally& tally = scratch.tally;
+    tally.count(footprint);
+    const auto cell = static_cast<float>(footprint.cell);
+    const Vec2f zero = Vec2f(footprint.lo / footprint.cell + 0.5);
+    const Vec2f half_way = Vec2f(0.5 * motion.shift);
+    const Vec3f normal(footprint.frame.n);
+    std::size_t n = 0;
+    jobs.frames.reserve(scratch.reached.size());
+    for (const std::uint32_t i : scratch.reached) {
+        const atlas::Piece& piece = graph.pieces[i];
+        const PlanScratch::Node& at = scratch.nodes[i];
+        PieceFrame f;
+        const double apart = disagreement(footprint.frame, piece, at);
+        if (jobs.mapping == Mapping::log) {
+            // Wherever its texels lie in either mode and in whatever pose, and the next cell.
+            const Vec2f place = Vec2f{at.u, at.v} + half_way;
+            const float way = glm::length(half_way), r = kSlack * piece.radius;
+            const float swing = static_cast<float>(std::abs(motion.turn)) * (glm::length(place) + way + r);
+            const float reach = (r + static_cast<float>(apart) + way + swing) / cell + 1.5f;
+            const Vec2f centre = place / cell - zero;
+            const Cover cover = tally.look(centre, reach);
+            if (cover == Cover::empty) continue;
+            f.full = piece.cone_cos > kSureCos && glm::dot(piece.normal, normal) > kSureNormal &&
+                     cover == Cover::full;
+        }
+        jobs.discrepancy = std::max(jobs.discrepancy, apart);
+        if (jobs.tiles.empty() || jobs.tiles.back().slot != piece.slot)
+            jobs.tiles.push_back({piece.slot, static_cast<std::uint32_t>(jobs.frames.size()), 0});
+        ++jobs.tiles.back().count;
+        f.piece = piece.index;
+        f.first_row = piece.first_row;
+        f.last_row = piece.last_row;
+        jobs.frames.push_back(f);
+        scratch.reached[n++] = i;
+    }
+    scratch.reached.resize(n);
+    jobs.discrepancy /= std::max(footprint.radius, 1e-12);
+}
+
+/// Gives each piece the frame it needs when they have their own.
+void place_pieces(const atlas::PieceGraph& graph, const Footprint& footprint,
+                  const PlanScratch& scratch, StampJobs& jobs) {
+    for (std::size_t k = 0; k < jobs.frames.size(); ++k) {
+        const PlanScratch::Node& at = scratch.nodes[scratch.reached[k]];
+        const PieceFrame& old = jobs.frames[k];
+        PieceFrame f = picture_frame(frame_of(graph.pieces[scratch.reached[k]]), Vec2(at.u, at.v),
+                                     Vec2(at.c, at.s), footprint);
+        f.piece = old.piece;
+        f.first_row = old.first_row;
+        f.last_row = old.last_row;
+        f.full = old.full;
+        jobs.frames[k] = f;
+    }
+}
+
 }  // namespace
 
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
@@ -278,29 +335,18 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     if (scratch.reached.empty()) return jobs;
 
     jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
-    jobs.frames.reserve(scratch.reached.size());
-    for (const std::uint32_t i : scratch.reached) {
-        const atlas::Piece& piece = surface.pieces.pieces[i];
-        const PlanScratch::Node& at = scratch.nodes[i];
-        jobs.discrepancy = std::max(jobs.discrepancy, disagreement(footprint.frame, piece, at));
-        if (jobs.tiles.empty() || jobs.tiles.back().slot != piece.slot)
-            jobs.tiles.push_back({piece.slot, static_cast<std::uint32_t>(jobs.frames.size()), 0});
-        ++jobs.tiles.back().count;
-        PieceFrame f =
-            picture_frame(frame_of(piece), Vec2(at.u, at.v), Vec2(at.c, at.s), footprint);
-        f.piece = piece.index;
-        f.first_row = piece.first_row;
-        f.last_row = piece.last_row;
-        jobs.frames.push_back(f);
-    }
-    jobs.discrepancy /= std::max(footprint.radius, 1e-12);
+    jobs.sub_poses = spread_poses(footprint, motion, surface.texels.texel_size, options);
+    list_pieces(surface.pieces, footprint, motion, scratch, jobs);
+    if (jobs.discrepancy > std::min(options.enter, options.leave))
+        place_pieces(surface.pieces, footprint, scratch, jobs);
     const Vec2f to_cells = Vec2f(footprint.lo / footprint.cell + 0.5);
     const Vec2f lo = walk.reach.lo / float(footprint.cell) - to_cells - 2.0f;
     const Vec2f hi = walk.reach.hi / float(footprint.cell) - to_cells + 2.0f;
     jobs.reach_lo = {lo.x, lo.y};
     jobs.reach_hi = {hi.x, hi.y};
-    jobs.sub_poses = spread_poses(footprint, motion, surface.texels.texel_size, options);
-    pack_picture(footprint, jobs);
+    jobs.width = footprint.width - 1;
+    jobs.height = footprint.height - 1;
+    pack_picture(footprint, jobs.corners);
     return jobs;
 }
 

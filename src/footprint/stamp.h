@@ -7,6 +7,7 @@
 
 #include "atlas/piece_graph.h"
 #include "footprint/footprint.h"
+#include "footprint/picture.h"
 
 /// From a footprint to the texels it exposes. A caller plans a batch of stamps (each on
 /// its own, in any thread), picks the mode of each in stroke order, sorts the tile jobs
@@ -53,6 +54,7 @@ struct PieceFrame {
     std::array<float, 3> origin, normal, tu, tv;
     float u0 = 0, v0 = 0;
     std::uint8_t piece = 0, first_row = 0, last_row = 0;
+    bool full = false;  ///< the picture covers the whole piece in all its poses
 };
 
 struct TileJob {
@@ -73,7 +75,8 @@ struct StampJobs {
     std::vector<SubPose> sub_poses;               ///< evenly spread over the motion
     std::array<float, 2> reach_lo{}, reach_hi{};  ///< cells: the picture in all its sub-poses
     PieceFrame stamp_frame;                       ///< serves all pieces when not piecewise
-    std::vector<PieceFrame> frames;               ///< one for each piece reached, by slot
+    std::vector<PieceFrame> frames;               ///< one for each piece reached, by slot; without
+                                                  ///< a place where discrepancy is below `leave`
     std::vector<TileJob> tiles;                   ///< by slot
     double discrepancy = 0;  ///< between the two ways of mapping, over the radius
     bool piecewise = false;  ///< set by `choose_mode`
@@ -94,6 +97,7 @@ struct PlanScratch {
     std::vector<Node> nodes;
     std::vector<std::pair<float, std::uint32_t>> heap;
     std::vector<std::uint32_t> reached;
+    BlockTally tally;
 };
 
 /// Finds the pieces that hang together with the contact point within the footprint and

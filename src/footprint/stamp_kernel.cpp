@@ -29,10 +29,10 @@ struct Rows {
     int begin, end;  ///< texels
 };
 
-/// Texel → picture, in cells; kOutside for texels of other pieces.
+/// Texel → picture, in cells, for the texels that are `mine`.
 [[gnu::always_inline]] inline void map_texels(const TexelTile& tile, const PieceFrame& f, Rows rows,
-                                              bool plane, float* __restrict fu,
-                                              float* __restrict fv) {
+                                              bool plane, const std::int32_t* __restrict mine,
+                                              float* __restrict fu, float* __restrict fv) {
     const float ox = f.origin[0], oy = f.origin[1], oz = f.origin[2];
     const float nx = f.normal[0], ny = f.normal[1], nz = f.normal[2];
     const float ux = f.tu[0], uy = f.tu[1], uz = f.tu[2], u0 = f.u0;
@@ -42,14 +42,8 @@ struct Rows {
     constexpr float q4 = float(q[4]), q5 = float(q[5]), q6 = float(q[6]), q7 = float(q[7]);
     constexpr float least_cos = float(atlas::kLogMapMinCos);
     const float on_plane = plane ? 1.0f : 0.0f;
-    const int piece = f.piece;
     const float *px = tile.px.data(), *py = tile.py.data(), *pz = tile.pz.data();
     const float *mx = tile.nx.data(), *my = tile.ny.data(), *mz = tile.nz.data();
-    // On its own: bytes among the floats would make the vectors of the next loop too long.
-    alignas(64) std::int32_t mine[kTileTexels];
-    const std::uint8_t* id = tile.piece.data();
-#pragma omp simd
-    for (int t = rows.begin; t < rows.end; ++t) mine[t] = id[t] == piece ? 1 : 0;
 #pragma omp simd
     for (int t = rows.begin; t < rows.end; ++t) {
         const float dx = px[t] - ox, dy = py[t] - oy, dz = pz[t] - oz;
@@ -71,9 +65,17 @@ struct Rows {
         const float v =
             v0 + (dx * vx + dy * vy + dz * vz) + h * (mx[t] * vx + my[t] * vy + mz[t] * vz);
         const bool seen = (mine[t] != 0) & (c > least_cos);
-        fu[t] = seen ? u : kOutside;
-        fv[t] = seen ? v : kOutside;
+        fu[t] = seen ? u : fu[t];
+        fv[t] = seen ? v : fv[t];
     }
+}
+
+/// Adds one to `mine` at the texels of a piece.
+[[gnu::always_inline]] inline void mark(const TexelTile& tile, int piece, Rows rows,
+                                        std::int32_t* __restrict mine) {
+    const std::uint8_t* id = tile.piece.data();
+#pragma omp simd
+    for (int t = rows.begin; t < rows.end; ++t) mine[t] += id[t] == piece ? 1 : 0;
 }
 
 /// The rows that some pose of the picture may reach.
@@ -128,16 +130,39 @@ struct Rows {
 [[gnu::always_inline]] inline bool evaluate(const TexelTile& tile, const StampJobs& jobs,
                                             const TileJob& job, float* __restrict exposure) {
     alignas(64) float fu[kTileTexels], fv[kTileTexels], sum[kTileTexels] = {};
+    alignas(64) std::int32_t mine[kTileTexels] = {}, full[kTileTexels] = {};
     const bool plane = jobs.mapping == Mapping::plane;
+    const auto rows_of = [](const PieceFrame& f) {
+        return Rows{f.first_row * kTile, (f.last_row + 1) * kTile};
+    };
+    Rows all{kTileTexels, 0}, covered{kTileTexels, 0};
     for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
         const PieceFrame& own = jobs.frames[k];
-        const Rows rows{own.first_row * kTile, (own.last_row + 1) * kTile};
-        PieceFrame frame = jobs.piecewise ? own : jobs.stamp_frame;
-        frame.piece = own.piece;
-        map_texels(tile, frame, rows, plane, fu, fv);
-        const Rows hit = rows_in_picture(jobs, rows, fu, fv);
+        const Rows rows = rows_of(own);
+        Rows& range = own.full ? covered : all;
+        range = {std::min(range.begin, rows.begin), std::max(range.end, rows.end)};
+        if (own.full || !jobs.piecewise) mark(tile, own.piece, rows, own.full ? full : mine);
+    }
+    if (all.begin < all.end) {
+        for (int t = all.begin; t < all.end; ++t) fu[t] = fv[t] = kOutside;
+        if (jobs.piecewise) {
+            for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
+                const PieceFrame& own = jobs.frames[k];
+                if (own.full) continue;
+                const Rows rows = rows_of(own);
+                std::fill(mine + rows.begin, mine + rows.end, 0);
+                mark(tile, own.piece, rows, mine);
+                map_texels(tile, own, rows, plane, mine, fu, fv);
+            }
+        } else {
+            map_texels(tile, jobs.stamp_frame, all, plane, mine, fu, fv);
+        }
+        const Rows hit = rows_in_picture(jobs, all, fu, fv);
         for (const SubPose& pose : jobs.sub_poses) gather(jobs, pose, hit, fu, fv, sum);
     }
+    const float whole = 255.0f * static_cast<float>(jobs.sub_poses.size());
+#pragma omp simd
+    for (int t = covered.begin; t < covered.end; ++t) sum[t] += full[t] != 0 ? whole : 0.0f;
     const float scale = 1.0f / (255.0f * static_cast<float>(jobs.sub_poses.size()));
     int any = 0;
 #pragma omp simd reduction(| : any)

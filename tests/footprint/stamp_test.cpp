@@ -420,6 +420,37 @@ TEST(Stamp, SameBitsForAllInstructionSetsAndThreadCounts) {
     EXPECT_EQ(hashes.size(), 1u);
 }
 
+TEST(Stamp, PiecesCalledFullAreFullToTheBit) {
+    Stage stage(testing::sphere(0.02, 300));
+    Random random(3);
+    std::size_t full = 0;
+    for (int i = 0; i < 12; ++i) {
+        const Vec3 n = glm::normalize(
+            Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        Footprint f = disc(make_frame(0.02 * n, n), stage.triangle_at(0.02 * n),
+                           random.uniform(0.003, 0.012), 0.5e-4);
+        // A hole off the middle.
+        const int hole = f.width / 3;
+        for (int j = hole; j < hole + 7; ++j)
+            std::fill_n(f.coverage.begin() + std::size_t(j) * f.width + hole, 5, std::uint8_t{0});
+        const Motion motion{Vec2{random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4)},
+                            i % 3 == 0 ? 0.05 : 0.0};
+        StampJobs known = stage.plan(f, motion);
+        StampJobs plain = known;
+        for (PieceFrame& frame : plain.frames) {
+            full += frame.full;
+            frame.full = false;
+        }
+        std::array<float, atlas::kTileTexels> a, b;
+        for (const TileJob& job : known.tiles) {
+            evaluate_tile(stage.map.tiles[job.slot], known, job, a);
+            evaluate_tile(stage.map.tiles[job.slot], plain, job, b);
+            EXPECT_EQ(a, b);
+        }
+    }
+    EXPECT_GT(full, 100u);  // else the test says nothing
+}
+
 TEST(Stamp, PlaneMappingProjectsAlongTheNormals) {
     // On a sphere the paper's mapping puts a point at angle θ at R tan θ instead of R θ: the
     // stamp of radius q R reaches θ = atan q and covers 2 (1 − cos θ) / q² of πr².
