@@ -72,8 +72,9 @@ int calibrate(const Brush& a) {
     check_output(a.output);
     Console console(a.common.quiet);
     const std::vector<brush::SweepRow> measured = brush::read_sweep(a.calibrate.string());
-    brush::Preset start = brush::load_preset(a.name.empty() || a.name == "calibrate" ? "mixed-medium" : a.name);
+    brush::Preset start = brush::load_preset(a.name.empty() || a.name == "calibrate" ? "robot-2020" : a.name);
     start.name = a.output.stem().string();
+    if (const auto length = brush::stated_length(a.calibrate.string())) start.length = *length;
     const brush::Calibration fit = brush::calibrate(start, measured);
     const std::string toml = brush::preset_toml(fit.preset);
     write_file(a.output, toml.data(), toml.size());
