@@ -161,6 +161,7 @@ Calibration calibrate(const Preset& start, std::span<const SweepRow> measured,
     Calibration out;
     const auto cost = [&](const Point& x) {
         ++out.evaluations;
+        report(options.progress, "fitting", std::min(1.0, out.evaluations / static_cast<double>(options.max_evaluations)));
         return compare(preset_at(start, x), measured, options.repeatability).cost;
     };
     const auto vertex = [&](const Preset& p) {

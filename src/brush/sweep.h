@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "brush/preset.h"
+#include "core/progress.h"
 
 /// What one brush leaves on a flat sheet at each depth, and the fit of a preset to
 /// measurements of it.
@@ -35,6 +36,7 @@ std::optional<double> stated_length(const std::string& path);
 struct CalibrateOptions {
     SweepRow repeatability{0, 1.4e-3, 0.5e-3, 0.7e-3};  ///< one standard deviation of each column
     int max_evaluations = 1200;
+    ProgressFn progress;
 };
 
 struct Calibration {

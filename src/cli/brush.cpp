@@ -75,7 +75,8 @@ int calibrate(const Brush& a) {
     brush::Preset start = brush::load_preset(a.name.empty() || a.name == "calibrate" ? "robot-2020" : a.name);
     start.name = a.output.stem().string();
     if (const auto length = brush::stated_length(a.calibrate.string())) start.length = *length;
-    const brush::Calibration fit = brush::calibrate(start, measured);
+    const brush::Calibration fit = brush::calibrate(start, measured, {.progress = console.progress()});
+    console.clear();
     const std::string toml = brush::preset_toml(fit.preset);
     write_file(a.output, toml.data(), toml.size());
     if (a.common.json)
