@@ -23,7 +23,7 @@ struct Cut {
     Vec3 e{1, 0, 0};      ///< unit axes: (u, v, height)
     Vec3 m{0, 0, 1};
 
-    double half_height() const { return std::hypot(a * e.z, b * m.z); }
+    double half_height() const { return std::sqrt(a * a * e.z * e.z + b * b * m.z * m.z); }
     double overlap() const { return half_height() - z; }
     Vec2 at(double cos_w, double sin_w) const {
         return centre + a * cos_w * Vec2(e) + b * sin_w * Vec2(m);
@@ -208,7 +208,7 @@ const std::array<Vec2, kDirections>& directions() {
 /// first and last are its cut points Q±, unless all of it lies below.
 void shadow(const Cut& cut, std::vector<Vec2>& corners) {
     corners.clear();
-    const double p = cut.a * cut.e.z, q = cut.b * cut.m.z, height = std::hypot(p, q);
+    const double p = cut.a * cut.e.z, q = cut.b * cut.m.z, height = std::sqrt(p * p + q * q);
     const double level =
         height > 0 ? std::clamp(-cut.z / height, -1.0, 1.0) : (cut.z <= 0 ? 1 : -1);
     const double cos_f = height > 0 ? p / height : 1, sin_f = height > 0 ? q / height : 0;
@@ -217,11 +217,20 @@ void shadow(const Cut& cut, std::vector<Vec2>& corners) {
     const Vec2 from{cos_f * level - sin_f * sin_l, sin_f * level + cos_f * sin_l};
     const Vec2 to{cos_f * level + sin_f * sin_l, sin_f * level - cos_f * sin_l};
     if (level < 1) corners.push_back(cut.at(from.x, from.y));
-    const double start = std::atan2(from.y, from.x) * kDirections / (2 * kPi);
-    const int first = static_cast<int>(std::ceil(start)) + kDirections;
+    const auto below = [&](int k) {
+        const Vec2& w = directions()[k];
+        return level >= 1 || w.x * cos_f + w.y * sin_f < level;
+    };
+    // They are taken in order from Q+ on: from where those below the surface begin.
+    int first = 0;
+    while (first < kDirections && !(below(first) && !below((first + kDirections - 1) % kDirections)))
+        ++first;
+    if (first == kDirections)
+        first = static_cast<int>(std::ceil(std::atan2(from.y, from.x) * kDirections / (2 * kPi))) +
+                kDirections;
     for (int k = 0; k < kDirections; ++k) {
-        const Vec2& w = directions()[(first + k) % kDirections];
-        if (w.x * cos_f + w.y * sin_f < level || level >= 1) corners.push_back(cut.at(w.x, w.y));
+        const int at = (first + k) % kDirections;
+        if (below(at)) corners.push_back(cut.at(directions()[at].x, directions()[at].y));
     }
     if (level < 1) corners.push_back(cut.at(to.x, to.y));
 }

@@ -14,12 +14,11 @@
 namespace tuft::footprint {
 namespace {
 
-TUFT_CLONES void pack_row(const std::uint8_t* __restrict low, const std::uint8_t* __restrict high,
-                          std::uint32_t* __restrict out, int n) {
+TUFT_CLONES void pack_rows(const std::uint8_t* __restrict low, const std::uint8_t* __restrict high,
+                           std::uint16_t* __restrict out, std::size_t n) {
 #pragma omp simd
-    for (int i = 0; i < n; ++i)
-        out[i] = std::uint32_t{low[i]} | std::uint32_t{low[i + 1]} << 8 |
-                 std::uint32_t{high[i]} << 16 | std::uint32_t{high[i + 1]} << 24;
+    for (std::size_t i = 0; i < n; ++i)
+        out[i] = static_cast<std::uint16_t>(low[i] | high[i] << 8);
 }
 
 /// Bits that all, and bits that any of the rows have set, column by column.
@@ -38,14 +37,10 @@ TUFT_CLONES void column_bits(const std::uint8_t* from, int stride, int rows, int
 
 }  // namespace
 
-void pack_picture(const Footprint& footprint, std::vector<std::uint32_t>& corners) {
-    const int w = footprint.width - 1, h = footprint.height - 1;
-    corners.resize(static_cast<std::size_t>(w) * h);
-    for (int j = 0; j < h; ++j) {
-        const std::uint8_t* low =
-            footprint.coverage.data() + static_cast<std::size_t>(j) * footprint.width;
-        pack_row(low, low + footprint.width, corners.data() + static_cast<std::size_t>(j) * w, w);
-    }
+void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs) {
+    const auto row = static_cast<std::size_t>(footprint.width);
+    pairs.resize(row * (footprint.height - 1));
+    pack_rows(footprint.coverage.data(), footprint.coverage.data() + row, pairs.data(), pairs.size());
 }
 
 void BlockTally::count(const Footprint& footprint) {

@@ -8,9 +8,9 @@
 /// The footprint's picture made ready for the kernel, and what is known of its parts.
 namespace tuft::footprint {
 
-/// Packs the four corners of every cell of the picture into one word :
-/// [(height - 1) (width - 1)].
-void pack_picture(const Footprint& footprint, std::vector<std::uint32_t>& corners);
+/// Packs every two cells one above the other into a word, the lower one in its low byte:
+/// [(height - 1) width]. Two neighbouring words hold the four corners of a square.
+void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs);
 
 enum class Cover : std::uint8_t { mixed, empty, full };
 

@@ -11,25 +11,33 @@ namespace {
 
 constexpr int kMaxCells = 4096;  // along a side
 
-/// Change of the covered part from each cell to the next: an edge adds the area to its
-/// right to its own cell and the rest of the height it crosses to the one after.
-struct Coverage {
-    int width, height;          ///< cells
-    std::vector<float> change;  ///< [height * (width + 1)]
+/// What edges add to the covered part along a row: to their own cell the area to their
+/// right, from the next cell on all of the height they cross.
+struct BorderCell {
+    int row, column;
+    float area, height;
+};
 
-    Coverage(int w, int h) : width(w), height(h), change(std::size_t(w + 1) * h, 0) {}
+/// Collects the border cells of outlines; costs grow with the border, not with the area.
+struct Border {
+    int height;                      ///< rows
+    std::vector<BorderCell> cells;   ///< as drawn
 
     /// Part of an edge inside one cell.
     void add_in_cell(int i, int j, double x0, double x1, double dy) {
-        float* at = change.data() + static_cast<std::size_t>(j) * (width + 1) + i;
-        const double right = dy * (1 - (0.5 * (x0 + x1) - i));
-        at[0] += static_cast<float>(right);
-        at[1] += static_cast<float>(dy - right);
+        const auto area = static_cast<float>(dy * (1 - (0.5 * (x0 + x1) - i)));
+        const auto whole = static_cast<float>(dy);
+        if (!cells.empty() && cells.back().row == j && cells.back().column == i) {
+            cells.back().area += area;
+            cells.back().height += whole;
+        } else {
+            cells.push_back({j, i, area, whole});
+        }
     }
 
     /// Part of an edge inside one row of cells.
     void add_in_row(int j, double x0, double x1, double dy) {
-        const int first = static_cast<int>(std::floor(x0)), last = static_cast<int>(std::floor(x1));
+        const int first = static_cast<int>(x0), last = static_cast<int>(x1);  // not negative
         if (first == last) {
             add_in_cell(first, j, x0, x1, dy);
             return;
@@ -51,7 +59,7 @@ struct Coverage {
         const Vec2 &lo = up ? p : q, &hi = up ? q : p;
         const double slope = (hi.x - lo.x) / (hi.y - lo.y);
         double y = lo.y, x = lo.x;
-        for (int j = static_cast<int>(std::floor(lo.y)); y < hi.y; ++j) {
+        for (int j = static_cast<int>(lo.y); y < hi.y; ++j) {
             const double next = std::min(hi.y, double(j) + 1);
             const double x_next = next == hi.y ? hi.x : lo.x + slope * (next - lo.y);
             add_in_row(j, x, x_next, up ? next - y : y - next);
@@ -60,22 +68,48 @@ struct Coverage {
         }
     }
 
-    /// Cells of kRows rows from row j on; outlines of one sense cover positively, all together
-    /// at most once. Rows are summed side by side: one sum alone would wait for itself.
-    static constexpr int kRows = 4;
-    void resolve(int j, std::uint8_t* out) const {
-        const int n = std::min(kRows, height - j);
-        std::array<const float*, kRows> from;
-        for (int r = 0; r < kRows; ++r)
-            from[r] =
-                change.data() + static_cast<std::size_t>(j + std::min(r, n - 1)) * (width + 1);
-        std::array<float, kRows> sum{};
-        for (int i = 0; i < width; ++i) {
-            for (int r = 0; r < kRows; ++r) sum[r] += from[r][i];
-            for (int r = 0; r < n; ++r)
-                out[static_cast<std::size_t>(r) * width + i] =
-                    static_cast<std::uint8_t>(std::min(std::abs(sum[r]), 1.0f) * 255.0f + 0.5f);
+    /// Coverage of all cells; outlines of one sense cover positively, all together at most once.
+    void resolve(int width, std::uint8_t* out) const {
+        std::vector<std::uint32_t> start(static_cast<std::size_t>(height) + 1, 0);
+        for (const BorderCell& c : cells) ++start[c.row + 1];
+        for (int j = 0; j < height; ++j) start[j + 1] += start[j];
+        std::vector<BorderCell> sorted(cells.size());
+        std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+        for (const BorderCell& c : cells) sorted[next[c.row]++] = c;
+        for (int j = 0; j < height; ++j) {
+            BorderCell *first = sorted.data() + start[j], *last = sorted.data() + start[j + 1];
+            sort_by_column(first, last);
+            std::uint8_t* line = out + static_cast<std::size_t>(j) * width;
+            float height_before = 0;
+            int column = 0;
+            while (first < last) {
+                const int at = first->column;
+                std::fill(line + column, line + at, level(height_before));
+                float area = height_before;
+                for (; first < last && first->column == at; ++first) {
+                    area += first->area;
+                    height_before += first->height;
+                }
+                line[at] = level(area);
+                column = at + 1;
+            }
+            // What is left of the sum beyond the last border is rounding.
+            std::fill(line + column, line + width, std::uint8_t{0});
         }
+    }
+
+    /// By insertion: a row has few, and most lie in order.
+    static void sort_by_column(BorderCell* first, BorderCell* last) {
+        for (BorderCell* k = first; k < last; ++k) {
+            const BorderCell cell = *k;
+            BorderCell* to = k;
+            for (; to > first && to[-1].column > cell.column; --to) *to = to[-1];
+            *to = cell;
+        }
+    }
+
+    static std::uint8_t level(float covered) {
+        return static_cast<std::uint8_t>(std::min(std::abs(covered), 1.0f) * 255.0f + 0.5f);
     }
 };
 
@@ -131,14 +165,15 @@ Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::
     result.width = static_cast<int>(size.x);
     result.height = static_cast<int>(size.y);
     result.radius += 2 * cell;
-    Coverage coverage(result.width, result.height);
-    for (const auto& curve : curves) {
+    Border border{.height = result.height, .cells = {}};
+    border.cells.reserve(4 * static_cast<std::size_t>(result.width + result.height));
+    for (auto& curve : curves) {
+        for (Vec2& p : curve) p = p / cell - first;
         for (std::size_t k = 0; k < curve.size(); ++k)
-            coverage.add(curve[k] / cell - first, curve[(k + 1) % curve.size()] / cell - first);
+            border.add(curve[k], curve[(k + 1) % curve.size()]);
     }
     result.coverage.resize(static_cast<std::size_t>(result.width) * result.height);
-    for (int j = 0; j < result.height; j += Coverage::kRows)
-        coverage.resolve(j, result.coverage.data() + static_cast<std::size_t>(j) * result.width);
+    border.resolve(result.width, result.coverage.data());
     return result;
 }
 

@@ -346,7 +346,7 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.reach_hi = {hi.x, hi.y};
     jobs.width = footprint.width - 1;
     jobs.height = footprint.height - 1;
-    pack_picture(footprint, jobs.corners);
+    pack_picture(footprint, jobs.pairs);
     return jobs;
 }
 

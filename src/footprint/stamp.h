@@ -69,9 +69,8 @@ struct SubPose {
 
 /// A planned stamp: its picture packed for the kernel and the tiles it may touch.
 struct StampJobs {
-    int width = 0, height = 0;  ///< of the packed picture
-    std::vector<std::uint32_t>
-        corners;  ///< coverage of cells (i,j) (i+1,j) (i,j+1) (i+1,j+1), a byte each
+    int width = 0, height = 0;  ///< of the picture less one: squares between four cells
+    std::vector<std::uint16_t> pairs;             ///< see `pack_picture`
     std::vector<SubPose> sub_poses;               ///< evenly spread over the motion
     std::array<float, 2> reach_lo{}, reach_hi{};  ///< cells: the picture in all its sub-poses
     PieceFrame stamp_frame;                       ///< serves all pieces when not piecewise

@@ -22,6 +22,9 @@ using atlas::kTile;
 using atlas::kTileTexels;
 using atlas::TexelTile;
 
+/// Neighbouring words of the picture, read at once from where they lie.
+using TwoPairs [[gnu::may_alias, gnu::aligned(2)]] = std::uint32_t;
+
 constexpr float kOutside = -1e9f;  // cells; in no picture
 
 /// The part of a tile that one piece covers.
@@ -101,8 +104,8 @@ struct Rows {
 [[gnu::always_inline]] inline void gather(const StampJobs& jobs, const SubPose& pose, Rows rows,
                                           const float* __restrict fu, const float* __restrict fv,
                                           float* __restrict sum) {
-    const std::uint32_t* __restrict corners = jobs.corners.data();
-    const int stride = jobs.width;
+    const std::uint16_t* __restrict pairs = jobs.pairs.data();
+    const int stride = jobs.width + 1;
     // The last coordinates inside: below the number of cells.
     const float last_x = static_cast<float>(jobs.width) * (1 - 1e-6f);
     const float last_y = static_cast<float>(jobs.height) * (1 - 1e-6f);
@@ -116,10 +119,10 @@ struct Rows {
         const float inside = ((xi == x) & (yi == y)) ? 1.0f : 0.0f;
         const int i = static_cast<int>(xi), j = static_cast<int>(yi);
         const float fx = xi - static_cast<float>(i), fy = yi - static_cast<float>(j);
-        const std::uint32_t q = corners[j * stride + i];
+        const std::uint32_t q = *reinterpret_cast<const TwoPairs*>(pairs + (j * stride + i));
         const float q00 = static_cast<float>(static_cast<int>(q & 255));
-        const float q10 = static_cast<float>(static_cast<int>((q >> 8) & 255));
-        const float q01 = static_cast<float>(static_cast<int>((q >> 16) & 255));
+        const float q01 = static_cast<float>(static_cast<int>((q >> 8) & 255));
+        const float q10 = static_cast<float>(static_cast<int>((q >> 16) & 255));
         const float q11 = static_cast<float>(static_cast<int>(q >> 24));
         const float low = q00 + fx * (q10 - q00), high = q01 + fx * (q11 - q01);
         const float value = low + fy * (high - low);
@@ -222,7 +225,7 @@ Isa best_isa() {
 
 bool evaluate_tile(const TexelTile& tile, const StampJobs& jobs, const TileJob& job,
                    std::span<float, kTileTexels> exposure) {
-    if (jobs.corners.empty() || jobs.sub_poses.empty()) {
+    if (jobs.pairs.empty() || jobs.sub_poses.empty()) {
         std::fill(exposure.begin(), exposure.end(), 0.0f);
         return false;
     }

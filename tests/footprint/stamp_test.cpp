@@ -335,7 +335,7 @@ TEST(Stamp, AStrokeIsTheSameAtAnySampling) {
             peak = std::max(peak, w);
         }
     }
-    for (const double step : {1.0, 2.0, 4.0}) {
+    for (const double step : {1.0, 2.0, 4.0, 8.0}) {
         const auto sparse = stroke(stage, texel, step);
         double sum = 0, error2 = 0;
         std::size_t n = 0;
