@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "tuft: {}\n", error.what());
         return 2;
     } catch (const Cancelled&) {
-        fmt::print(stderr, "tuft: stopped; nothing was written\n");
+        fmt::print(stderr, "tuft: stopped\n");
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "tuft: not enough memory for this; try a smaller atlas or mesh\n");
     } catch (const std::exception& error) {

@@ -82,13 +82,20 @@ int run(const Paint& a) {
     double first_stamp = 0;
     std::vector<stroke::StrokeReport> reports;
     const ProgressFn progress = console.progress();
-    for (std::size_t i = 0; i < strokes.size(); ++i) {
-        stroke::StrokeReport report = painting.paint(strokes[i], [&](std::string_view phase, double fraction) {
-            if (first_stamp == 0) first_stamp = seconds_since(start);
-            return progress(phase, (static_cast<double>(i) + fraction) / static_cast<double>(strokes.size()));
-        });
-        if (strokes[i].action == stroke::Action::stroke) reports.push_back(std::move(report));
-        if (project) project->append(painting.journal().strokes().back());
+    try {
+        for (std::size_t i = 0; i < strokes.size(); ++i) {
+            stroke::StrokeReport report = painting.paint(strokes[i], [&](std::string_view phase, double fraction) {
+                if (first_stamp == 0) first_stamp = seconds_since(start);
+                return progress(phase, (static_cast<double>(i) + fraction) / static_cast<double>(strokes.size()));
+            });
+            if (strokes[i].action == stroke::Action::stroke) reports.push_back(std::move(report));
+            if (project) project->append(painting.journal().strokes().back());
+        }
+    } catch (const Cancelled&) {
+        if (project)
+            console.note(fmt::format("{} holds the {} strokes that were finished", a.project.string(),
+                                     project->n_strokes()));
+        throw;
     }
     if (project && !strokes.empty())
         project->save_canvas(painting.canvas(), painting.journal().strokes().back().id);
