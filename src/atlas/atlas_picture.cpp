@@ -64,7 +64,8 @@ class Canvas {
         if (x >= side_ || row >= side_) return;
         const std::size_t at =
             3 * ((std::size_t{side_} - 1 - row) * picture_.width + square * side_ + x);
-        std::copy(colour.begin(), colour.end(), picture_.rgb.begin() + static_cast<std::ptrdiff_t>(at));
+        std::copy(colour.begin(), colour.end(),
+                  picture_.rgb.begin() + static_cast<std::ptrdiff_t>(at));
     }
 
     void line(std::uint32_t square, const Vec2& a, const Vec2& b, const Colour& colour) {
@@ -73,7 +74,8 @@ class Canvas {
         for (int i = 0; i <= steps; ++i) {
             const Vec2 p = (a + (b - a) * (double(i) / steps)) * double(side_);
             if (p.x >= 0 && p.y >= 0)
-                set(square, static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y), colour);
+                set(square, static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y),
+                    colour);
         }
     }
 

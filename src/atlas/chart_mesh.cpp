@@ -146,7 +146,8 @@ double point_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
 struct EdgeGrid {
     std::vector<std::uint32_t> start, items;
 
-    EdgeGrid(const std::vector<Vec2>& p, const Vec2& lo, const Vec2& hi, double cell, double reach) {
+    EdgeGrid(const std::vector<Vec2>& p, const Vec2& lo, const Vec2& hi, double cell,
+             double reach) {
         const std::size_t n = p.size();
         const auto columns = static_cast<std::size_t>((hi.x - lo.x) / cell) + 1;
         const auto rows = static_cast<std::size_t>((hi.y - lo.y) / cell) + 1;
@@ -218,7 +219,8 @@ bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap
         const double apart = std::abs(along[i] - along[j]);
         if (std::min(apart, along[n] - apart) < 16 * gap) return false;
         // The chart lies left of its border: only what is near on the right is too near.
-        if (height(a, b - a, 0.5 * (c + d)) > 0 || height(c, d - c, 0.5 * (a + b)) > 0) return false;
+        if (height(a, b - a, 0.5 * (c + d)) > 0 || height(c, d - c, 0.5 * (a + b)) > 0)
+            return false;
         if (std::min(std::min(point_segment(a, c, d), point_segment(b, c, d)),
                      std::min(point_segment(c, a, b), point_segment(d, a, b))) >= gap)
             return false;
@@ -230,7 +232,8 @@ bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap
     for (std::size_t c = 0; c + 1 < grid.start.size(); ++c)
         for (std::uint32_t x = grid.start[c]; x < grid.start[c + 1]; ++x)
             for (std::uint32_t y = x + 1; y < grid.start[c + 1]; ++y)
-                if (grid.items[x] != grid.items[y] && meet(grid.items[x], grid.items[y])) return true;
+                if (grid.items[x] != grid.items[y] && meet(grid.items[x], grid.items[y]))
+                    return true;
     return false;
 }
 

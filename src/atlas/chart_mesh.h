@@ -13,8 +13,8 @@ namespace tuft::atlas {
 struct ChartMesh {
     std::vector<std::uint32_t> triangles;             ///< [n] triangle of the mesh
     std::vector<std::array<std::uint32_t, 3>> faces;  ///< [n] vertices of the chart
-    std::vector<std::uint32_t> twin;                  ///< [3n] half-edge of the chart, kNone on its border
-    std::vector<Vec3> position;  ///< [n_vertices] from the chart's first corner, over `unit`
+    std::vector<std::uint32_t> twin;  ///< [3n] half-edge of the chart, kNone on its border
+    std::vector<Vec3> position;       ///< [n_vertices] from the chart's first corner, over `unit`
     std::vector<std::uint32_t> loop;  ///< border vertices in order, when the chart is a disk
     double area = 0;                  ///< over unit²
     bool disk = false;                ///< connected, one border, Euler characteristic 1
@@ -33,10 +33,10 @@ std::vector<std::vector<std::uint32_t>> connected_charts(std::span<const std::ui
 /// What a flattening does to a chart; UVs over the same unit as the positions.
 struct FlatCheck {
     bool finite = true;
-    std::size_t flips = 0;     ///< triangles without positive area
-    bool crosses = false;      ///< the border crosses itself
-    double l2 = 0, linf = 0;   ///< stretch as the UVs stand, not rescaled
-    double stretch_999 = 0;    ///< largest singular value at 99.9 % of the area
+    std::size_t flips = 0;    ///< triangles without positive area
+    bool crosses = false;     ///< the border crosses itself
+    double l2 = 0, linf = 0;  ///< stretch as the UVs stand, not rescaled
+    double stretch_999 = 0;   ///< largest singular value at 99.9 % of the area
     double uv_area = 0;
 
     bool sound() const { return finite && flips == 0 && !crosses; }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "atlas/hull.h"
 #include "atlas/seam_graph.h"
 #include "atlas/straighten.h"
 #include "core/parallel.h"
@@ -64,8 +66,10 @@ std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const
         for (std::uint32_t t = 0; t < patch.triangles.size(); ++t) {
             const Vec3 n(patch.normal[t]);
             const double a = patch.area[t];
-            all.add({a, a * n, {a * n.x * n.x, a * n.x * n.y, a * n.x * n.z, a * n.y * n.y,
-                                a * n.y * n.z, a * n.z * n.z}});
+            all.add({a,
+                     a * n,
+                     {a * n.x * n.x, a * n.x * n.y, a * n.x * n.z, a * n.y * n.y, a * n.y * n.z,
+                      a * n.z * n.z}});
         }
         SeamGraph graph(patch, {}, 0);
         GluingLimits limits;
@@ -115,7 +119,8 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
                     if (flat[i].uv.empty()) continue;
                     const FlatCheck check = check_flat(flat[i].mesh, flat[i].uv, options.gap);
                     flat[i].worst = check.linf;
-                    accepted[i] = flat[i].mesh.faces.size() == 1 || good(check, options, pieces[first + i].depth);
+                    accepted[i] = flat[i].mesh.faces.size() == 1 ||
+                                  good(check, options, pieces[first + i].depth);
                 }
             });
             for (std::size_t i = 0; i < flat.size(); ++i) {
@@ -127,14 +132,52 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
                         again.push_back(std::move(p));
                 }
             }
-            report(progress, "flatten", std::min(1.0, static_cast<double>(done) / static_cast<double>(all)));
+            report(progress, "flatten",
+                   std::min(1.0, static_cast<double>(done) / static_cast<double>(all)));
             first = last;
         }
         pieces = std::move(again);
     }
 }
 
+/// Slices charts that are too long for a page across their length.
+std::vector<Piece> cut_long_charts(CutMesh& cut, const ChartOptions& options) {
+    std::vector<Piece> pieces;
+    std::vector<FlatChart> kept;
+    for (FlatChart& chart : cut.charts) {
+        const Rectangle box = smallest_rectangle(chart_hull(chart));
+        if (box.length <= options.longest || chart.mesh.faces.size() == 1) {
+            kept.push_back(std::move(chart));
+            continue;
+        }
+        const double slices = std::ceil(box.length / options.longest);
+        double lo = std::numeric_limits<double>::infinity();
+        for (const Vec2& p : chart.uv) lo = std::min(lo, box.c * p.x + box.s * p.y);
+        const auto slice = [&](std::uint32_t f) {
+            Vec2 middle(0);
+            for (const std::uint32_t v : chart.mesh.faces[f]) middle += chart.uv[v] / 3.0;
+            return std::floor((box.c * middle.x + box.s * middle.y - lo) / box.length * slices);
+        };
+        for (std::uint32_t h = 0; h < chart.mesh.twin.size(); ++h) {
+            const std::uint32_t g = chart.mesh.twin[h];
+            if (g != kNone && slice(h / 3) != slice(g / 3))
+                cut_edge(cut, 3 * chart.mesh.triangles[h / 3] + h % 3);
+        }
+        for (Triangles& part : parts_of(cut, chart.mesh.triangles))
+            pieces.push_back({std::move(part), 0});
+    }
+    cut.charts = std::move(kept);
+    return pieces;
+}
+
 }  // namespace
+
+std::vector<Vec2> chart_hull(const FlatChart& chart) {
+    std::vector<Vec2> border;
+    border.reserve(chart.mesh.loop.size());
+    for (const std::uint32_t v : chart.mesh.loop) border.push_back(chart.uv[v]);
+    return convex_hull(std::move(border));
+}
 
 ArapOptions trial_arap(const ChartOptions& options) {
     ArapOptions arap;
@@ -164,6 +207,7 @@ CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& opti
     std::vector<Piece> pieces;
     for (Triangles& t : connected_charts(cut.glued)) pieces.push_back({std::move(t), 0});
     flatten_pieces(mesh, cut, std::move(pieces), options, progress);
+    flatten_pieces(mesh, cut, cut_long_charts(cut, options), options, progress);
     return cut;
 }
 

@@ -12,10 +12,12 @@
 namespace tuft::atlas {
 
 struct ChartOptions {
-    double l2 = 1.0045;      ///< stretch that a chart may have on average
-    double largest = 1.35;   ///< and at 99.9 % of its area
-    double worst = 3;        ///< and anywhere, where that can be helped
-    double gap = 0;          ///< that parts of a chart's border keep from each other, over the unit
+    double l2 = 1.0045;     ///< stretch that a chart may have on average
+    double largest = 1.35;  ///< and at 99.9 % of its area
+    double worst = 3;       ///< and anywhere, where that can be helped
+    double longest = 1.35;  ///< long side of a chart's smallest rectangle, over the unit: no longer
+                            ///< than a page that charts cover to a half is wide
+    double gap = 0;         ///< that parts of a chart's border keep from each other, over the unit
 };
 
 /// How well charts are laid out to see whether they can be: stops early where that is clear.
@@ -30,15 +32,18 @@ struct FlatChart {
 };
 
 struct CutMesh {
-    double unit = 1;                    ///< metres: square root of the surface's area
-    std::vector<std::uint32_t> twin;    ///< [3n] opposite half-edges of the mesh
-    std::vector<std::uint32_t> glued;   ///< the same, kNone at seams
+    double unit = 1;                   ///< metres: square root of the surface's area
+    std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges of the mesh
+    std::vector<std::uint32_t> glued;  ///< the same, kNone at seams
     std::vector<FlatChart> charts;
 };
 
 /// Cuts and flattens the whole mesh. Every triangle lies in one chart.
 CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options,
                         const ProgressFn& progress);
+
+/// Hull of a chart's border in the plane.
+std::vector<Vec2> chart_hull(const FlatChart& chart);
 
 /// Cuts each of `charts` (ascending indices) into two or more and flattens those. `singles`
 /// cuts along every edge of the named triangles of the mesh instead.

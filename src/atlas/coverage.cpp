@@ -54,8 +54,7 @@ class SegmentGrid {
     void for_cells(const Segment& s, double reach, Visit&& visit) const {
         const auto index = [&](double x) {
             const double c = std::floor(x / cell_);
-            return static_cast<std::size_t>(
-                std::clamp(c, 0.0, static_cast<double>(columns_ - 1)));
+            return static_cast<std::size_t>(std::clamp(c, 0.0, static_cast<double>(columns_ - 1)));
         };
         const std::size_t y0 = index(std::min(s.a.y, s.b.y) - reach);
         const std::size_t y1 = index(std::max(s.a.y, s.b.y) + reach);
@@ -89,8 +88,8 @@ std::vector<std::uint8_t> uv_seams(std::span<const std::uint32_t> twin,
     for (std::uint32_t h = 0; h < twin.size(); ++h) {
         const std::uint32_t g = twin[h];
         if (g == kNone) continue;
-        seam[h] = corner_uvs[h] != corner_uvs[next_half(g)] ||
-                  corner_uvs[next_half(h)] != corner_uvs[g];
+        seam[h] =
+            corner_uvs[h] != corner_uvs[next_half(g)] || corner_uvs[next_half(h)] != corner_uvs[g];
     }
     return seam;
 }

@@ -14,8 +14,8 @@ std::vector<std::uint8_t> uv_seams(std::span<const std::uint32_t> twin,
                                    std::span<const Vec2f> corner_uvs);
 
 struct Coverage {
-    std::size_t covered = 0;  ///< texel centres inside a triangle
-    std::size_t twice = 0;    ///< inside more than one
+    std::size_t covered = 0;                  ///< texel centres inside a triangle
+    std::size_t twice = 0;                    ///< inside more than one
     std::vector<std::uint32_t> charts_twice;  ///< charts with such texels, ascending; see `cover`
 };
 

@@ -100,8 +100,8 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
     const int gap = smallest_gap(seam, atlas.corner_uvs, atlas.triangle_chart, atlas.size);
     const int least = std::min<int>(options.uvs == UvPolicy::keep ? 1 : 2, int(options.gutter));
     if (gap < least)
-        return fault("charts are less than " + std::to_string(least) + " texels apart at a size of " +
-                     std::to_string(atlas.size));
+        return fault("charts are less than " + std::to_string(least) +
+                     " texels apart at a size of " + std::to_string(atlas.size));
     return found;
 }
 

@@ -38,8 +38,7 @@ Reference reference_triangle(const ChartMesh& chart, std::size_t t,
     longest = std::max(longest, 1e-150);
     const Vec3 along = (chart.position[f[(k + 1) % 3]] - chart.position[f[k]]) / longest;
     const Vec3 side = chart.position[f[(k + 2) % 3]] - chart.position[f[k]];
-    const double height =
-        std::max(glm::length(glm::cross(along, side)), min_height * longest);
+    const double height = std::max(glm::length(glm::cross(along, side)), min_height * longest);
     Reference r;
     r.corner[k] = {0, 0};
     r.corner[(k + 1) % 3] = {longest, 0};
@@ -64,9 +63,8 @@ bool all_positive(const ChartMesh& chart, const std::vector<Vec2>& uv) {
 }
 
 bool all_finite(const std::vector<Vec2>& uv) {
-    return std::all_of(uv.begin(), uv.end(), [](const Vec2& p) {
-        return std::isfinite(p.x) && std::isfinite(p.y);
-    });
+    return std::all_of(uv.begin(), uv.end(),
+                       [](const Vec2& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
 }
 
 /// UVs of a plane chart, seen from its normal; empty when it is not plane.
@@ -119,7 +117,8 @@ Matrix stiffness(const ChartMesh& chart, const std::vector<Reference>& reference
 
 std::vector<Reference> reference_triangles(const ChartMesh& chart) {
     std::vector<Reference> references(chart.faces.size());
-    for (std::size_t t = 0; t < references.size(); ++t) references[t] = reference_triangle(chart, t);
+    for (std::size_t t = 0; t < references.size(); ++t)
+        references[t] = reference_triangle(chart, t);
     return references;
 }
 
@@ -216,7 +215,8 @@ bool untangle(const ChartMesh& chart, std::vector<Vec2>& uv) {
     for (std::size_t v = 0; v < n; ++v) start[v + 1] += start[v];
     std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
     for (std::size_t t = 0; t < chart.faces.size(); ++t)
-        for (const std::uint32_t v : chart.faces[t]) around[fill[v]++] = static_cast<std::uint32_t>(t);
+        for (const std::uint32_t v : chart.faces[t])
+            around[fill[v]++] = static_cast<std::uint32_t>(t);
 
     // The worst triangle around a vertex, its area over the area it should have.
     const auto worst = [&](std::uint32_t v) {
@@ -280,13 +280,13 @@ std::vector<Vec2> flatten(const ChartMesh& chart, const ArapOptions& options) {
     if (!uv.empty() && all_positive(chart, uv)) return uv;
     uv.clear();
     // Where the projection does not shrink much it is as good a start as any.
-    constexpr double kGoodStart = 0.4;
+    constexpr double kGoodStart = 0.15;
     const std::vector<Reference> references = reference_triangles(chart);
     std::vector<std::vector<Vec2>> starts{project_plane(chart, false)};
     if (starts[0].empty() || start_energy(chart, references, starts[0]) > kGoodStart)
-        starts.insert(starts.begin(), {});
+        starts.emplace(starts.begin());
     else
-        starts.push_back({});
+        starts.emplace_back();
     for (std::vector<Vec2>& start : starts) {
         if (start.empty())
             if (auto conformal = lscm(chart)) start = std::move(*conformal);

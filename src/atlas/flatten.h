@@ -32,8 +32,8 @@ bool untangle(const ChartMesh& chart, std::vector<Vec2>& uv);
 
 /// Flat by the shortest way that works: plane charts are projected; others start from
 /// their projection, or from LSCM where that is bad or leads to flipped triangles, and go
-/// through ARAP and untangling. The result is scaled to the chart's area; empty when the chart is no disk
-/// or nothing finite came out.
+/// through ARAP and untangling. The result is scaled to the chart's area; empty when the chart is
+/// no disk or nothing finite came out.
 std::vector<Vec2> flatten(const ChartMesh& chart, const ArapOptions& options = {});
 
 /// Scales the UVs so that their area is the chart's.

@@ -10,8 +10,12 @@
 /// and the half-edges that leave them share their number.
 namespace tuft::atlas {
 
-constexpr std::uint32_t next_half(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-constexpr std::uint32_t prev_half(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+constexpr std::uint32_t next_half(std::uint32_t h) {
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+constexpr std::uint32_t prev_half(std::uint32_t h) {
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
 
 /// The opposite half-edge of each, kNone on a border. [3 n_triangles]. Neighbours
 /// that do not share the edge in opposite directions count as borders.
@@ -24,11 +28,11 @@ std::uint32_t local_half(std::span<const std::uint32_t> triangles, std::uint32_t
 struct Patch {
     std::vector<std::uint32_t> triangles;  ///< [n] triangle of the mesh
     std::vector<std::uint32_t> twin;       ///< [3n] half-edges of the patch
-    std::vector<std::uint32_t> vertex;     ///< [3n] corner to vertex; a vertex is one fan of triangles
+    std::vector<std::uint32_t> vertex;  ///< [3n] corner to vertex; a vertex is one fan of triangles
     std::uint32_t n_vertices = 0;
-    std::vector<Vec3f> normal;             ///< [n] unit
-    std::vector<float> area;               ///< [n] m² over `unit`²
-    std::vector<float> length;             ///< [3n] edge length over `unit`
+    std::vector<Vec3f> normal;  ///< [n] unit
+    std::vector<float> area;    ///< [n] m² over `unit`²
+    std::vector<float> length;  ///< [3n] edge length over `unit`
 };
 
 /// `triangles` in ascending order; `twin` of the mesh, kNone also where it is cut;

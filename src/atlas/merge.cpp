@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "atlas/pack.h"
+#include "atlas/hull.h"
 #include "atlas/seam_graph.h"
 #include "core/parallel.h"
 
@@ -73,11 +73,9 @@ std::pair<Motion, double> fit_sides(const FlatChart& a, const FlatChart& b,
     return {m, std::sqrt(misfit / double(pairs.size()))};
 }
 
-double hull_fill(const FlatChart& chart) {
-    std::vector<Vec2> border;
-    for (const std::uint32_t v : chart.mesh.loop) border.push_back(chart.uv[v]);
+/// Area of a chart over that of its hull.
+double hull_fill(const FlatChart& chart, const std::vector<Vec2>& hull) {
     double area = 0;
-    const std::vector<Vec2> hull = convex_hull(std::move(border));
     for (std::size_t i = 1; i + 1 < hull.size(); ++i) {
         const Vec2 p = hull[i] - hull[0], q = hull[i + 1] - hull[0];
         area += 0.5 * (p.x * q.y - p.y * q.x);
@@ -89,9 +87,13 @@ class Merger {
   public:
     Merger(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options,
            const MergeOptions& merge)
-        : mesh_(mesh), cut_(cut), options_(options), merge_(merge),
+        : mesh_(mesh),
+          cut_(cut),
+          options_(options),
+          merge_(merge),
           patch_(make_patch(mesh, cut.twin, all_triangles(mesh), cut.unit)),
-          graph_(patch_, seam_flags(cut), 0), chart_at_(mesh.n_triangles(), kNone),
+          graph_(patch_, seam_flags(cut), 0),
+          chart_at_(mesh.n_triangles(), kNone),
           refused_(3 * mesh.n_triangles(), 0) {
         for (std::uint32_t c = 0; c < cut.charts.size(); ++c)
             chart_at_[graph_.chart_of(cut.charts[c].mesh.triangles[0])] = c;
@@ -191,8 +193,8 @@ class Merger {
         std::vector<std::uint32_t> count(mesh.n_vertices(), 0);
         std::size_t ia = 0, ib = 0;
         for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-            const bool in_a = ia < a.mesh.triangles.size() &&
-                              a.mesh.triangles[ia] == mesh.triangles[f];
+            const bool in_a =
+                ia < a.mesh.triangles.size() && a.mesh.triangles[ia] == mesh.triangles[f];
             const FlatChart& from = in_a ? a : b;
             const auto& face = from.mesh.faces[in_a ? ia++ : ib++];
             for (int k = 0; k < 3; ++k) {
@@ -214,9 +216,11 @@ class Merger {
             check.linf > std::max({options_.worst, a.worst, b.worst}))
             return;
         t.flat.worst = check.linf;
-        const double parts = std::min(hull_fill(a), hull_fill(b));
-        t.outcome = hull_fill(t.flat) < std::min(merge_.least_fill, parts) ? Outcome::misshapen
-                                                                           : Outcome::merged;
+        const std::vector<Vec2> hull = chart_hull(t.flat);
+        const double parts = std::min(hull_fill(a, chart_hull(a)), hull_fill(b, chart_hull(b)));
+        const bool ragged = hull_fill(t.flat, hull) < std::min(merge_.least_fill, parts);
+        const bool too_long = smallest_rectangle(hull).length > merge_.longest;
+        t.outcome = ragged || too_long ? Outcome::misshapen : Outcome::merged;
     }
 
     void conclude(Trial& t) {

@@ -24,8 +24,8 @@ struct Placement {
 };
 
 struct Packing {
-    bool fits = false;           ///< with at least 0.1 % of the page covered
-    std::uint32_t size = 0;      ///< of the page; when it does not fit, one that would
+    bool fits = false;       ///< with at least 0.1 % of the page covered
+    std::uint32_t size = 0;  ///< of the page; when it does not fit, one that would
     double texels_per_unit = 0;
     std::vector<Placement> placements;  ///< [n_charts]
 };
@@ -36,8 +36,5 @@ struct Packing {
 /// wide as the page; the scale is searched until the strip is a square. Distances
 /// between charts are at least `gutter` texels, exactly.
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options);
-
-/// Corners of the convex hull, counter-clockwise.
-std::vector<Vec2> convex_hull(std::vector<Vec2> points);
 
 }  // namespace tuft::atlas

@@ -48,16 +48,16 @@ std::vector<Vec2> carried_uvs(const CutMesh& cut, const OldPlaces& places, const
     std::vector<std::pair<std::uint32_t, double>> share;
     for (std::size_t f = 0; f < chart.faces.size(); ++f) {
         const std::uint32_t c = places.chart[chart.triangles[f]];
-        const auto it = std::find_if(share.begin(), share.end(), [&](auto& s) { return s.first == c; });
+        const auto it =
+            std::find_if(share.begin(), share.end(), [&](auto& s) { return s.first == c; });
         if (it == share.end())
             share.emplace_back(c, 1);
         else
             it->second += 1;
     }
-    const std::uint32_t main =
-        std::max_element(share.begin(), share.end(), [](auto& a, auto& b) {
-            return a.second < b.second;
-        })->first;
+    const std::uint32_t main = std::max_element(share.begin(), share.end(), [](auto& a, auto& b) {
+                                   return a.second < b.second;
+                               })->first;
     const FlatChart& old = cut.charts[main];
     std::vector<Vec2> uv(chart.n_vertices());
     std::vector<std::uint8_t> known(chart.n_vertices(), 0), done(chart.faces.size(), 0);
@@ -91,7 +91,8 @@ std::vector<Vec2> carried_uvs(const CutMesh& cut, const OldPlaces& places, const
 bool same_cuts(const std::vector<std::uint32_t>& glued, const std::vector<std::uint32_t>& other,
                const std::vector<std::uint32_t>& triangles) {
     return std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
-        return std::equal(glued.begin() + 3 * std::ptrdiff_t{t}, glued.begin() + 3 * std::ptrdiff_t{t} + 3,
+        return std::equal(glued.begin() + 3 * std::ptrdiff_t{t},
+                          glued.begin() + 3 * std::ptrdiff_t{t} + 3,
                           other.begin() + 3 * std::ptrdiff_t{t});
     });
 }
@@ -100,14 +101,17 @@ bool same_cuts(const std::vector<std::uint32_t>& glued, const std::vector<std::u
 struct Attempt {
     std::vector<std::uint32_t> glued;
     std::vector<FlatChart> charts;
-    std::vector<std::uint8_t> failed;        // [n_charts]
-    std::vector<std::uint32_t> chart_of;     // [n_triangles]
+    std::vector<std::uint8_t> failed;     // [n_charts]
+    std::vector<std::uint32_t> chart_of;  // [n_triangles]
 };
 
 class Polisher {
   public:
     Polisher(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options)
-        : mesh_(mesh), cut_(cut), options_(options), places_(old_places(mesh, cut)),
+        : mesh_(mesh),
+          cut_(cut),
+          options_(options),
+          places_(old_places(mesh, cut)),
           reach_(cut.charts.size(), kFirstReach) {
         std::vector<std::uint32_t> all(mesh.n_triangles());
         std::iota(all.begin(), all.end(), 0u);
@@ -125,7 +129,8 @@ class Polisher {
             for (std::size_t i = 0; i < now.charts.size(); ++i) {
                 if (!now.failed[i]) continue;
                 failed = true;
-                for (const std::uint32_t t : now.charts[i].mesh.triangles) hit[places_.chart[t]] = 1;
+                for (const std::uint32_t t : now.charts[i].mesh.triangles)
+                    hit[places_.chart[t]] = 1;
             }
             for (std::size_t c = 0; c < hit.size(); ++c)
                 if (hit[c]) reach_[c] = reach_[c] > kLeastReach ? 0.35f * reach_[c] : 0;
@@ -170,8 +175,8 @@ class Polisher {
     }
 
     /// False when the chart's seams changed and it does not lie flat with them.
-    bool flatten_part(const std::vector<std::uint32_t>& glued, const std::vector<std::uint32_t>& part,
-                      FlatChart& chart) const {
+    bool flatten_part(const std::vector<std::uint32_t>& glued,
+                      const std::vector<std::uint32_t>& part, FlatChart& chart) const {
         chart.mesh = make_chart(mesh_, glued, part, cut_.unit);
         const bool as_before = same_cuts(glued, cut_.glued, part);
         if (chart.mesh.disk) {
@@ -191,7 +196,8 @@ class Polisher {
 
     double worst_before(const std::vector<std::uint32_t>& part) const {
         double worst = 0;
-        for (const std::uint32_t t : part) worst = std::max(worst, cut_.charts[places_.chart[t]].worst);
+        for (const std::uint32_t t : part)
+            worst = std::max(worst, cut_.charts[places_.chart[t]].worst);
         return worst;
     }
 

@@ -127,8 +127,10 @@ SeamGraph::SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam, int
     for (std::uint32_t t = 0; t < n; ++t) {
         const Vec3 m = Vec3(normal[t]);
         const double a = patch.area[t];
-        moments_[t] = {a, a * m, {a * m.x * m.x, a * m.x * m.y, a * m.x * m.z,
-                                  a * m.y * m.y, a * m.y * m.z, a * m.z * m.z}};
+        moments_[t] = {a,
+                       a * m,
+                       {a * m.x * m.x, a * m.x * m.y, a * m.x * m.z, a * m.y * m.y, a * m.y * m.z,
+                        a * m.z * m.z}};
     }
     for (std::uint32_t e = 0; e < n_edges; ++e) {
         const std::uint32_t h = half_[e];
@@ -297,7 +299,8 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
             const Entry top = queue.top();
             queue.pop();
             if ((++steps & 0xfff) == 0)
-                report(progress, "charts", 1.0 - static_cast<double>(left) / static_cast<double>(all));
+                report(progress, "charts",
+                       1.0 - static_cast<double>(left) / static_cast<double>(all));
             const std::uint32_t c = top.chain;
             if (!seam_[c] || chain_parent_[c] != c || version_[c] != top.version) continue;
             const double now = cost(c, limits);
@@ -314,7 +317,8 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
             glued = true;
             left -= left > 0;
             for (const std::uint32_t j : changed)
-                if (seam_[j] && chain_parent_[j] == j) queue.push({cost(j, limits), j, version_[j]});
+                if (seam_[j] && chain_parent_[j] == j)
+                    queue.push({cost(j, limits), j, version_[j]});
         }
         for (const Entry& e : refused) {
             if (!seam_[e.chain] || chain_parent_[e.chain] != e.chain) continue;

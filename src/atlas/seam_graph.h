@@ -39,8 +39,8 @@ class SeamGraph {
     struct Chain {
         std::uint32_t id = kNone;  ///< an edge of it
         std::uint32_t chart_a = kNone, chart_b = kNone;
-        double length = 0;  ///< over the patch's unit
-        double bend = 0;    ///< mean dihedral angle, radians
+        double length = 0;    ///< over the patch's unit
+        double bend = 0;      ///< mean dihedral angle, radians
         bool closed = false;  ///< gluing it would close the surface
     };
 
@@ -65,7 +65,9 @@ class SeamGraph {
     std::vector<std::uint8_t> seams() const;  ///< [3n], borders included
 
   private:
-    struct Ends { std::uint32_t a, b; };
+    struct Ends {
+        std::uint32_t a, b;
+    };
     double cost(std::uint32_t chain, const GluingLimits& limits) const;
     std::uint32_t chain_of(std::uint32_t edge) const;
     bool is_closed(std::uint32_t chain) const;
@@ -75,18 +77,18 @@ class SeamGraph {
     int seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>& edges) const;
 
     const Patch& patch_;
-    std::vector<std::uint32_t> edge_of_;       // [3n]
-    std::vector<std::uint32_t> half_;          // [n_edges] one half-edge each
-    std::vector<std::uint8_t> seam_;           // [n_edges]
+    std::vector<std::uint32_t> edge_of_;  // [3n]
+    std::vector<std::uint32_t> half_;     // [n_edges] one half-edge each
+    std::vector<std::uint8_t> seam_;      // [n_edges]
     mutable std::vector<std::uint32_t> chain_parent_, chart_parent_;
-    std::vector<std::uint32_t> next_, tail_;   // lists of the edges of a chain
+    std::vector<std::uint32_t> next_, tail_;  // lists of the edges of a chain
     std::vector<Ends> ends_;
-    std::vector<float> length_, bent_;         // of chains: sum of length, of length × angle
+    std::vector<float> length_, bent_;  // of chains: sum of length, of length × angle
     std::vector<std::uint32_t> version_;
-    std::vector<NormalMoments> moments_;       // of charts
-    std::vector<std::uint32_t> vertex_half_;   // [n_vertices] a half-edge that leaves it
-    std::vector<std::uint32_t> degree_;        // seam edges at a vertex, borders included
-    std::vector<std::uint8_t> stays_;          // vertex lies on a border or wants its slit
+    std::vector<NormalMoments> moments_;      // of charts
+    std::vector<std::uint32_t> vertex_half_;  // [n_vertices] a half-edge that leaves it
+    std::vector<std::uint32_t> degree_;       // seam edges at a vertex, borders included
+    std::vector<std::uint8_t> stays_;         // vertex lies on a border or wants its slit
 };
 
 }  // namespace tuft::atlas

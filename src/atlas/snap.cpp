@@ -42,9 +42,13 @@ class Snapper {
         GridPoint better = here;
         for (std::int64_t r = 1; r <= reach && best <= 0; r *= 2)
             for (int k = 0; k < 16; ++k) {
-                constexpr std::int64_t kDx[] = {4, 4, 4, 2, 0, -2, -4, -4, -4, -4, -4, -2, 0, 2, 4, 4};
-                constexpr std::int64_t kDy[] = {0, 2, 4, 4, 4, 4, 4, 2, 0, -2, -4, -4, -4, -4, -4, -2};
-                const auto step = [r](std::int64_t d) { return d >= 0 ? (d * r + 3) / 4 : -((-d * r + 3) / 4); };
+                constexpr std::int64_t kDx[] = {4,  4,  4,  2,  0, -2, -4, -4,
+                                                -4, -4, -4, -2, 0, 2,  4,  4};
+                constexpr std::int64_t kDy[] = {0, 2,  4,  4,  4,  4,  4,  2,
+                                                0, -2, -4, -4, -4, -4, -4, -2};
+                const auto step = [r](std::int64_t d) {
+                    return d >= 0 ? (d * r + 3) / 4 : -((-d * r + 3) / 4);
+                };
                 p_[v] = {here[0] + step(kDx[k]), here[1] + step(kDy[k])};
                 if (p_[v][0] < 0 || p_[v][1] < 0 || p_[v][0] > std::int64_t(kUvGrid) ||
                     p_[v][1] > std::int64_t(kUvGrid))

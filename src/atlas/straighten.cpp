@@ -10,15 +10,19 @@ namespace tuft::atlas {
 namespace {
 
 constexpr double kCreaseDiscount = 0.6;  // part of the length that an edge bent by kCrease saves
-constexpr double kCrease = 0.7;      // radians
+constexpr double kCrease = 0.7;          // radians
 constexpr int kRounds = 2;
 
 class Straightener {
   public:
     Straightener(const Patch& patch, std::vector<std::uint8_t>& seam)
-        : patch_(patch), seam_(seam), degree_(patch.n_vertices, 0), border_(patch.n_vertices, 0),
+        : patch_(patch),
+          seam_(seam),
+          degree_(patch.n_vertices, 0),
+          border_(patch.n_vertices, 0),
           corner_(patch.n_vertices, 0),
-          distance_(patch.n_vertices, kFar), weight_from_(patch.n_vertices, kNone),
+          distance_(patch.n_vertices, kFar),
+          weight_from_(patch.n_vertices, kNone),
           band_(patch.n_vertices, kFar) {
         for (std::uint32_t h = 0; h < seam.size(); ++h) {
             const std::uint32_t a = origin(h), b = origin(next_half(h));
@@ -63,8 +67,7 @@ class Straightener {
     }
 
     float weight(std::uint32_t h) const {
-        const float cosine =
-            glm::dot(patch_.normal[h / 3], patch_.normal[patch_.twin[h] / 3]);
+        const float cosine = glm::dot(patch_.normal[h / 3], patch_.normal[patch_.twin[h] / 3]);
         const float bend = std::acos(std::clamp(cosine, -1.f, 1.f));
         const float crease = std::min(1.f, bend / float(kCrease));
         return patch_.length[h] * (1 - float(kCreaseDiscount) * crease);
@@ -140,7 +143,8 @@ class Straightener {
         const auto offer = [&](std::uint32_t h, float d) {
             const std::uint32_t v = end(h);
             if (v != to && band_[v] == kFar) return;
-            if (v == to && std::find(last.begin(), last.end(), patch_.twin[h]) == last.end()) return;
+            if (v == to && std::find(last.begin(), last.end(), patch_.twin[h]) == last.end())
+                return;
             if (d >= distance_[v]) return;
             if (distance_[v] == kFar) touched_.push_back(v);
             distance_[v] = d;

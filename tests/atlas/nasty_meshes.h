@@ -14,8 +14,6 @@ struct NastyMesh {
     mesh::TriangleMesh mesh;
 };
 
-using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-
 /// Triangles that share nothing, sizes over four decades.
 inline mesh::TriangleMesh loose_triangles(Random& random, int n) {
     std::vector<Vec3f> p;
@@ -38,7 +36,8 @@ inline mesh::TriangleMesh slivers(Random& random) {
     for (int i = 0; i < 24; ++i) at.push_back(at.back() + std::pow(10.0, random.uniform(-6, 0)));
     const double bend = random.uniform(0, 0.5), skew = random.uniform(0, 3);
     return grid_mesh(24, 24, false, false, [&](double u, double v) {
-        const double x = at[std::size_t(std::lround(24 * u))], y = at[std::size_t(std::lround(24 * v))];
+        const double x = at[std::size_t(std::lround(24 * u))],
+                     y = at[std::size_t(std::lround(24 * v))];
         return Vec3(x + skew * y, y, bend * x * y);
     });
 }
@@ -91,7 +90,9 @@ inline mesh::TriangleMesh voxels(Random& random, double filled) {
     const auto is_full = [&](int x, int y, int z) {
         return x >= 0 && y >= 0 && z >= 0 && x < n && y < n && z < n && full[(z * n + y) * n + x];
     };
-    const auto vertex = [](int x, int y, int z) { return std::uint32_t((z * (n + 1) + y) * (n + 1) + x); };
+    const auto vertex = [](int x, int y, int z) {
+        return std::uint32_t((z * (n + 1) + y) * (n + 1) + x);
+    };
     std::vector<Vec3f> p;
     for (int z = 0; z <= n; ++z)
         for (int y = 0; y <= n; ++y)
@@ -144,7 +145,7 @@ inline mesh::TriangleMesh graded_sheet(Random& random) {
     });
 }
 
-/// Sixty-odd meshes, the same every time.
+/// Fifty-one meshes, the same every time.
 inline std::vector<NastyMesh> nasty_meshes() {
     std::vector<NastyMesh> meshes;
     const auto add = [&](std::string name, mesh::TriangleMesh m) {
@@ -157,7 +158,7 @@ inline std::vector<NastyMesh> nasty_meshes() {
     add("two sides", finish_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}));
     add("tetrahedron", finish_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                    {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         Random random(seed);
         const std::string tail = " " + std::to_string(seed);
         add("loose triangles" + tail, loose_triangles(random, 40 * int(seed)));

@@ -11,10 +11,11 @@
 /// Meshes made on the spot, as clean as `build_surface` leaves them.
 namespace tuft::test {
 
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
 /// Fills neighbours, normals and bounds. Edges that are not shared by exactly two
 /// triangles in opposite directions are borders; triangles without area are dropped.
-inline mesh::TriangleMesh finish_mesh(std::vector<Vec3f> positions,
-                                      const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+inline mesh::TriangleMesh finish_mesh(std::vector<Vec3f> positions, const Triangles& triangles) {
     mesh::TriangleMesh m;
     m.positions = std::move(positions);
     for (const auto& t : triangles) {
@@ -49,8 +50,9 @@ inline mesh::TriangleMesh grid_mesh(int nu, int nv, bool wrap_u, bool wrap_v,
     const int mu = wrap_u ? nu : nu + 1, mv = wrap_v ? nv : nv + 1;
     std::vector<Vec3f> positions;
     for (int j = 0; j < mv; ++j)
-        for (int i = 0; i < mu; ++i) positions.push_back(Vec3f(point(double(i) / nu, double(j) / nv)));
-    std::vector<std::array<std::uint32_t, 3>> triangles;
+        for (int i = 0; i < mu; ++i)
+            positions.push_back(Vec3f(point(double(i) / nu, double(j) / nv)));
+    Triangles triangles;
     const auto at = [&](int i, int j) { return std::uint32_t((j % mv) * mu + i % mu); };
     for (int j = 0; j < nv; ++j)
         for (int i = 0; i < nu; ++i) {

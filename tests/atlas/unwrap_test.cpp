@@ -6,7 +6,9 @@
 #include "atlas/atlas.h"
 #include "atlas/atlas_picture.h"
 #include "core/error.h"
+#include "core/files.h"
 #include "core/parallel.h"
+#include "mesh/repair.h"
 #include "test_mesh.h"
 
 namespace tuft::atlas {
@@ -36,7 +38,8 @@ TriangleMesh cone() {
 TriangleMesh torus() {
     return test::grid_mesh(96, 48, true, true, [](double u, double v) {
         const double r = 0.05 + 0.02 * std::cos(2 * kPi * v);
-        return Vec3(r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u), 0.02 * std::sin(2 * kPi * v));
+        return Vec3(r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u),
+                    0.02 * std::sin(2 * kPi * v));
     });
 }
 
@@ -70,9 +73,11 @@ void expect_sound(const TriangleMesh& m, const Unwrapped& u) {
 }
 
 TEST(Unwrap, ShapesKeepTheInvariants) {
-    const std::pair<const char*, TriangleMesh> shapes[] = {
-        {"sheet", sheet()}, {"cylinder", cylinder()}, {"cone", cone()},
-        {"torus", torus()}, {"sphere", sphere()}};
+    const std::pair<const char*, TriangleMesh> shapes[] = {{"sheet", sheet()},
+                                                           {"cylinder", cylinder()},
+                                                           {"cone", cone()},
+                                                           {"torus", torus()},
+                                                           {"sphere", sphere()}};
     for (const auto& [name, m] : shapes) {
         SCOPED_TRACE(name);
         UnwrapOptions options;
@@ -82,6 +87,33 @@ TEST(Unwrap, ShapesKeepTheInvariants) {
         EXPECT_EQ(u.atlas.size, 512u);
         EXPECT_LE(u.report.l2_stretch, 1.006);  // what charts may have, straight seams included
         EXPECT_GE(u.report.utilisation, 0.4);
+    }
+}
+
+TriangleMesh model(const std::string& name) {
+    const std::string path = std::string(TUFT_SOURCE) + "/models/" + name;
+    return mesh::build_surface(mesh::read_ply(read_file(path), path)).mesh;
+}
+
+// Bounds a fifth above what the charts are today: few charts, short seams, little stretch.
+TEST(Unwrap, PorcelainGetsFewChartsThatHardlyStretch) {
+    const struct {
+        const char* name;
+        std::size_t charts;
+        double seam;
+    } models[] = {{"bowl.ply", 10, 8}, {"plate.ply", 10, 7}};
+    for (const auto& [name, charts, seam] : models) {
+        SCOPED_TRACE(name);
+        const TriangleMesh m = model(name);
+        UnwrapOptions options;
+        options.size = 1024;
+        const Unwrapped u = unwrap(m, options);
+        expect_sound(m, u);
+        EXPECT_LE(u.report.charts, charts);
+        EXPECT_LE(u.report.seam_length, seam);
+        EXPECT_LE(u.report.l2_stretch, 1.003);
+        EXPECT_LE(u.report.linf_stretch, 3);
+        EXPECT_GE(u.report.utilisation, 0.6);
     }
 }
 
@@ -196,7 +228,7 @@ TEST(Unwrap, TurnsMirroredFileUvsOver) {
 TEST(Unwrap, RenewsFileUvsThatCannotServe) {
     TriangleMesh m = cylinder();
     const std::function<Vec2f(const Vec3f&)> bad[] = {
-        [](const Vec3f& p) { return Vec2f(5 * p.x + 0.5f, 4 * p.z); },  // front over back
+        [](const Vec3f& p) { return Vec2f(5 * p.x + 0.5f, 4 * p.z); },    // front over back
         [](const Vec3f& p) { return Vec2f(20 * p.x + 0.5f, 40 * p.z); },  // outside
         [](const Vec3f&) { return Vec2f(0.5f); },                         // no room
         [](const Vec3f& p) { return Vec2f(p.x, NAN); }};

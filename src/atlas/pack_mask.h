@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/types.h"
+
+/// What the packer moves about: charts as runs of cells.
+namespace tuft::atlas {
+
+/// Cells `first` to `last` of a row, both included.
+struct Run {
+    std::uint32_t row, first, last;
+    bool operator==(const Run&) const = default;
+};
+
+/// The cells that a chart touches, as runs in rows.
+struct Mask {
+    std::vector<Run> runs;  // in the order they are tested
+    std::uint32_t width = 0, height = 0;
+    double c = 1, s = 0;
+    Vec2 corner{0};          // of the rotated, scaled chart, texels
+    std::uint64_t hash = 0;  // of the runs
+};
+
+/// A chart's hull and how it lies in its smallest rectangle.
+struct Shape {
+    const std::vector<Vec2>* border = nullptr;
+    double angle = 0;   // turns the longer side of the smallest rectangle onto x
+    double area = 0;    // of the polygon
+    double extent = 0;  // longer side of the rectangle
+};
+
+Shape make_shape(const std::vector<Vec2>& border);
+
+/// All cells of side `cell` texels that the shape touches when it is turned by `angle`
+/// and scaled, from the lower left corner of its box on.
+Mask make_mask(const Shape& shape, double scale, double angle, double cell);
+
+}  // namespace tuft::atlas

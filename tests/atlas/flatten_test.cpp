@@ -1,0 +1,164 @@
+#include "atlas/flatten.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "atlas/seam_graph.h"
+#include "atlas/snap.h"
+#include "atlas/straighten.h"
+#include "nasty_meshes.h"
+
+namespace tuft::atlas {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+ChartMesh whole_chart(const mesh::TriangleMesh& m) {
+    std::vector<std::uint32_t> all(m.n_triangles());
+    std::iota(all.begin(), all.end(), 0u);
+    return make_chart(m, twin_half_edges(m), all, std::sqrt(mesh::surface_area(m)));
+}
+
+mesh::TriangleMesh cylinder_part(double turn) {
+    return test::grid_mesh(60, 20, false, false, [&](double u, double v) {
+        return Vec3(std::cos(turn * u), std::sin(turn * u), 2 * v);
+    });
+}
+
+// Facets of a developable surface unroll exactly; what is left is where the iteration stops.
+TEST(Flatten, UnrollsCylindersAndCones) {
+    for (const double turn : {0.5, 2.0, 4.0, 6.0}) {
+        const ChartMesh cylinder = whole_chart(cylinder_part(turn));
+        ASSERT_TRUE(cylinder.disk);
+        const FlatCheck check = check_flat(cylinder, flatten(cylinder));
+        EXPECT_TRUE(check.sound()) << turn;
+        EXPECT_NEAR(check.l2, 1, 1e-4) << turn;
+        const ChartMesh cone =
+            whole_chart(test::grid_mesh(60, 20, false, false, [&](double u, double v) {
+                const double r = 0.3 + v;
+                return Vec3(r * std::cos(turn * u), r * std::sin(turn * u), 1.5 * v);
+            }));
+        EXPECT_NEAR(check_flat(cone, flatten(cone)).l2, 1, 1e-4) << turn;
+    }
+}
+
+// Strains of a spherical cap laid flat grow with the square of its angle (Gauss), so L2 − 1,
+// their mean square, grows with the fourth power.
+TEST(Flatten, StretchOfASphericalCapGrowsWithTheFourthPowerOfItsAngle) {
+    const auto excess = [](double angle) {
+        const ChartMesh cap =
+            whole_chart(test::grid_mesh(24, 24, false, false, [&](double u, double v) {
+                const Vec2 p = (2.0 * Vec2(u, v) - 1.0) * angle / std::sqrt(2.0);
+                return glm::normalize(Vec3(std::tan(p.x), std::tan(p.y), 1));
+            }));
+        ArapOptions options;
+        options.iterations = 200;
+        options.tolerance = 1e-6;
+        const FlatCheck check = check_flat(cap, flatten(cap, options));
+        EXPECT_TRUE(check.sound());
+        return check.l2 - 1;
+    };
+    const double order = std::log2(excess(0.6) / excess(0.3));
+    EXPECT_NEAR(order, 4, 0.4);  // higher orders of the angle
+}
+
+TEST(Flatten, UntanglesAFoldedVertex) {
+    const mesh::TriangleMesh m =
+        test::grid_mesh(8, 8, false, false, [](double u, double v) { return Vec3(u, v, 0); });
+    const ChartMesh chart = whole_chart(m);
+    std::vector<Vec2> uv = flatten(chart);
+    for (std::uint32_t v = 0; v < uv.size(); ++v) {
+        std::vector<Vec2> folded = uv;
+        folded[v] += Vec2(0.35, 0.2);  // over three cells
+        EXPECT_TRUE(untangle(chart, folded));
+        EXPECT_EQ(check_flat(chart, folded).flips, 0u);
+    }
+}
+
+TEST(Flatten, NoticesBordersThatCrossOrComeNear) {
+    const auto ring = [](double turn, double pitch) {
+        const ChartMesh chart = whole_chart(cylinder_part(1));
+        std::vector<Vec2> uv(chart.n_vertices());
+        for (std::size_t v = 0; v < uv.size(); ++v) {
+            // The strip bent to a ring in the plane: along it the angle, across it the radius.
+            const Vec3 p = chart.position[v] * std::sqrt(2.0);
+            const double along = std::atan2(p.y, p.x + 1), r = 1.4 - 0.2 * p.z + pitch * along;
+            uv[v] = r * Vec2(std::cos(turn * along), std::sin(turn * along));
+        }
+        return std::pair(chart, uv);
+    };
+    const auto crosses = [&](double turn, double pitch, double gap) {
+        const auto [chart, uv] = ring(turn, pitch);
+        return crosses_itself(chart, uv, gap);
+    };
+    EXPECT_FALSE(crosses(5, 0, 0));
+    EXPECT_TRUE(crosses(7, 0, 0));      // further than round: over its own beginning
+    EXPECT_FALSE(crosses(7, 1, 0));     // a spiral passes outside
+    EXPECT_FALSE(crosses(6.2, 0, 0));   // ends 0.08 apart
+    EXPECT_TRUE(crosses(6.2, 0, 0.1));  // less than the gap
+    EXPECT_FALSE(crosses(6.2, 0, 0.01));
+}
+
+TEST(SeamGraph, GluedChartsAreDisks) {
+    for (const test::NastyMesh& nasty : test::nasty_meshes()) {
+        SCOPED_TRACE(nasty.name);
+        const mesh::TriangleMesh& m = nasty.mesh;
+        const auto twin = twin_half_edges(m);
+        std::vector<std::uint32_t> all(m.n_triangles());
+        std::iota(all.begin(), all.end(), 0u);
+        const double unit = std::sqrt(mesh::surface_area(m));
+        const Patch patch = make_patch(m, twin, all, unit);
+        SeamGraph graph(patch, {}, 0);
+        graph.glue_developable({});
+        std::vector<std::uint8_t> seam = graph.seams();
+        double before = 0, after = 0;
+        for (const bool straight : {false, true}) {
+            if (straight) straighten_seams(patch, seam);
+            std::vector<std::uint32_t> glued = twin;
+            double& length = straight ? after : before;
+            for (std::size_t h = 0; h < seam.size(); ++h)
+                if (seam[h]) {
+                    glued[h] = kNone;
+                    length += patch.length[h];
+                }
+            for (const auto& triangles : connected_charts(glued))
+                EXPECT_TRUE(make_chart(m, glued, triangles, unit).disk);
+        }
+        // Edges bent like creases count for less than their length, 0.4 of it at the least.
+        EXPECT_LE(after, before / 0.4);
+    }
+}
+
+TEST(Snap, EveryTriangleKeepsAnArea) {
+    Random random(3);
+    // Fans of needles far narrower than the grid of floats.
+    for (int trial = 0; trial < 50; ++trial) {
+        std::vector<Vec2> uv{{0.7, 0.6}};
+        std::vector<std::array<std::uint32_t, 3>> faces;
+        const int n = 12;
+        for (int i = 0; i <= n; ++i) {
+            const double a = random.uniform(0, 1) + i * 3e-8;
+            uv.push_back(Vec2(0.7, 0.6) +
+                         0.1 * Vec2(std::cos(0.5 + i * 4e-7), std::sin(0.5 + i * 4e-7)) +
+                         a * 1e-12);
+        }
+        for (std::uint32_t i = 1; i <= std::uint32_t(n); ++i) faces.push_back({0, i, i + 1});
+        const std::vector<Vec2> start = uv;
+        EXPECT_TRUE(snap_to_floats(faces, uv, 1024).empty());
+        for (const auto& f : faces) {
+            Vec2f p[3];
+            for (int k = 0; k < 3; ++k) p[k] = Vec2f(uv[f[k]]);
+            const double area = (double{p[1].x} - p[0].x) * (double{p[2].y} - p[0].y) -
+                                (double{p[1].y} - p[0].y) * (double{p[2].x} - p[0].x);
+            EXPECT_GT(area, 0);
+        }
+        for (std::size_t v = 0; v < uv.size(); ++v)  // no vertex goes far: 1/16 texel each time
+            EXPECT_LT(glm::length(uv[v] - start[v]), 0.5 / 1024);
+    }
+}
+
+}  // namespace
+}  // namespace tuft::atlas

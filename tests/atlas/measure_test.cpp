@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atlas/atlas.h"
+#include "atlas/coverage.h"
+#include "core/random.h"
+#include "test_mesh.h"
+
+// Hand-made atlases whose figures can be worked out on paper. Stretch is that of Sander et
+// al. 2001 after the UVs are scaled to the surface's area.
+namespace tuft::atlas {
+namespace {
+
+using Quad = std::array<std::uint32_t, 4>;
+
+mesh::TriangleMesh quads(const std::vector<Vec3f>& positions, const std::vector<Quad>& faces) {
+    test::Triangles triangles;
+    for (const Quad& q : faces) {
+        triangles.push_back({q[0], q[1], q[2]});
+        triangles.push_back({q[0], q[2], q[3]});
+    }
+    return test::finish_mesh(positions, triangles);
+}
+
+/// One rectangle of UVs (x0, y0)–(x1, y1) per quad, each a chart.
+Atlas rectangles(const std::vector<std::array<float, 4>>& uv, std::uint32_t size) {
+    Atlas atlas;
+    atlas.size = size;
+    atlas.n_charts = static_cast<std::uint32_t>(uv.size());
+    for (std::uint32_t c = 0; c < uv.size(); ++c) {
+        const auto [x0, y0, x1, y1] = uv[c];
+        const Vec2f p[4] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+        for (const int k : {0, 1, 2, 0, 2, 3}) atlas.corner_uvs.push_back(p[k]);
+        atlas.triangle_chart.insert(atlas.triangle_chart.end(), 2, c);
+    }
+    return atlas;
+}
+
+const std::vector<Vec3f> kTwoSquares{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                     {3, 0, 0}, {4, 0, 0}, {4, 1, 0}, {3, 1, 0}};
+
+TEST(Measure, CubeOfSixSquares) {
+    std::vector<Vec3f> p;
+    for (int i = 0; i < 8; ++i) p.push_back(Vec3f(i >> 2 & 1, i >> 1 & 1, i & 1));
+    const mesh::TriangleMesh cube = quads(
+        p, {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}});
+    std::vector<std::array<float, 4>> uv;
+    for (int i = 0; i < 6; ++i) {
+        const float x = 0.0625f + 0.3125f * float(i % 3), y = 0.0625f + 0.3125f * float(i / 3);
+        uv.push_back({x, y, x + 0.25f, y + 0.25f});
+    }
+    const AtlasReport r = measure(cube, rectangles(uv, 1024));
+    EXPECT_EQ(r.charts, 6u);
+    EXPECT_NEAR(r.seam_length, 12 / std::sqrt(3.0), 1e-6);
+    EXPECT_NEAR(r.l2_stretch, 1, 1e-9);
+    EXPECT_NEAR(r.linf_stretch, 1, 1e-9);
+    EXPECT_NEAR(r.angle_distortion, 1, 1e-9);
+    EXPECT_NEAR(r.area_distortion, 1, 1e-9);
+    EXPECT_DOUBLE_EQ(r.utilisation, 6 * 256.0 * 256 / 1024 / 1024);
+    EXPECT_EQ(r.smallest_gap, 64);
+    EXPECT_EQ(r.flips + r.overlapping_texels + r.roomless_triangles, 0u);
+}
+
+TEST(Measure, SquareSquashedToHalfItsHeight) {
+    const mesh::TriangleMesh square =
+        quads({kTwoSquares.begin(), kTwoSquares.begin() + 4}, {{0, 1, 2, 3}});
+    const AtlasReport r = measure(square, rectangles({{0, 0, 1, 0.5f}}, 64));
+    // Singular values of the map UV -> surface: 1/√2 and √2.
+    EXPECT_NEAR(r.l2_stretch, std::sqrt(1.25), 1e-9);
+    EXPECT_NEAR(r.linf_stretch, std::sqrt(2.0), 1e-9);
+    EXPECT_NEAR(r.angle_distortion, 2, 1e-9);
+    EXPECT_NEAR(r.area_distortion, 1, 1e-9);
+    EXPECT_EQ(r.smallest_gap, 64);  // there is no other chart
+}
+
+TEST(Measure, ChartsOfDifferentScale) {
+    const mesh::TriangleMesh two = quads(kTwoSquares, {{0, 1, 2, 3}, {4, 5, 6, 7}});
+    const AtlasReport r =
+        measure(two, rectangles({{0, 0, 0.5f, 0.5f}, {0.6f, 0.6f, 0.85f, 0.85f}}, 64));
+    // Areas 1/4 and 1/16 for 1 and 1: the texel density over the mean is 1.6 and 0.4.
+    EXPECT_NEAR(r.l2_stretch, 1.25, 1e-6);
+    EXPECT_NEAR(r.area_distortion, 2.05, 1e-5);
+    EXPECT_NEAR(r.angle_distortion, 1, 1e-6);
+}
+
+TEST(Measure, OverlapsAreCountedInTexels) {
+    const mesh::TriangleMesh two = quads(kTwoSquares, {{0, 1, 2, 3}, {4, 5, 6, 7}});
+    const AtlasReport r =
+        measure(two, rectangles({{0, 0, 0.5f, 0.5f}, {0.25f, 0.25f, 0.75f, 0.75f}}, 1024));
+    EXPECT_EQ(r.overlapping_texels, 65536u);
+    EXPECT_DOUBLE_EQ(r.utilisation, (2 * 512.0 * 512 - 65536) / 1024 / 1024);
+    EXPECT_EQ(r.smallest_gap, 0);
+}
+
+TEST(Measure, GapsAreRoundedDown) {
+    const mesh::TriangleMesh two = quads(kTwoSquares, {{0, 1, 2, 3}, {4, 5, 6, 7}});
+    const auto gap = [&](float x, float y) {
+        return measure(two,
+                       rectangles({{0, 0, 0.25f, 0.25f},
+                                   {0.25f + x / 1024, y / 1024, 0.5f + x / 1024, 0.25f + y / 1024}},
+                                  1024))
+            .smallest_gap;
+    };
+    EXPECT_EQ(gap(3.5f, 0), 3);
+    EXPECT_EQ(gap(4, 0), 4);
+    EXPECT_EQ(gap(3, 256 + 3), 4);  // across the corner: 3√2
+    EXPECT_EQ(gap(70, 0), 64);
+}
+
+TEST(Measure, FlipsAndTrianglesWithoutRoom) {
+    const mesh::TriangleMesh two = quads(kTwoSquares, {{0, 1, 2, 3}, {4, 5, 6, 7}});
+    Atlas atlas = rectangles({{0, 0, 0.25f, 0.25f}, {0.5f, 0.5f, 0.75f, 0.75f}}, 64);
+    std::swap(atlas.corner_uvs[1], atlas.corner_uvs[2]);
+    atlas.corner_uvs[5] = atlas.corner_uvs[4];
+    EXPECT_EQ(measure(two, atlas).flips, 1u);
+    EXPECT_EQ(measure(two, atlas).roomless_triangles, 1u);
+    atlas.corner_uvs[5] = Vec2f(NAN);
+    EXPECT_EQ(measure(two, atlas).roomless_triangles, 1u);
+}
+
+// Triangles that share edges split the texels among them: none is covered twice, none is
+// left out, at page sizes that are no powers of two and with corners on texel centres.
+TEST(Measure, NeighboursNeverShareATexel) {
+    Random random(5);
+    for (const std::uint32_t size : {7u, 64u, 333u}) {
+        constexpr int n = 12;
+        std::vector<Vec2f> p;
+        for (int j = 0; j <= n; ++j)
+            for (int i = 0; i <= n; ++i) {
+                Vec2f q(float(i) / n, float(j) / n);
+                if (i % n && j % n) {
+                    q += Vec2f(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)) / float(n);
+                    if (random.uniform() < 0.3)
+                        q = (glm::floor(q * float(size)) + 0.5f) / float(size);
+                }
+                p.push_back(q);
+            }
+        std::vector<Vec2f> uvs;
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i) {
+                const int a = j * (n + 1) + i;
+                for (const int v : {a, a + 1, a + n + 2, a, a + n + 2, a + n + 1})
+                    uvs.push_back(p[std::size_t(v)]);
+            }
+        const Coverage coverage = cover(uvs, {}, size);
+        EXPECT_EQ(coverage.covered, std::size_t{size} * size);
+        EXPECT_EQ(coverage.twice, 0u);
+    }
+}
+
+}  // namespace
+}  // namespace tuft::atlas

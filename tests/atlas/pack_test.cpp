@@ -1,0 +1,149 @@
+#include "atlas/pack.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+
+namespace tuft::atlas {
+namespace {
+
+using Polygon = std::vector<Vec2>;
+
+Polygon star(Random& random) {
+    const int n = 3 + static_cast<int>(random.uniform() * 20);
+    const double size = std::pow(10.0, random.uniform(-1.5, 0));
+    const double squash = random.uniform(0.1, 1);
+    Polygon p;
+    for (int i = 0; i < n; ++i) {
+        const double a = 2 * std::numbers::pi * i / n, r = size * random.uniform(0.3, 1);
+        p.push_back({r * std::cos(a), squash * r * std::sin(a)});
+    }
+    return p;
+}
+
+double area(const Polygon& p) {
+    double sum = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const Vec2 a = p[i], b = p[(i + 1) % p.size()];
+        sum += 0.5 * (a.x * b.y - a.y * b.x);
+    }
+    return sum;
+}
+
+double point_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+    const Vec2 d = b - a;
+    const double t = std::clamp(glm::dot(p - a, d) / glm::dot(d, d), 0.0, 1.0);
+    return glm::length(p - a - t * d);
+}
+
+/// Distance of two polygons that do not overlap.
+double distance(const Polygon& p, const Polygon& q) {
+    double least = 1e300;
+    for (int turn = 0; turn < 2; ++turn) {
+        const Polygon& a = turn ? q : p;
+        const Polygon& b = turn ? p : q;
+        for (const Vec2& v : a)
+            for (std::size_t i = 0; i < b.size(); ++i)
+                least = std::min(least, point_segment(v, b[i], b[(i + 1) % b.size()]));
+    }
+    return least;
+}
+
+bool contains(const Polygon& p, const Vec2& q) {
+    bool in = false;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const Vec2 a = p[i], b = p[(i + 1) % p.size()];
+        if ((a.y <= q.y) != (b.y <= q.y) && q.x < a.x + (b.x - a.x) * (q.y - a.y) / (b.y - a.y))
+            in = !in;
+    }
+    return in;
+}
+
+std::vector<Polygon> placed(const std::vector<Polygon>& borders, const Packing& packing) {
+    std::vector<Polygon> out = borders;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const Placement& p = packing.placements[i];
+        for (Vec2& v : out[i])
+            v = p.offset + p.scale * Vec2(p.c * v.x - p.s * v.y, p.s * v.x + p.c * v.y);
+    }
+    return out;
+}
+
+TEST(Pack, ShapesKeepTheirDistanceAndScale) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        Random random(seed);
+        std::vector<Polygon> borders;
+        double sum = 0;
+        for (int i = 0; i < 12 * int(seed); ++i) {
+            borders.push_back(star(random));
+            sum += area(borders.back());
+        }
+        PackOptions options;
+        options.size = seed % 2 ? 512 : 700;
+        options.gutter = static_cast<std::uint32_t>(seed);
+        const Packing packing = pack(borders, options);
+        ASSERT_TRUE(packing.fits);
+        const auto p = placed(borders, packing);
+        for (std::size_t i = 0; i < p.size(); ++i) {
+            for (const Vec2& v : p[i]) {
+                EXPECT_GE(std::min(v.x, v.y), options.gutter / 2.0 - 1e-6);
+                EXPECT_LE(std::max(v.x, v.y), options.size - options.gutter / 2.0 + 1e-6);
+            }
+            EXPECT_NEAR(
+                area(p[i]) / (area(borders[i]) * packing.texels_per_unit * packing.texels_per_unit),
+                1, 1e-9);
+            for (std::size_t j = 0; j < i; ++j) {
+                EXPECT_GE(distance(p[i], p[j]), options.gutter - 1e-6);
+                EXPECT_FALSE(contains(p[i], p[j][0]) || contains(p[j], p[i][0]));
+            }
+        }
+        const double used = sum * packing.texels_per_unit * packing.texels_per_unit;
+        EXPECT_GE(used, 0.4 * options.size * options.size);  // star shapes fill 0.6 of their boxes
+    }
+}
+
+TEST(Pack, SquaresFillThePage) {
+    const std::vector<Polygon> squares(16, {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    PackOptions options;
+    options.size = 1024;
+    const Packing packing = pack(squares, options);
+    // Four squares, three gutters and two margins in a row; masks round up to cells.
+    EXPECT_GE(packing.texels_per_unit, 0.98 * (1024 - 4 * 4) / 4.0);
+    EXPECT_LE(packing.texels_per_unit, (1024 - 4 * 4) / 4.0);
+}
+
+TEST(Pack, FindsTheSizeThatAScaleNeeds) {
+    Random random(9);
+    std::vector<Polygon> borders;
+    double sum = 0;
+    for (int i = 0; i < 30; ++i) {
+        borders.push_back(star(random));
+        sum += area(borders.back());
+    }
+    PackOptions options;
+    options.texels_per_unit = 100;
+    const Packing packing = pack(borders, options);
+    ASSERT_TRUE(packing.fits);
+    EXPECT_EQ(packing.size % 16, 0u);
+    const double use = sum * 1e4 / packing.size / packing.size;
+    EXPECT_GE(use, 0.35);
+    EXPECT_LE(use, 1);
+}
+
+TEST(Pack, NamesASizeWhenThePageIsTooSmall) {
+    const std::vector<Polygon> squares(100, {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    PackOptions options;
+    options.size = 32;
+    const Packing packing = pack(squares, options);
+    EXPECT_FALSE(packing.fits);
+    EXPECT_GE(packing.size, 44u);  // ten texels and eleven gutters of four would need 54
+    EXPECT_LE(packing.size, 128u);
+    options.size = packing.size;
+    EXPECT_TRUE(pack(squares, options).fits);
+}
+
+}  // namespace
+}  // namespace tuft::atlas
