@@ -11,9 +11,14 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr std::array kRadii{1.6, 2.2, 3.0};  // texels, of the fit; more where it finds too little
+/// A fit that is tried: its radius in texels and what keeps its squares small.
+struct FitKind {
+    double radius, stiffness;
+};
+// More reach, and less freedom, where the first finds too little.
+constexpr std::array<FitKind, 3> kFits{{{2.4, 0.4}, {2.4, 1e6}, {3.0, 1e6}}};
 constexpr double kOnEdge = 0.01;             // texels; an uncovered centre may lie that far inside
-constexpr std::size_t kMaxTaps = 8;
+constexpr std::size_t kMaxTaps = 10;
 constexpr double kMaxGain = 2.0;  // Σ |weight| of a fit that is trusted
 
 /// One border edge of a chart: its own side and, unless the mesh ends there, the other.
@@ -167,26 +172,47 @@ void collect(const TexelMap& map, std::uint32_t chart, const Vec2& centre, doubl
     }
 }
 
-/// Weights of the linear fit at the gutter texel: fade · (1, x, y) M⁻¹ e₁. False where the
-/// candidates do not hold one.
-bool fit_weights(const std::vector<Candidate>& c, std::vector<double>& weights) {
-    double m[3][3] = {};
+/// Weights of the fit at the gutter texel: fade · P (Pᵀ fade P + Λ)⁻¹ e₁ with the rows of P
+/// (1, x, y, x², xy, y²) and Λ = stiffness on the squares, so that few texels still hold a
+/// linear function and many a quadratic one. False where they do not hold one.
+bool fit_weights(const std::vector<Candidate>& c, double stiffness, std::vector<double>& weights) {
+    constexpr int kN = 6;
+    double m[kN][kN + 1] = {};
+    const auto basis = [](const Vec2& p) {
+        return std::array<double, kN>{1, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y};
+    };
     for (const Candidate& k : c) {
-        const double v[3] = {1, k.offset.x, k.offset.y};
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) m[i][j] += k.fade * v[i] * v[j];
+        const auto v = basis(k.offset);
+        for (int i = 0; i < kN; ++i) {
+            for (int j = 0; j < kN; ++j) m[i][j] += k.fade * v[i] * v[j];
         }
     }
-    // First column of the inverse, by cofactors.
-    const double c0 = m[1][1] * m[2][2] - m[1][2] * m[2][1];
-    const double c1 = m[1][2] * m[2][0] - m[1][0] * m[2][2];
-    const double c2 = m[1][0] * m[2][1] - m[1][1] * m[2][0];
-    const double det = m[0][0] * c0 + m[0][1] * c1 + m[0][2] * c2;
+    const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                       m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                       m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
     if (!(det > 1e-3 * m[0][0] * m[0][0] * m[0][0])) return false;
+    for (int i = 3; i < kN; ++i) m[i][i] += stiffness;
+    m[0][kN] = 1;
+    // Symmetric and positive: elimination needs no pivots.
+    for (int i = 0; i < kN; ++i) {
+        for (int r = i + 1; r < kN; ++r) {
+            const double f = m[r][i] / m[i][i];
+            for (int j = i; j <= kN; ++j) m[r][j] -= f * m[i][j];
+        }
+    }
+    std::array<double, kN> x{};
+    for (int i = kN - 1; i >= 0; --i) {
+        x[i] = m[i][kN];
+        for (int j = i + 1; j < kN; ++j) x[i] -= m[i][j] * x[j];
+        x[i] /= m[i][i];
+    }
     double gain = 0;
     weights.clear();
     for (const Candidate& k : c) {
-        weights.push_back(k.fade * (c0 + c1 * k.offset.x + c2 * k.offset.y) / det);
+        const auto v = basis(k.offset);
+        double w = 0;
+        for (int i = 0; i < kN; ++i) w += x[i] * v[i];
+        weights.push_back(k.fade * w);
         gain += std::abs(weights.back());
     }
     return gain <= kMaxGain;
@@ -205,7 +231,7 @@ void find_taps(const TexelMap& map, const std::vector<Border>& borders, const Ne
                const Vec2& uv, std::vector<Candidate>& found, std::vector<double>& weights,
                std::vector<GutterTap>& taps) {
     const std::uint32_t chart = borders[near.border[0]].chart;
-    for (const double radius : kRadii) {
+    for (const auto& [radius, stiffness] : kFits) {
         found.clear();
         collect(
             map, chart, uv, radius, uv, radius, [](const Vec2& p) { return p; }, found);
@@ -222,7 +248,7 @@ void find_taps(const TexelMap& map, const std::vector<Border>& borders, const Ne
         std::stable_sort(found.begin(), found.end(),
                          [](const Candidate& a, const Candidate& b) { return a.fade > b.fade; });
         if (found.size() > kMaxTaps) found.resize(kMaxTaps);
-        if (!fit_weights(found, weights)) continue;
+        if (!fit_weights(found, stiffness, weights)) continue;
         for (std::size_t k = 0; k < found.size(); ++k)
             taps.push_back({found[k].texel, static_cast<float>(weights[k])});
         return;

@@ -73,10 +73,9 @@ TEST(Gutter, HidesTheSeamsOfASheet) {
     auto image = picture(map, [&](const Vec3& p) { return std::sin(k * (0.8 * p.x + 0.6 * p.y)); });
     fill_gutter(gutter, map, 1, image);
     const Mismatch m = mismatch(u, image, 2 * 0.2 / 300);
-    // Target 1 % rms (dilation gives 20 %); 3.5 % at most along seams, a little more in the
-    // points where four charts meet and only three of them are reached.
+    // Target (dilation gives 20 % and 50 %); also where four charts meet.
     EXPECT_LT(m.rms, 0.01);
-    EXPECT_LT(m.max, 0.055);
+    EXPECT_LT(m.max, 0.035);
 }
 
 TEST(Gutter, HidesTheSeamsOfASphere) {
@@ -89,8 +88,8 @@ TEST(Gutter, HidesTheSeamsOfASphere) {
     fill_gutter(gutter, map, 1, image);
     const Mismatch m = mismatch(u, image);
     // Texels of 0.7 to 1.3 of the mean, sheared by up to 30° where three charts meet.
-    EXPECT_LT(m.rms, 0.013);
-    EXPECT_LT(m.max, 0.06);
+    EXPECT_LT(m.rms, 0.01);
+    EXPECT_LT(m.max, 0.035);
 }
 
 TEST(Gutter, KeepsConstantsAndLinearFunctionsAndStaysOutsideCharts) {
@@ -108,12 +107,37 @@ TEST(Gutter, KeepsConstantsAndLinearFunctionsAndStaysOutsideCharts) {
         for (std::uint32_t k = gutter.start[i]; k < gutter.start[i + 1]; ++k)
             sum += gutter.taps[k].weight;
         EXPECT_NEAR(sum, 1, 1e-5);
-        EXPECT_LE(gutter.start[i + 1] - gutter.start[i], 8u);
+        EXPECT_LE(gutter.start[i + 1] - gutter.start[i], 10u);
     }
     auto image = picture(map, [](const Vec3& p) { return 10 * p.x - 7 * p.y; });
     fill_gutter(gutter, map, 1, image);
     EXPECT_LT(mismatch(u, image, 2 * 0.2 / 120).max,
               1e-4);  // a linear fit reproduces it: float rounding only
+}
+
+TEST(Gutter, ShowsNoLineInTheLevelsOfAMipMap) {
+    Unwrapped u = testing::sphere(0.02, 256);
+    u.atlas.size = (u.atlas.size + 7) / 8 * 8;
+    const double grow = double(testing::sphere(0.02, 256).atlas.size) / u.atlas.size;
+    for (Vec2f& uv : u.atlas.corner_uvs) uv *= float(grow);
+    u.atlas.gutter = 8;
+    const TexelMap map = build_texel_map(u.mesh, u.atlas);
+    const double texel = map.texel_size;
+    for (const int level : {1, 2}) {
+        const double k = 2 * std::numbers::pi / (16 * (1 << level) * texel);
+        auto image = picture(
+            map, [&](const Vec3& p) { return std::sin(k * (0.48 * p.x + 0.6 * p.y + 0.64 * p.z)); });
+        fill_gutter(build_gutter(u.mesh, u.atlas, map, 8), map, 1, image);
+        const std::vector<MipLevel> levels = mip_levels(u.mesh, u.atlas, map, 1, image);
+        ASSERT_EQ(levels.size(), 2u);  // gaps of 8, 4, 2 texels
+        Unwrapped small = u;
+        small.atlas.size = levels[level - 1].size;
+        ASSERT_EQ(small.atlas.size, u.atlas.size >> level);
+        const Mismatch m = mismatch(small, levels[level - 1].image);
+        // As the picture itself.
+        EXPECT_LT(m.rms, 0.01) << level;
+        EXPECT_LT(m.max, 0.035) << level;
+    }
 }
 
 TEST(Gutter, SameBitsForAnyNumberOfThreads) {
