@@ -1,9 +1,14 @@
 // Studio light shared by all passes that draw solid things. CPU twin: render/gl_light.h.
-// Inputs in view-independent world space, unit vectors; output linear radiance.
-uniform vec3 u_eye;          // metres, world
-uniform mat3 u_light_frame;  // columns: right, up and forward of the camera, so lights follow it
+// Inputs in world space, unit vectors; output linear radiance.
+uniform vec3 u_eye;            // metres, world
+uniform vec3 u_to_eye;         // unit, towards the eye of an orthographic camera; zero for a pinhole
+uniform vec3 u_key, u_fill;    // unit, towards the lamps
+uniform vec3 u_key_light, u_fill_light;  // linear radiance
+uniform vec3 u_ground, u_sky;  // linear radiance of the dome
 
-// Soft box: how much of a broad lamp in direction `to_light` a lobe of `sharpness` around `dir` sees.
+vec3 direction_to_eye(vec3 p) { return dot(u_to_eye, u_to_eye) > 0.0 ? u_to_eye : normalize(u_eye - p); }
+
+// How much of a broad lamp in direction `to_light` a lobe of `sharpness` around `dir` sees.
 float soft_box(vec3 dir, vec3 to_light, float sharpness) {
     return exp(sharpness * (dot(dir, to_light) - 1.0));
 }
@@ -11,21 +16,15 @@ float soft_box(vec3 dir, vec3 to_light, float sharpness) {
 // Light from a direction: dim dome, brighter above, one large key light and one fill.
 vec3 surroundings(vec3 dir, float roughness) {
     float sharp = mix(90.0, 5.0, roughness);
-    vec3 key = normalize(u_light_frame * vec3(-0.55, 0.75, -0.35));
-    vec3 fill = normalize(u_light_frame * vec3(0.8, 0.15, -0.55));
-    float up = 0.5 + 0.5 * dir.z;
-    vec3 dome = mix(vec3(0.20, 0.195, 0.19), vec3(0.62, 0.64, 0.67), up);
-    return dome + vec3(2.6, 2.55, 2.45) * soft_box(dir, key, sharp) + vec3(0.55, 0.6, 0.68) * soft_box(dir, fill, sharp);
+    vec3 dome = mix(u_ground, u_sky, 0.5 + 0.5 * dir.z);
+    return dome + 5.0 * u_key_light * soft_box(dir, u_key, sharp) + 5.0 * u_fill_light * soft_box(dir, u_fill, sharp);
 }
 
 // The same, gathered by a diffuse surface with normal n.
 vec3 irradiance(vec3 n) {
-    vec3 key = normalize(u_light_frame * vec3(-0.55, 0.75, -0.35));
-    vec3 fill = normalize(u_light_frame * vec3(0.8, 0.15, -0.55));
-    float up = 0.5 + 0.5 * n.z;
-    vec3 dome = mix(vec3(0.26, 0.25, 0.24), vec3(0.50, 0.515, 0.54), up);
-    float k = max(0.0, 0.15 + 0.85 * dot(n, key)), f = max(0.0, 0.25 + 0.75 * dot(n, fill));
-    return dome + vec3(0.52, 0.51, 0.49) * k + vec3(0.10, 0.11, 0.125) * f;
+    vec3 dome = mix(u_ground, u_sky, 0.5 + 0.35 * n.z);
+    float k = max(0.0, 0.15 + 0.85 * dot(n, u_key)), f = max(0.0, 0.25 + 0.75 * dot(n, u_fill));
+    return dome + u_key_light * k + u_fill_light * f;
 }
 
 // Schlick's Fresnel for a clear coat of index 1.5.

@@ -1,30 +1,66 @@
-// Model surface under studio light: body colour from the atlas under a coat.
-// Output: sRGB colour.
+// Model surface: body colour from the atlas under a coat and studio light, or one of the
+// plain views. Input: world position and normal, uv. Output: sRGB colour.
+// Relief from screen derivatives after Mikkelsen 2010, "Bump mapping unparametrized surfaces".
 #version 330 core
 #include "common/light.glsl"
 in vec3 v_position;
 in vec3 v_normal;
 in vec2 v_uv;
-uniform sampler2D u_base_colour;  // sRGB texture: the GPU decodes
-uniform float u_roughness;        // of the coat
-uniform int u_shading;            // 0 lit, 1 flat colour, 2 texel grid, 3 charts
-uniform float u_atlas_size;       // texels per side
+uniform sampler2D u_texture;         // sRGB colour (the GPU decodes), alpha: height / 25.5 micrometres
+uniform samplerBuffer u_triangle_colours;  // sRGB-encoded, one per triangle
+uniform float u_roughness;           // of the coat
+uniform int u_shading;               // 0 glaze, 1 clay, 2 flat colour, 3 height, 4 texel grid, 5 triangle colours
+uniform float u_atlas_size;          // texels per side
+uniform float u_relief;              // exaggeration of the ink's height
+uniform vec4 u_section;              // plane: what lies on its positive side is cut away; zero: none
 out vec4 f_colour;
+
+// Five-step ramp from dark blue to pale yellow, even in lightness.
+vec3 ramp(float t) {
+    vec3 c0 = vec3(0.13, 0.12, 0.30), c1 = vec3(0.18, 0.37, 0.55), c2 = vec3(0.16, 0.60, 0.55), c3 = vec3(0.55, 0.79, 0.32),
+         c4 = vec3(0.99, 0.91, 0.40);
+    float x = clamp(t, 0.0, 1.0) * 4.0;
+    return x < 1.0 ? mix(c0, c1, x) : x < 2.0 ? mix(c1, c2, x - 1.0) : x < 3.0 ? mix(c2, c3, x - 2.0) : mix(c3, c4, x - 3.0);
+}
+
+vec3 relief_normal(vec3 n, float height) {
+    vec3 px = dFdx(v_position), py = dFdy(v_position);
+    vec3 r1 = cross(py, n), r2 = cross(n, px);
+    float det = dot(px, r1);
+    vec3 slope = sign(det) * (dFdx(height) * r1 + dFdy(height) * r2);
+    return normalize(abs(det) * n - slope);
+}
+
 void main() {
+    if (dot(vec4(v_position, 1.0), u_section) > 0.0) discard;
     vec3 n = normalize(v_normal);
-    vec3 to_eye = normalize(u_eye - v_position);
+    vec3 to_eye = direction_to_eye(v_position);
     if (dot(n, to_eye) < 0.0) n = -n;
-    vec3 base = texture(u_base_colour, v_uv).rgb;
-    if (u_shading == 1) {
-        f_colour = vec4(encode_srgb(base), 1.0);
+    float facing = 0.35 + 0.65 * dot(n, to_eye);
+    if (u_shading == 5) {
+        f_colour = vec4(texelFetch(u_triangle_colours, gl_PrimitiveID).rgb * facing, 1.0);
         return;
     }
+    vec4 texel = texture(u_texture, v_uv);
     if (u_shading == 2) {
-        vec2 t = floor(v_uv * u_atlas_size);
-        base *= mod(t.x + t.y, 2.0) < 0.5 ? 1.0 : 0.72;
+        f_colour = vec4(encode_srgb(texel.rgb), 1.0);
+        return;
     }
-    float fresnel = mix(coat_fresnel(dot(n, to_eye)), 0.02, smoothstep(0.4, 0.8, u_roughness));
-    vec3 mirror = reflect(-to_eye, n);
-    vec3 light = (1.0 - fresnel) * base * irradiance(n) + fresnel * surroundings(mirror, u_roughness);
+    if (u_shading == 3) {
+        f_colour = vec4(ramp(texel.a * 2.0) * facing, 1.0);
+        return;
+    }
+    vec3 base = texel.rgb;
+    if (u_shading == 4) {
+        vec2 t = v_uv * u_atlas_size;
+        vec2 cell = floor(t), wide = floor(t / 16.0);
+        float width = max(fwidth(t.x), fwidth(t.y));
+        float fine = mod(cell.x + cell.y, 2.0), coarse = mod(wide.x + wide.y, 2.0);
+        base *= mix(mix(0.72, 1.0, fine), 0.86, smoothstep(0.35, 0.9, width)) * mix(0.85, 1.0, coarse);
+    }
+    if (u_relief > 0.0) n = relief_normal(n, texel.a * 25.5e-6 * u_relief);
+    float fresnel = u_shading == 1 ? 0.0 : mix(coat_fresnel(dot(n, to_eye)), 0.02, smoothstep(0.4, 0.8, u_roughness));
+    vec3 light = (1.0 - fresnel) * base * irradiance(n);
+    if (fresnel > 0.0) light += fresnel * surroundings(reflect(-to_eye, n), u_roughness);
     f_colour = vec4(encode_srgb(light), 1.0);
 }

@@ -1,90 +1,120 @@
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <optional>
+#include <string>
 
+#include "app/display.h"
+#include "app/imgui_feed.h"
+#include "app/script.h"
 #include "app/studio.h"
 
 namespace {
 
-tuft::app::Studio* g_studio = nullptr;
+using namespace tuft;
 
-void on_drop(GLFWwindow*, int count, const char** paths) {
-    if (g_studio && count > 0) g_studio->open(paths[0]);
-}
+constexpr const char* kHelp =
+    "Usage: tuft-studio [OPTIONS] [MODEL|PROJECT]\n"
+    "Decorate a 3D model with ink and a bending brush.\n\n"
+    "  --script FILE    play the commands of a file, then end\n"
+    "  --headless       show no window (for scripts)\n"
+    "  --size WxH       size of the window in pixels (1280x720)\n"
+    "  --help, --version\n";
 
-int fail(const char* what) {
-    std::fprintf(stderr, "tuft-studio: %s\n", what);
-    return 1;
-}
+struct Options {
+    std::string file, script;
+    bool headless = false;
+    int width = 1280, height = 720;
+};
 
-int run(const char* path) {
-    if (!glfwInit()) return fail("no display could be opened; set DISPLAY, or use 'tuft' without a window");
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    glfwWindowHint(GLFW_SAMPLES, 4);
-    GLFWwindow* window = glfwCreateWindow(1280, 720, "tuft studio", nullptr, nullptr);
-    if (!window) {
-        glfwTerminate();
-        return fail("no window with OpenGL 3.3 could be opened; a newer graphics driver is needed");
+Options parse(int argc, char** argv) {
+    Options o;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        const auto value = [&] {
+            if (++i >= argc) throw UsageError("'" + word + "' needs a value after it (see --help)");
+            return std::string(argv[i]);
+        };
+        if (word == "--script") o.script = value();
+        else if (word == "--headless") o.headless = true;
+        else if (word == "--size") {
+            const std::string size = value();
+            const char* end = size.data() + size.size();
+            const auto [x, e1] = std::from_chars(size.data(), end, o.width);
+            const bool good = e1 == std::errc() && x < end && *x == 'x' && std::from_chars(x + 1, end, o.height).ptr == end;
+            if (!good || o.width < 320 || o.height < 240 || o.width > 8192 || o.height > 8192)
+                throw UsageError("'" + size + "' is not a size; write 1280x720");
+        } else if (word.starts_with("-")) throw UsageError("unknown option '" + word + "' (see --help)");
+        else if (o.file.empty()) o.file = word;
+        else throw UsageError("one model or project at a time, '" + word + "' is too much");
     }
-    glfwMakeContextCurrent(window);
-    glfwSwapInterval(1);
+    if (o.headless && o.script.empty()) throw UsageError("--headless needs a --script to play");
+    return o;
+}
+
+void loop(app::Display& display, const Options& options) {
+    std::optional<app::Script> script;
+    if (!options.script.empty()) script.emplace(options.script);
+    app::Studio studio;
+    app::Session& session = studio.session();
+    if (display.scale() > session.wanted.scale) {
+        session.wanted.scale = display.scale();
+        session.restyle = true;
+    }
+    if (!options.file.empty()) app::open_path(session, options.file);
+    app::EventQueue events;
+    std::string title;
+    while (!display.closed() && !session.quit && !(script && script->finished())) {
+        display.poll(events, script || studio.busy() || !events.empty() ? 0 : session.pictures.busy() ? 0.1 : 0.5);
+        const double now = display.now();
+        if (script) script->before_frame(studio, events, now);
+        studio.frame(events, display.width(), display.height(), display.framebuffer(), now);
+        if (script) script->after_frame(display.width(), display.height(), now);
+        display.present();
+        const std::string name = app::project_name(session);
+        if (const std::string wanted = name.empty() ? "tuft studio" : name + " \xe2\x80\x93 tuft studio"; wanted != title)
+            display.set_title(title = wanted);
+    }
+    studio.finish();
+}
+
+int run(const Options& options) {
+    const std::unique_ptr<app::Display> display = options.headless ? app::open_offscreen(options.width, options.height)
+                                                                   : app::open_window(options.width, options.height);
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
-    ImGui::StyleColorsDark();
-    ImGui::GetStyle().WindowRounding = 4;
-    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    app::start_imgui_feed();
     ImGui_ImplOpenGL3_Init("#version 330");
     int status = 0;
     try {
-        tuft::app::Studio studio(window);
-        g_studio = &studio;
-        glfwSetDropCallback(window, on_drop);
-        if (path) studio.open(path);
-        while (!glfwWindowShouldClose(window)) {
-            glfwPollEvents();
-            ImGui_ImplOpenGL3_NewFrame();
-            ImGui_ImplGlfw_NewFrame();
-            ImGui::NewFrame();
-            studio.frame();
-            ImGui::Render();
-            ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-            glfwSwapBuffers(window);
-        }
-        g_studio = nullptr;
+        loop(*display, options);
     } catch (const std::exception& error) {
-        status = fail(error.what());
+        std::fprintf(stderr, "tuft-studio: %s\n", error.what());
+        status = 1;
     }
     ImGui_ImplOpenGL3_Shutdown();
-    ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
-    glfwDestroyWindow(window);
-    glfwTerminate();
     return status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc > 1 && (!std::strcmp(argv[1], "--help") || !std::strcmp(argv[1], "-h"))) {
-        std::puts("Usage: tuft-studio [MODEL|PROJECT]\nDecorate a 3D model with ink and a bending brush.");
-        return 0;
+    for (int i = 1; i < argc; ++i) {
+        if (!std::strcmp(argv[i], "--help") || !std::strcmp(argv[i], "-h")) return std::fputs(kHelp, stdout), 0;
+        if (!std::strcmp(argv[i], "--version")) return std::puts("tuft-studio " TUFT_VERSION), 0;
     }
-    if (argc > 1 && !std::strcmp(argv[1], "--version")) {
-        std::puts("tuft-studio " TUFT_VERSION);
-        return 0;
-    }
-    if (argc > 2 || (argc == 2 && argv[1][0] == '-')) {
-        std::fprintf(stderr, "tuft-studio: unknown option '%s' (see --help)\n", argv[argc - 1]);
+    try {
+        return run(parse(argc, argv));
+    } catch (const UsageError& error) {
+        std::fprintf(stderr, "tuft-studio: %s\n", error.what());
         return 2;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "tuft-studio: %s\n", error.what());
+        return 1;
     }
-    return run(argc > 1 ? argv[1] : nullptr);
 }

@@ -1,13 +1,15 @@
 #include "app/studio.h"
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "brush/skin.h"
+#include "app/imgui_feed.h"
+#include "app/model_colours.h"
+#include "app/panels.h"
 #include "core/files.h"
 
 namespace fs = std::filesystem;
@@ -15,263 +17,227 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
-constexpr float kPanelWidth = 270;
-const Vec3f kHair{0.055f, 0.045f, 0.04f}, kFerrule{0.30f, 0.20f, 0.10f};
-
-bool combo(const char* label, std::string& value, const std::vector<std::string>& names) {
-    bool changed = false;
-    if (ImGui::BeginCombo(label, value.c_str())) {
-        for (const std::string& name : names)
-            if (ImGui::Selectable(name.c_str(), name == value)) {
-                value = name;
-                changed = true;
-            }
-        ImGui::EndCombo();
-    }
-    return changed;
-}
-
-// A tube round the holder's axis, from the ferrule's mouth upwards.
-void add_holder(render::GlSolid& solid, const Vec3& mouth, const Vec3& up, double radius, double length) {
-    constexpr int sides = 20;
-    const Frame f = make_frame(mouth, up);
-    const auto base = static_cast<std::uint32_t>(solid.positions.size());
-    for (int ring = 0; ring < 2; ++ring)
-        for (int i = 0; i < sides; ++i) {
-            const double a = 6.283185307179586 * i / sides;
-            const Vec3 out = std::cos(a) * f.t + std::sin(a) * f.b;
-            solid.positions.push_back(Vec3f(mouth + radius * out + (ring * length) * up));
-            solid.normals.push_back(Vec3f(out));
-            solid.colours.push_back(kFerrule);
-        }
-    for (std::uint32_t i = 0; i < sides; ++i) {
-        const std::uint32_t j = (i + 1) % sides;
-        for (const std::uint32_t v : {i, j, sides + j, i, sides + j, sides + i})
-            solid.triangles.push_back(base + v);
-    }
-}
+constexpr double kTurnPause = 0.25;    // seconds without a turn of the wheel after which the view is still
+constexpr double kStillAfter = 0.4;    // seconds after the last event
+constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
 
 }  // namespace
 
-Studio::Studio(GLFWwindow* window)
-    : window_(window),
-      scene_(std::make_unique<render::GlScene>()),
-      brushes_(brush::list_presets()),
-      inks_(ink::list_inks()) {
+Studio::Studio() : scene_(std::make_unique<render::GlScene>()), view_(std::make_unique<render::GlView>()) {
+    Session& s = session_;
+    s.brushes = brush::list_presets();
+    s.inks = ink::list_inks();
+    s.substrates = ink::list_substrates();
     std::error_code ec;
     for (const auto& entry : fs::directory_iterator(data_folder() / "models", ec))
-        if (entry.path().extension() == ".ply") samples_.push_back(entry.path().string());
-    std::sort(samples_.begin(), samples_.end());
+        if (entry.path().extension() == ".ply") s.samples.push_back(entry.path());
+    std::sort(s.samples.begin(), s.samples.end());
+    s.recent = recent_projects();
+    s.lost = find_lost_work();
+    load_settings(s);
+    if (const std::string missing = s.ui.prepare(s.wanted); !missing.empty()) say(s, missing);
+    cursor_.x = cursor_.y = -1;
 }
 
-Studio::~Studio() = default;
+Studio::~Studio() {
+    finish();
+    session_.pictures.release();
+}
 
-void Studio::open(const fs::path& path) { document_.open(path, open_options_); }
+void Studio::finish() {
+    if (hand_ && session_.painter) post(hand_->lift(), now_);
+    hand_.reset();
+    close_model(session_);
+}
+
+bool Studio::busy() const {
+    const Session& s = session_;
+    return !settled(s) || s.model_is_new || !s.last.tiles.empty() || s.restyle || now_ - last_event_ < kStillAfter;
+}
+
+void Studio::layout(int width, int height) {
+    Session& s = session_;
+    const float top = ImGui::GetFrameHeight() + s.ui.px(4);
+    const int tools = static_cast<int>(s.ui.px(kToolWidth)), journal = static_cast<int>(s.ui.px(kJournalWidth));
+    const int left = s.wanted.left_handed ? journal : tools;
+    s.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
+              std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
+}
+
+bool Studio::dialog_open() const {
+    const Session& s = session_;
+    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.files.shown();
+}
+
+void Studio::panels(int height) {
+    Session& s = session_;
+    menu_bar(s);
+    if (s.painter) {
+        const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
+        const auto right = static_cast<float>(s.area.x + s.area.width);
+        tool_panel(s, top, bottom, s.wanted.left_handed ? right : 0);
+        journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
+        status_bar(s, bottom);
+        tuft_inset(s);
+        view_marks(s, camera());
+        if (line_start_) {
+            ImGui::GetBackgroundDrawList()->AddLine(ImVec2(static_cast<float>(line_start_->x), static_cast<float>(line_start_->y)),
+                                                    ImVec2(static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)), s.ui.accent, s.ui.px(2));
+        }
+    } else {
+        welcome(s);
+    }
+    (void)height;
+    if (s.opening.running()) opening_progress(s);
+    else if (s.inspected) open_dialog(s);
+    else if (!s.lost.empty() && !s.painter) recovery_dialog(s);
+    export_dialog(s);
+    settings_dialog(s);
+    keys_dialog(s);
+    if (const auto path = s.files.draw(s.ui)) {
+        if (s.files.purpose() == FileDialog::Purpose::open) open_path(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::save) save_as(s, *path);
+        else if (s.painter)
+            s.painter->post(ExportModel{*path, s.export_choice.relief, s.export_choice.roughness});
+    }
+}
+
+void Studio::take_model() {
+    Session& s = session_;
+    if (s.model_is_new) {
+        const stroke::Model& m = s.painter->model();
+        hand_.reset();
+        line_start_.reset();
+        s.hand_down = false;
+        scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
+        scene_->set_texture(s.painter->take_pixels());
+        view_->scene_changed();
+        colours_shown_ = ModelView::glaze;
+        const Orbit fresh;
+        s.view.orbit.azimuth = fresh.azimuth;
+        s.view.orbit.elevation = fresh.elevation;
+        s.view.orbit.roll = 0;
+        s.view.orbit.frame(m.mesh->bounds, static_cast<double>(s.area.width) / s.area.height);
+        s.model_is_new = false;
+        strokes_seen_ = s.strokes.size();
+    }
+    if (s.last.done > shown_ && !s.last.tiles.empty()) delays_.push_back(now_ - s.last.done);
+    shown_ = s.last.done;
+    scene_->update_tiles(s.last.tiles);
+    for (const render::TilePixels& tile : s.last.tiles)
+        if (tile.lo.x <= tile.hi.x) view_->texture_changed(tile.lo, tile.hi);
+    s.last.tiles.clear();
+    if (s.strokes.size() != strokes_seen_) {
+        strokes_seen_ = s.strokes.size();
+        picture_due_ = now_ + kPictureAfter;
+    }
+}
+
+void Studio::show_colours() {
+    Session& s = session_;
+    if (s.view.shown == colours_shown_) return;
+    colours_shown_ = s.view.shown;
+    view_->scene_changed();
+    const stroke::Model& m = s.painter->model();
+    if (s.view.shown == ModelView::charts) scene_->set_triangle_colours(chart_colours(m.atlas));
+    if (s.view.shown == ModelView::stretch) scene_->set_triangle_colours(stretch_colours(*m.mesh, m.atlas));
+}
+
+void Studio::update_tuft(double now) {
+    Session& s = session_;
+    s.tuft = {};
+    s.depth = 0;
+    s.pressed = s.last.tuft && !s.last.tuft->branches.empty();
+    if (s.pressed) {
+        s.tuft = *s.last.tuft;
+    } else if (cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
+        if (!preview_ || preview_brush_ != s.brush) {
+            preview_ = brush::make_tuft(brush::load_preset(s.brush));
+            preview_brush_ = s.brush;
+        }
+        Event at = cursor_;
+        at.time = now;
+        const Hand hand(*s.painter->model().query, preview_->preset, s.hand);
+        if (const auto pose = hand.hover(aim_of(at))) s.tuft = brush::step(*preview_, *pose, {}, 0.01);
+    }
+    if (s.tuft.branches.empty() || !s.pressed) return;
+    const brush::Section& root = s.tuft.branches.front().sections.back();
+    double length = 0;
+    const auto& sections = s.tuft.branches.front().sections;
+    for (std::size_t i = 1; i < sections.size(); ++i) length += glm::distance(sections[i].centre, sections[i - 1].centre);
+    const auto hit = s.painter->model().query->ray(root.centre, root.tangent, 0, length);
+    if (hit) s.depth = length - hit->distance;
+}
+
+void Studio::draw_scene(unsigned framebuffer, int height) {
+    Session& s = session_;
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glDisable(GL_SCISSOR_TEST);
+    const float shade = s.ui.settings().theme == Theme::dark ? 0.155f : 0.94f;
+    glClearColor(shade, shade, shade, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    if (!s.painter || s.model_is_new) return;
+    show_colours();
+    static constexpr render::Shading shadings[] = {render::Shading::glaze,  render::Shading::clay,   render::Shading::flat,
+                                                   render::Shading::height, render::Shading::texels, render::Shading::triangles,
+                                                   render::Shading::triangles};
+    const bool dark = s.ui.settings().theme == Theme::dark;
+    const render::GlSolid solid = solid_of(s.tuft);
+    render::GlView::Frame f{.camera = camera(), .solid = &solid, .opacity = s.view.see_through ? 0.25f : s.pressed ? 0.92f : 0.72f};
+    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)], .roughness = s.painter->roughness(),
+                      .section = section_plane(s)};
+    f.look.light = render::make_light(s.view.rig, f.camera);
+    f.look.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);
+    f.look.high = dark ? Vec3f(0.40f, 0.405f, 0.415f) : Vec3f(0.80f, 0.805f, 0.815f);
+    f.moving = drag_ != Drag::none || now_ - last_turn_ < kTurnPause;
+    f.framebuffer = framebuffer;
+    f.x = s.area.x;
+    f.y = height - s.area.y - s.area.height;
+    view_->draw(*scene_, f);
+}
+
+void Studio::keep_picture() {
+    Session& s = session_;
+    if (picture_due_ == 0 || now_ < picture_due_ || !s.painter || s.pressed || !settled(s)) return;
+    picture_due_ = 0;
+    if (s.last.project.empty()) return;
+    s.pictures.keep(s.last.project, s.area.width, s.area.height,
+                    render::read_pixels(s.area.x, 0, s.area.width, s.area.height));
+}
+
+void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffer, double now) {
+    Session& s = session_;
+    const double dt = std::max(1e-3, now - now_);
+    now_ = now;
+    if (s.restyle) {
+        s.restyle = false;
+        if (const std::string missing = s.ui.prepare(s.wanted); !missing.empty()) say(s, missing);
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
+    poll_session(s);
+    if (!queue.empty()) last_event_ = now;
+    const std::vector<Event> events = feed_imgui(queue, width, height, dt);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+    s.ui.begin_frame();
+    layout(width, height);
+    if (s.painter) take_model();
+    for (const Event& event : events) handle(event);
+    if (s.painter) update_tuft(now);
+    panels(height);
+    draw_scene(framebuffer, height);
+    keep_picture();
+    ImGui::Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, width, height);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
 
 render::GlCamera Studio::camera() const {
-    return orbit_.camera(width_, height_, document_.model() ? document_.model()->mesh->bounds : Box{{-1, -1, -1}, {1, 1, 1}});
-}
-
-void Studio::welcome() {
-    ImGui::SetNextWindowPos(ImVec2(0.5f * static_cast<float>(width_), 0.5f * static_cast<float>(height_)),
-                            ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-    ImGui::SetNextWindowSize(ImVec2(460, 0));
-    ImGui::Begin("tuft studio", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
-    ImGui::TextWrapped("Drop a model or a project on this window, type its path, or start with a sample.");
-    ImGui::Spacing();
-    ImGui::SetNextItemWidth(350);
-    const bool entered = ImGui::InputTextWithHint("##path", "path of a .ply, .obj, .stl, .glb or .tuft file", path_text_,
-                                                  sizeof path_text_, ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::SameLine();
-    if ((ImGui::Button("Open", ImVec2(80, 0)) || entered) && path_text_[0]) open(path_text_);
-    static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"};
-    ImGui::SetNextItemWidth(90);
-    combo("unit of the model", open_options_.unit, units);
-    ImGui::Separator();
-    for (const std::string& sample : samples_)
-        if (ImGui::Selectable(fs::path(sample).stem().string().c_str())) open(sample);
-    if (!document_.message.empty()) {
-        ImGui::Separator();
-        ImGui::TextWrapped("%s", document_.message.c_str());
-    }
-    ImGui::End();
-}
-
-void Studio::opening_panel() {
-    const auto [phase, fraction] = document_.opening_progress();
-    ImGui::SetNextWindowPos(ImVec2(0.5f * static_cast<float>(width_), 0.5f * static_cast<float>(height_)),
-                            ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-    ImGui::SetNextWindowSize(ImVec2(360, 0));
-    ImGui::Begin("Opening", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
-    ImGui::Text("%s", phase.c_str());
-    ImGui::ProgressBar(static_cast<float>(fraction), ImVec2(-1, 0));
-    if (ImGui::Button("Cancel")) document_.cancel_opening();
-    ImGui::End();
-}
-
-void Studio::tool_panel() {
-    ImGui::SetNextWindowPos(ImVec2(0, 0));
-    ImGui::SetNextWindowSize(ImVec2(kPanelWidth, static_cast<float>(height_) - 26));
-    ImGui::Begin("Tools", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
-    ImGui::PushItemWidth(150);
-    combo("brush", brush_, brushes_);
-    combo("ink", ink_, inks_);
-    const auto slider = [](const char* label, double& value, double lo, double hi, const char* format) {
-        auto v = static_cast<float>(value);
-        if (ImGui::SliderFloat(label, &v, static_cast<float>(lo), static_cast<float>(hi), format)) value = v;
-    };
-    slider("pressure", hand_settings_.pressure, 0.02, 1, "%.2f");
-    slider("speed lightens", hand_settings_.speed_effect, 0, 1, "%.2f");
-    slider("smoothing", hand_settings_.smoothing, 0, 0.2, "%.3f s");
-    ImGui::Separator();
-    int shading = static_cast<int>(shading_);
-    ImGui::RadioButton("light", &shading, 0);
-    ImGui::SameLine();
-    ImGui::RadioButton("flat", &shading, 1);
-    ImGui::SameLine();
-    ImGui::RadioButton("texels", &shading, 2);
-    shading_ = static_cast<render::Shading>(shading);
-    if (ImGui::Button("Frame all")) orbit_.frame(document_.model()->mesh->bounds, static_cast<double>(width_) / std::max(1, height_));
-    ImGui::Separator();
-    if (ImGui::Button("Undo")) document_.undo();
-    ImGui::SameLine();
-    if (ImGui::Button("Redo")) document_.redo();
-    ImGui::Separator();
-    ImGui::SetNextItemWidth(-1);
-    ImGui::InputTextWithHint("##file", "file to write", path_text_, sizeof path_text_);
-    if (ImGui::Button("Save as") && path_text_[0]) document_.save_as(path_text_);
-    ImGui::SameLine();
-    if (ImGui::Button("Export") && path_text_[0]) document_.export_model(path_text_);
-    ImGui::PopItemWidth();
-    ImGui::Separator();
-    journal_panel();
-    ImGui::End();
-}
-
-void Studio::journal_panel() {
-    const auto& strokes = document_.painting()->journal().strokes();
-    ImGui::Text("%zu strokes", strokes.size());
-    ImGui::BeginChild("journal");
-    for (auto it = strokes.rbegin(); it != strokes.rend(); ++it)
-        ImGui::Text("%llu  %s, %s", static_cast<unsigned long long>(it->id), it->trace.brush.c_str(), it->trace.ink.c_str());
-    ImGui::EndChild();
-}
-
-void Studio::status_bar() {
-    ImGui::SetNextWindowPos(ImVec2(0, static_cast<float>(height_) - 26));
-    ImGui::SetNextWindowSize(ImVec2(static_cast<float>(width_), 26));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(8, 4));
-    ImGui::Begin("status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-    const brush::TuftState* tuft = document_.painting() ? document_.painting()->tuft() : nullptr;
-    if (tuft && tuft->touching)
-        ImGui::Text("force %.3f N   moment %.2f mNm", tuft->normal_force, tuft->root_moment * 1e3);
-    else
-        ImGui::Text("%s", document_.message.empty() ? "left: paint   middle: turn   shift+middle: pan   wheel: zoom   ctrl+Z: undo"
-                                                    : document_.message.c_str());
-    ImGui::End();
-    ImGui::PopStyleVar();
-}
-
-void Studio::view_input() {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantCaptureMouse) return;
-    const ImVec2 d = io.MouseDelta;
-    const bool turn = ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||
-                      (ImGui::IsMouseDown(ImGuiMouseButton_Right) && !io.KeyShift);
-    if (turn && !io.KeyShift) orbit_.turn(d.x, d.y);
-    else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || ImGui::IsMouseDown(ImGuiMouseButton_Right)) orbit_.pan(d.x, d.y, height_);
-    if (io.MouseWheel != 0) orbit_.zoom(io.MouseWheel);
-}
-
-void Studio::paint_input(double time) {
-    stroke::Painting* painting = document_.painting();
-    const ImGuiIO& io = ImGui::GetIO();
-    const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left);
-    if (!hand_ && held && !io.WantCaptureMouse && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-        document_.begin(brush_, ink_);
-        hand_.emplace(*document_.model()->query, painting->brush(brush_), hand_settings_);
-        stroke_start_ = time;
-    }
-    if (!hand_) return;
-    if (held) {
-        const render::GlCamera c = camera();
-        document_.extend(hand_->move(c.eye, ray_through(c, io.MousePos.x, io.MousePos.y), time - stroke_start_));
-    } else {
-        document_.extend(hand_->lift(time - stroke_start_));
-        document_.end();
-        hand_.reset();
-    }
-}
-
-void Studio::shortcuts() {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput || hand_) return;
-    const bool z = ImGui::IsKeyPressed(GLFW_KEY_Z);
-    if (io.KeyCtrl && z && io.KeyShift) document_.redo();
-    else if (io.KeyCtrl && z) document_.undo();
-    else if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Y)) document_.redo();
-    else if (ImGui::IsKeyPressed(GLFW_KEY_HOME))
-        orbit_.frame(document_.model()->mesh->bounds, static_cast<double>(width_) / std::max(1, height_));
-}
-
-void Studio::upload_changes() {
-    stroke::Painting& p = *document_.painting();
-    const std::vector<std::uint32_t> slots = p.take_dirty();
-    if (slots.empty()) return;
-    ink::refresh_srgb8(colour_, slots, p.canvas(), document_.model()->texels, p.substrate());
-    std::vector<std::uint32_t> tiles;
-    for (const std::uint32_t slot : slots) tiles.push_back(document_.model()->texels.tile_of_slot[slot]);
-    scene_->update_tiles(colour_, tiles, static_cast<int>(document_.model()->atlas.gutter));
-}
-
-render::GlSolid Studio::tuft_solid() const {
-    render::GlSolid solid;
-    const stroke::Painting* painting = const_cast<Document&>(document_).painting();
-    const brush::TuftState* tuft = painting ? painting->tuft() : nullptr;
-    if (!tuft || tuft->branches.empty()) return solid;
-    const brush::Skin skin = brush::make_skin(*tuft);
-    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
-        solid.positions.push_back(Vec3f(skin.positions[i]));
-        solid.normals.push_back(Vec3f(skin.normals[i]));
-        solid.colours.push_back(kHair);
-    }
-    solid.triangles = skin.triangles;
-    const brush::Section& root = tuft->branches.front().sections.back();
-    const double radius = std::max(root.a, root.b);
-    add_holder(solid, root.centre, -root.tangent, 1.05 * radius, 12 * radius);
-    return solid;
-}
-
-void Studio::frame() {
-    glfwGetFramebufferSize(window_, &width_, &height_);
-    if (document_.poll()) {
-        const stroke::Model& m = *document_.model();
-        scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
-        colour_ = ink::compose_srgb8(document_.painting()->canvas(), m.texels, document_.painting()->substrate());
-        document_.painting()->take_dirty();
-        scene_->set_base_colour(colour_);
-        orbit_ = Orbit{};
-        orbit_.frame(m.mesh->bounds, static_cast<double>(width_) / std::max(1, height_));
-        hand_.reset();
-    }
-    const bool ready = document_.painting() != nullptr;
-    if (ready && !document_.opening()) {
-        view_input();
-        paint_input(glfwGetTime());
-        shortcuts();
-        upload_changes();
-    }
-    const render::GlCamera c = camera();
-    scene_->clear(c);
-    if (ready) {
-        scene_->draw_model(c, shading_, document_.painting()->substrate().roughness);
-        scene_->draw_solid(c, tuft_solid(), 0.85f);
-        tool_panel();
-        status_bar();
-    } else if (!document_.opening()) {
-        welcome();
-    }
-    if (document_.opening()) opening_panel();
+    const Session& s = session_;
+    return s.view.orbit.camera(s.area.width, s.area.height,
+                               s.painter ? s.painter->model().mesh->bounds : Box{{-1, -1, -1}, {1, 1, 1}});
 }
 
 }  // namespace tuft::app

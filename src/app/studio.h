@@ -1,57 +1,78 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "app/document.h"
-#include "app/mouse_hand.h"
-#include "app/viewport.h"
+#include "app/events.h"
+#include "app/session.h"
+#include "brush/tuft.h"
 #include "render/gl_scene.h"
-
-struct GLFWwindow;
+#include "render/gl_view.h"
 
 namespace tuft::app {
 
-/// The window's content: panels, tools and the view of the model.
+/// The window's content. Needs a current OpenGL context and an ImGui context; the place
+/// where it draws is the framebuffer given to `frame`.
 class Studio {
   public:
-    explicit Studio(GLFWwindow* window);
+    Studio();
     ~Studio();
 
-    void open(const std::filesystem::path& path);
-    /// One turn of the loop: input, simulation, panels, picture.
-    void frame();
+    Session& session() { return session_; }
+    /// One turn: takes events, draws everything. `now` in seconds on the events' clock.
+    void frame(EventQueue& events, int width, int height, unsigned framebuffer, double now);
+    /// Whether the picture changes without events.
+    bool busy() const;
+    /// Ends the stroke in hand and keeps everything.
+    void finish();
+    /// Changes a setting by its name in scripts. Throws `Error` for a name or value that is unknown.
+    void set(const std::string& name, const std::string& value);
+    /// Seconds from an event to the frame that showed its ink, since the last call.
+    std::vector<double> take_delays() { return std::exchange(delays_, {}); }
 
   private:
-    void welcome();
-    void tool_panel();
-    void journal_panel();
-    void opening_panel();
-    void status_bar();
-    void view_input();
-    void paint_input(double time);
-    void shortcuts();
-    void upload_changes();
-    render::GlSolid tuft_solid() const;
-    render::GlCamera camera() const;
+    enum class Drag { none, turn, pan, zoom };
 
-    GLFWwindow* window_;
-    Document document_;
+    void layout(int width, int height);
+    void panels(int height);
+    bool dialog_open() const;
+    void take_model();
+    void handle(const Event& event);
+    void press(const Event& event);
+    void move(const Event& event);
+    void release(const Event& event);
+    void key(const Event& event);
+    void post(std::vector<HandStep> steps, double time);
+    void draw_line(const Event& end);
+    void update_tuft(double now);
+    void show_colours();
+    void draw_scene(unsigned framebuffer, int height);
+    void keep_picture();
+    Aim aim_of(const Event& event) const;
+    render::GlCamera camera() const;
+    render::GlSolid tuft_solid() const;
+
+    Session session_;
     std::unique_ptr<render::GlScene> scene_;
-    ink::AtlasMap<std::uint8_t> colour_;
-    Orbit orbit_;
-    render::Shading shading_ = render::Shading::lit;
-    HandSettings hand_settings_;
-    std::optional<MouseHand> hand_;
-    double stroke_start_ = 0;
-    std::vector<std::string> brushes_, inks_, samples_;
-    std::string brush_ = "wolf-medium", ink_ = "carbon";
-    Document::Options open_options_;
-    int width_ = 0, height_ = 0;
-    char path_text_[1024] = "";
+    std::unique_ptr<render::GlView> view_;
+    std::optional<Hand> hand_;
+    std::optional<Event> line_start_;
+    Event cursor_;
+    bool cursor_inside_ = false;
+    Drag drag_ = Drag::none;
+    std::optional<brush::Tuft> preview_;
+    std::string preview_brush_;
+    ModelView colours_shown_ = ModelView::glaze;
+    double now_ = 0, last_event_ = 0, last_turn_ = -1, picture_due_ = 0;
+    std::size_t strokes_seen_ = 0;
+    std::vector<double> delays_;
+    double shown_ = 0;
 };
+
+/// Hair and ferrule as triangles for drawing.
+render::GlSolid solid_of(const brush::TuftState& tuft);
 
 }  // namespace tuft::app

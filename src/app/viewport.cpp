@@ -7,54 +7,78 @@
 namespace tuft::app {
 namespace {
 
-Vec3 forward_of(const Orbit& o) {
-    return {std::sin(-o.azimuth) * std::cos(o.elevation), std::cos(o.azimuth) * std::cos(o.elevation),
-            -std::sin(o.elevation)};
+constexpr double kQuarter = std::numbers::pi / 2;
+
+struct Axes {
+    Vec3 right, up, forward;
+};
+
+Axes axes_of(const Orbit& o) {
+    const Vec3 forward{-std::sin(o.azimuth) * std::cos(o.elevation), std::cos(o.azimuth) * std::cos(o.elevation),
+                       -std::sin(o.elevation)};
+    const Vec3 right{std::cos(o.azimuth), std::sin(o.azimuth), 0};
+    const Vec3 up = glm::cross(right, forward);
+    const double c = std::cos(o.roll), s = std::sin(o.roll);
+    return {c * right - s * up, s * right + c * up, forward};
 }
 
 }  // namespace
 
 void Orbit::frame(const Box& box, double aspect) {
     target = box.centre();
-    const double fit = std::min(1.0, aspect);
-    distance = 0.55 * box.diagonal() / (std::tan(0.5 * field_of_view) * fit);
+    distance = 0.56 * box.diagonal() / (std::tan(0.5 * field_of_view) * std::min(1.0, aspect));
+}
+
+void Orbit::look_from(StandardView view) {
+    roll = 0;
+    elevation = view == StandardView::top ? kQuarter : view == StandardView::bottom ? -kQuarter : 0;
+    azimuth = view == StandardView::back ? 2 * kQuarter : view == StandardView::right ? kQuarter
+              : view == StandardView::left ? -kQuarter : 0;
 }
 
 void Orbit::turn(double dx, double dy) {
-    azimuth -= 0.007 * dx;
-    elevation = std::clamp(elevation + 0.007 * dy, -1.55, 1.55);
+    const double c = std::cos(roll), s = std::sin(roll);
+    azimuth -= 0.007 * (c * dx + s * dy);
+    elevation = std::clamp(elevation + 0.007 * (c * dy - s * dx), -kQuarter, kQuarter);
 }
 
 void Orbit::pan(double dx, double dy, int height) {
     const double metres_per_pixel = 2 * distance * std::tan(0.5 * field_of_view) / std::max(1, height);
-    const Vec3 forward = forward_of(*this);
-    const Vec3 right = glm::normalize(glm::cross(forward, Vec3{0, 0, 1}));
-    const Vec3 up = glm::cross(right, forward);
-    target += metres_per_pixel * (-dx * right + dy * up);
+    const Axes a = axes_of(*this);
+    target += metres_per_pixel * (-dx * a.right + dy * a.up);
 }
 
-void Orbit::zoom(double steps) { distance = std::clamp(distance * std::pow(0.88, steps), 1e-4, 1e3); }
+void Orbit::zoom(double steps, const Vec3& towards) {
+    const double before = distance;
+    distance = std::clamp(distance * std::pow(0.88, steps), 1e-3, 1e3);
+    // Only sideways: the target keeps its depth.
+    const Axes a = axes_of(*this);
+    const Vec3 d = towards - target;
+    target += (1 - distance / before) * (glm::dot(d, a.right) * a.right + glm::dot(d, a.up) * a.up);
+}
 
 render::GlCamera Orbit::camera(int width, int height, const Box& scene) const {
     render::GlCamera c;
-    c.forward = forward_of(*this);
-    c.right = glm::normalize(glm::cross(c.forward, Vec3{0, 0, 1}));
-    c.up = glm::cross(c.right, c.forward);
-    c.eye = target - distance * c.forward;
+    const Axes a = axes_of(*this);
+    c.right = a.right;
+    c.up = a.up;
+    c.forward = a.forward;
     c.field_of_view = field_of_view;
+    c.width = width;
+    c.height = height;
+    if (parallel) {
+        const double reach = scene.diagonal() + glm::distance(target, scene.centre());
+        c.parallel_height = 2 * distance * std::tan(0.5 * field_of_view);
+        c.eye = target - reach * c.forward;
+        c.near = 0;
+        c.far = 2 * reach;
+        return c;
+    }
+    c.eye = target - distance * c.forward;
     const double reach = glm::distance(c.eye, scene.centre()) + scene.diagonal();
     c.near = std::max(1e-5, 0.02 * distance);
     c.far = std::max(reach, 2 * c.near);
-    c.width = width;
-    c.height = height;
     return c;
-}
-
-Vec3 ray_through(const render::GlCamera& c, double x, double y) {
-    const double t = std::tan(0.5 * c.field_of_view);
-    const double px = (2 * x / c.width - 1) * t * c.width / std::max(1, c.height);
-    const double py = (1 - 2 * y / c.height) * t;
-    return glm::normalize(c.forward + px * c.right + py * c.up);
 }
 
 }  // namespace tuft::app

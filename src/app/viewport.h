@@ -1,29 +1,32 @@
 #pragma once
 
 #include "core/types.h"
-#include "render/gl_scene.h"
+#include "render/gl_camera.h"
 
 namespace tuft::app {
 
-/// Turntable camera as in Blender: the world's z stays up.
+enum class StandardView { front, back, right, left, top, bottom };
+
+/// Turntable camera: the world's z stays up, unless rolled.
 struct Orbit {
     Vec3 target{0};           ///< metres, looked at and turned about
     double distance = 0.5;    ///< metres
     double azimuth = 0.5;     ///< radians; 0 looks along +y
     double elevation = 0.5;   ///< radians
+    double roll = 0;          ///< radians, of the head to the right
     double field_of_view = 0.55;
+    bool parallel = false;    ///< orthographic
 
-    /// Places the camera so that the whole box is seen.
+    /// Places the camera so that the whole box is seen; `free`: part of the picture not
+    /// covered by panels, in width and height.
     void frame(const Box& box, double aspect);
+    void look_from(StandardView view);
     void turn(double dx_pixels, double dy_pixels);
     /// Moves the target in the picture plane, so that what is under the cursor stays there.
     void pan(double dx_pixels, double dy_pixels, int height);
-    /// Moves nearer (steps > 0) towards the target.
-    void zoom(double steps);
+    /// Moves nearer (steps > 0); what lies at `towards` keeps its place in the picture.
+    void zoom(double steps, const Vec3& towards);
     render::GlCamera camera(int width, int height, const Box& scene) const;
 };
-
-/// Unit direction from the eye through a pixel (origin at the top left).
-Vec3 ray_through(const render::GlCamera& camera, double x, double y);
 
 }  // namespace tuft::app

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <string>
+#include <unordered_map>
 #include <vector>
 
-#include "core/error.h"
+#include "atlas/texel_map.h"
+#include "core/hash.h"
 #include "render/gl_shaders.h"
 
 namespace tuft::render {
@@ -16,41 +18,71 @@ namespace {
 struct Vertex {
     Vec3f position, normal;
     Vec2f uv;
+    bool operator==(const Vertex& o) const { return std::memcmp(this, &o, sizeof o) == 0; }
+};
+struct VertexHash {
+    std::size_t operator()(const Vertex& v) const { return hash_bytes(&v, sizeof v); }
 };
 struct SolidVertex {
     Vec3f position, normal, colour;
 };
 
-GLuint compile(GLenum kind, const std::string& name) {
-    const std::string_view text = shader_text(name);
-    const char* source = text.data();
-    const auto length = static_cast<GLint>(text.size());
-    const GLuint shader = glCreateShader(kind);
-    glShaderSource(shader, 1, &source, &length);
-    glCompileShader(shader);
-    GLint ok = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-    if (ok) return shader;
-    char log[1024] = "";
-    glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-    throw Error("shader " + name + " does not compile: " + log);
+// Triangles that lie together, to be drawn or left out as one.
+struct Cluster {
+    Vec3f lo{1e30f}, hi{-1e30f};
+    std::uint32_t first = 0, count = 0;  // indices
+};
+constexpr std::size_t kClusterTriangles = 192;
+
+// Order of the triangles along a Z-shaped curve through space (Morton 1966).
+std::vector<std::uint32_t> spatial_order(const mesh::TriangleMesh& mesh) {
+    const auto spread = [](std::uint64_t v) {
+        v &= 0x3ff;
+        v = (v | v << 16) & 0x30000ff;
+        v = (v | v << 8) & 0x300f00f;
+        v = (v | v << 4) & 0x30c30c3;
+        return (v | v << 2) & 0x9249249;
+    };
+    const Vec3 size = glm::max(mesh.bounds.size(), Vec3(1e-9));
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+    keys.reserve(mesh.n_triangles());
+    for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) {
+        const Vec3 p = ((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0 - mesh.bounds.lo) / std::max({size.x, size.y, size.z});
+        const auto cell = [](double v) { return static_cast<std::uint64_t>(std::clamp(1023 * v, 0.0, 1023.0)); };
+        keys.emplace_back(spread(cell(p.x)) | spread(cell(p.y)) << 1 | spread(cell(p.z)) << 2, t);
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::uint32_t> order;
+    order.reserve(keys.size());
+    for (const auto& [key, t] : keys) order.push_back(t);
+    return order;
 }
 
 glm::mat4 view_projection(const GlCamera& c) {
-    const glm::mat4 projection = glm::perspective(
-        static_cast<float>(c.field_of_view), static_cast<float>(c.width) / static_cast<float>(std::max(1, c.height)),
-        static_cast<float>(c.near), static_cast<float>(c.far));
-    const glm::mat4 view = glm::lookAt(Vec3f(c.eye), Vec3f(c.eye + c.forward), Vec3f(c.up));
-    return projection * view;
+    const float aspect = static_cast<float>(c.width) / static_cast<float>(std::max(1, c.height));
+    const auto near = static_cast<float>(c.near), far = static_cast<float>(c.far);
+    const auto half = static_cast<float>(0.5 * c.parallel_height);
+    const glm::mat4 projection = half > 0 ? glm::ortho(-half * aspect, half * aspect, -half, half, near, far)
+                                          : glm::perspective(static_cast<float>(c.field_of_view), aspect, near, far);
+    return projection * glm::lookAt(Vec3f(c.eye), Vec3f(c.eye + c.forward), Vec3f(c.up));
 }
 
-void set_camera(GLuint program, const GlCamera& c) {
+void set_vector(GLuint program, const char* name, const Vec3f& v) {
+    glUniform3fv(glGetUniformLocation(program, name), 1, glm::value_ptr(v));
+}
+
+void set_view(GLuint program, const GlCamera& c, const GlLight& l) {
+    glUseProgram(program);
     const glm::mat4 m = view_projection(c);
     glUniformMatrix4fv(glGetUniformLocation(program, "u_view_projection"), 1, GL_FALSE, glm::value_ptr(m));
-    const Vec3f eye(c.eye);
-    glUniform3fv(glGetUniformLocation(program, "u_eye"), 1, glm::value_ptr(eye));
-    const glm::mat3 lights{Vec3f(c.right), Vec3f(c.up), Vec3f(c.forward)};
-    glUniformMatrix3fv(glGetUniformLocation(program, "u_light_frame"), 1, GL_FALSE, glm::value_ptr(lights));
+    set_vector(program, "u_eye", Vec3f(c.eye));
+    set_vector(program, "u_to_eye", c.parallel_height > 0 ? Vec3f(-c.forward) : Vec3f(0));
+    set_vector(program, "u_key", l.key);
+    set_vector(program, "u_fill", l.fill);
+    set_vector(program, "u_key_light", l.key_light);
+    set_vector(program, "u_fill_light", l.fill_light);
+    set_vector(program, "u_ground", l.ground);
+    set_vector(program, "u_sky", l.sky);
 }
 
 void attribute(GLuint index, int count, std::size_t stride, std::size_t offset) {
@@ -59,147 +91,240 @@ void attribute(GLuint index, int count, std::size_t stride, std::size_t offset) 
                           reinterpret_cast<const void*>(offset));
 }
 
-}  // namespace
-
-GLuint make_program(std::string_view name) {
-    const GLuint vertex = compile(GL_VERTEX_SHADER, std::string(name) + ".vert");
-    const GLuint fragment = compile(GL_FRAGMENT_SHADER, std::string(name) + ".frag");
-    const GLuint program = glCreateProgram();
-    glAttachShader(program, vertex);
-    glAttachShader(program, fragment);
-    glLinkProgram(program);
-    glDeleteShader(vertex);
-    glDeleteShader(fragment);
-    GLint ok = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &ok);
-    if (ok) return program;
-    char log[1024] = "";
-    glGetProgramInfoLog(program, sizeof log, nullptr, log);
-    throw Error("shader program " + std::string(name) + " does not link: " + log);
+template <class T>
+void fill_buffer(GLenum kind, GLuint buffer, const std::vector<T>& values, GLenum usage) {
+    glBindBuffer(kind, buffer);
+    glBufferData(kind, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data(), usage);
 }
 
+}  // namespace
+
 struct GlScene::State {
-    GLuint mesh_program = 0, solid_program = 0;
-    GLuint mesh_array = 0, mesh_buffer = 0, solid_array = 0, solid_buffer = 0, solid_index = 0;
-    GLuint texture = 0;
-    GLsizei n_corners = 0;
-    int atlas_size = 0;
+    GLuint mesh_program = 0, solid_program = 0, backdrop_program = 0;
+    GLuint mesh_array = 0, mesh_buffer = 0, mesh_index = 0;
+    GLuint cluster_array = 0, cluster_index = 0;
+    std::vector<Cluster> clusters;
+    GLuint solid_array = 0, solid_buffer = 0, solid_index = 0, empty_array = 0;
+    GLuint texture = 0, colour_buffer = 0, colour_texture = 0;
+    GLsizei n_indices = 0;
+    int texture_size = 0;
 };
 
 GlScene::GlScene() : state_(std::make_unique<State>()) {
     State& s = *state_;
     s.mesh_program = make_program("mesh/mesh");
     s.solid_program = make_program("brush/brush");
-    glGenVertexArrays(1, &s.mesh_array);
-    glGenBuffers(1, &s.mesh_buffer);
-    glGenVertexArrays(1, &s.solid_array);
-    glGenBuffers(1, &s.solid_buffer);
-    glGenBuffers(1, &s.solid_index);
+    s.backdrop_program = make_program("backdrop/backdrop");
+    for (GLuint* array : {&s.mesh_array, &s.cluster_array, &s.solid_array, &s.empty_array}) glGenVertexArrays(1, array);
+    for (GLuint* buffer : {&s.mesh_buffer, &s.mesh_index, &s.cluster_index, &s.solid_buffer, &s.solid_index, &s.colour_buffer})
+        glGenBuffers(1, buffer);
     glGenTextures(1, &s.texture);
+    glGenTextures(1, &s.colour_texture);
 }
 
 GlScene::~GlScene() {
     State& s = *state_;
-    glDeleteProgram(s.mesh_program);
-    glDeleteProgram(s.solid_program);
-    glDeleteVertexArrays(1, &s.mesh_array);
-    glDeleteVertexArrays(1, &s.solid_array);
-    for (const GLuint buffer : {s.mesh_buffer, s.solid_buffer, s.solid_index}) glDeleteBuffers(1, &buffer);
+    for (const GLuint program : {s.mesh_program, s.solid_program, s.backdrop_program}) glDeleteProgram(program);
+    for (const GLuint array : {s.mesh_array, s.cluster_array, s.solid_array, s.empty_array}) glDeleteVertexArrays(1, &array);
+    for (const GLuint buffer : {s.mesh_buffer, s.mesh_index, s.cluster_index, s.solid_buffer, s.solid_index, s.colour_buffer})
+        glDeleteBuffers(1, &buffer);
     glDeleteTextures(1, &s.texture);
+    glDeleteTextures(1, &s.colour_texture);
 }
 
 void GlScene::set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs) {
     State& s = *state_;
     std::vector<Vertex> vertices;
-    vertices.reserve(3 * mesh.n_triangles());
+    std::vector<std::uint32_t> indices;
+    std::unordered_map<Vertex, std::uint32_t, VertexHash> known;
+    indices.reserve(3 * mesh.n_triangles());
+    known.reserve(mesh.n_vertices() * 2);
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
-        for (std::size_t k = 0; k < 3; ++k)
-            vertices.push_back({mesh.positions[mesh.triangles[t][k]], mesh.corner_normals[3 * t + k],
-                                corner_uvs.empty() ? Vec2f(0) : corner_uvs[3 * t + k]});
-    s.n_corners = static_cast<GLsizei>(vertices.size());
-    glBindVertexArray(s.mesh_array);
-    glBindBuffer(GL_ARRAY_BUFFER, s.mesh_buffer);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(), GL_STATIC_DRAW);
-    attribute(0, 3, sizeof(Vertex), offsetof(Vertex, position));
-    attribute(1, 3, sizeof(Vertex), offsetof(Vertex, normal));
-    attribute(2, 2, sizeof(Vertex), offsetof(Vertex, uv));
-    glBindVertexArray(0);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vertex v{mesh.positions[mesh.triangles[t][k]], mesh.corner_normals[3 * t + k],
+                           corner_uvs.empty() ? Vec2f(0) : corner_uvs[3 * t + k]};
+            const auto [at, is_new] = known.try_emplace(v, static_cast<std::uint32_t>(vertices.size()));
+            if (is_new) vertices.push_back(v);
+            indices.push_back(at->second);
+        }
+    s.n_indices = static_cast<GLsizei>(indices.size());
+    std::vector<std::uint32_t> sorted;
+    sorted.reserve(indices.size());
+    s.clusters.clear();
+    for (const std::uint32_t t : spatial_order(mesh)) {
+        if (s.clusters.empty() || s.clusters.back().count >= 3 * kClusterTriangles)
+            s.clusters.push_back({.first = static_cast<std::uint32_t>(sorted.size())});
+        Cluster& cluster = s.clusters.back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = indices[3 * t + k];
+            cluster.lo = glm::min(cluster.lo, vertices[v].position);
+            cluster.hi = glm::max(cluster.hi, vertices[v].position);
+            sorted.push_back(v);
+        }
+        cluster.count += 3;
+    }
+    fill_buffer(GL_ARRAY_BUFFER, s.mesh_buffer, vertices, GL_STATIC_DRAW);
+    // The same triangles twice: in the file's order, by which they are numbered, and in clusters.
+    const auto make_array = [&](GLuint array, GLuint index, const std::vector<std::uint32_t>& values) {
+        glBindVertexArray(array);
+        glBindBuffer(GL_ARRAY_BUFFER, s.mesh_buffer);
+        fill_buffer(GL_ELEMENT_ARRAY_BUFFER, index, values, GL_STATIC_DRAW);
+        attribute(0, 3, sizeof(Vertex), offsetof(Vertex, position));
+        attribute(1, 3, sizeof(Vertex), offsetof(Vertex, normal));
+        attribute(2, 2, sizeof(Vertex), offsetof(Vertex, uv));
+        glBindVertexArray(0);
+    };
+    make_array(s.mesh_array, s.mesh_index, indices);
+    make_array(s.cluster_array, s.cluster_index, sorted);
 }
 
-void GlScene::set_base_colour(const ink::AtlasMap<std::uint8_t>& map) {
+void GlScene::set_triangle_colours(std::span<const std::array<std::uint8_t, 4>> colours) {
     State& s = *state_;
-    s.atlas_size = static_cast<int>(map.size);
+    glBindBuffer(GL_TEXTURE_BUFFER, s.colour_buffer);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(colours.size_bytes()), colours.data(), GL_STATIC_DRAW);
+    glBindTexture(GL_TEXTURE_BUFFER, s.colour_texture);
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA8, s.colour_buffer);
+}
+
+void GlScene::set_texture(const MapPixels& map) {
+    State& s = *state_;
+    s.texture_size = static_cast<int>(map.size);
     glBindTexture(GL_TEXTURE_2D, s.texture);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8, s.atlas_size, s.atlas_size, 0, GL_RGB, GL_UNSIGNED_BYTE, map.texels.data());
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    for (int level = 0; level < kTextureLevels; ++level) {
+        const int size = s.texture_size >> level;
+        glTexImage2D(GL_TEXTURE_2D, level, GL_SRGB8_ALPHA8, size, size, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                     map.levels[static_cast<std::size_t>(level)].data());
+    }
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kTextureLevels - 1);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-void GlScene::update_tiles(const ink::AtlasMap<std::uint8_t>& map, std::span<const std::uint32_t> tiles, int gutter) {
+void GlScene::update_tiles(std::span<const TilePixels> tiles) {
     State& s = *state_;
-    const int per_side = (s.atlas_size + atlas::kTile - 1) / atlas::kTile;
+    const int per_side = s.texture_size / atlas::kTile;
     glBindTexture(GL_TEXTURE_2D, s.texture);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, s.atlas_size);
-    for (const std::uint32_t tile : tiles) {
-        const int x = static_cast<int>(tile) % per_side * atlas::kTile, y = static_cast<int>(tile) / per_side * atlas::kTile;
-        const int x0 = std::max(0, x - gutter), y0 = std::max(0, y - gutter);
-        const int x1 = std::min(s.atlas_size, x + atlas::kTile + gutter), y1 = std::min(s.atlas_size, y + atlas::kTile + gutter);
-        const std::size_t first = 3 * (static_cast<std::size_t>(y0) * map.size + static_cast<std::size_t>(x0));
-        glTexSubImage2D(GL_TEXTURE_2D, 0, x0, y0, x1 - x0, y1 - y0, GL_RGB, GL_UNSIGNED_BYTE, &map.texels[first]);
+    for (const TilePixels& tile : tiles) {
+        const int column = static_cast<int>(tile.tile) % per_side, row = static_cast<int>(tile.tile) / per_side;
+        for (int level = 0; level < kTextureLevels; ++level) {
+            const int side = atlas::kTile >> level;
+            glTexSubImage2D(GL_TEXTURE_2D, level, column * side, row * side, side, side, GL_RGBA, GL_UNSIGNED_BYTE,
+                            &tile.rgba[static_cast<std::size_t>(TilePixels::kStart[static_cast<std::size_t>(level)])]);
+        }
     }
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-void GlScene::clear(const GlCamera& c) {
-    glViewport(0, 0, c.width, c.height);
-    glClearColor(0.235f, 0.242f, 0.255f, 1);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-}
-
-void GlScene::draw_model(const GlCamera& c, Shading shading, float roughness) {
+void GlScene::draw_backdrop(const GlCamera& c, const Vec3f& low, const Vec3f& high, const PixelRect& part) {
     State& s = *state_;
+    glViewport(0, 0, c.width, c.height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(part.x, part.y, part.width, part.height);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glUseProgram(s.backdrop_program);
+    set_vector(s.backdrop_program, "u_low", low);
+    set_vector(s.backdrop_program, "u_high", high);
+    glBindVertexArray(s.empty_array);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    glDisable(GL_SCISSOR_TEST);
+}
+
+// Draws the clusters that reach into the part of the picture, the nearest first.
+void GlScene::draw_clusters(const GlCamera& c, const PixelRect& part) {
+    State& s = *state_;
+    std::vector<std::pair<double, const Cluster*>> seen;
+    for (const Cluster& cluster : s.clusters) {
+        double x0 = 1e30, y0 = 1e30, x1 = -1e30, y1 = -1e30, nearest = 1e30;
+        for (int k = 0; k < 8; ++k) {
+            Vec3 p = picture_point(c, Vec3(k & 1 ? cluster.hi.x : cluster.lo.x, k & 2 ? cluster.hi.y : cluster.lo.y,
+                                           k & 4 ? cluster.hi.z : cluster.lo.z));
+            nearest = std::min(nearest, p.z);
+            x0 = std::min(x0, p.x), x1 = std::max(x1, p.x), y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
+        }
+        const bool before_eye = c.parallel_height <= 0 && nearest <= c.near;
+        if (before_eye || (x1 >= part.x && x0 <= part.x + part.width && c.height - y0 >= part.y && c.height - y1 <= part.y + part.height))
+            seen.emplace_back(nearest, &cluster);
+    }
+    std::sort(seen.begin(), seen.end());
+    std::vector<GLsizei> counts;
+    std::vector<const void*> starts;
+    for (const auto& [depth, cluster] : seen) {
+        counts.push_back(static_cast<GLsizei>(cluster->count));
+        starts.push_back(reinterpret_cast<const void*>(cluster->first * sizeof(std::uint32_t)));
+    }
+    glBindVertexArray(s.cluster_array);
+    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(), static_cast<GLsizei>(counts.size()));
+}
+
+void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOptions& options, const PixelRect& part) {
+    State& s = *state_;
+    glViewport(0, 0, c.width, c.height);
+    // A pixel wider than the part: Mesa's software driver leaves out samples of a cut triangle's
+    // outermost pixels. What lies there already is as near and stays.
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(std::max(0, part.x - 1), std::max(0, part.y - 1), part.width + 2, part.height + 2);
     glEnable(GL_DEPTH_TEST);
-    glUseProgram(s.mesh_program);
-    set_camera(s.mesh_program, c);
-    glUniform1i(glGetUniformLocation(s.mesh_program, "u_shading"), static_cast<int>(shading));
-    glUniform1f(glGetUniformLocation(s.mesh_program, "u_roughness"), roughness);
-    glUniform1f(glGetUniformLocation(s.mesh_program, "u_atlas_size"), static_cast<float>(s.atlas_size));
-    glUniform1i(glGetUniformLocation(s.mesh_program, "u_base_colour"), 0);
+    set_view(s.mesh_program, c, light);
+    const auto at = [&](const char* name) { return glGetUniformLocation(s.mesh_program, name); };
+    glUniform1i(at("u_shading"), static_cast<int>(options.shading));
+    glUniform1f(at("u_roughness"), options.roughness);
+    glUniform1f(at("u_atlas_size"), static_cast<float>(s.texture_size));
+    glUniform1f(at("u_relief"), light.relief);
+    glUniform4fv(at("u_section"), 1, glm::value_ptr(options.section));
+    glUniform1i(at("u_texture"), 0);
+    glUniform1i(at("u_triangle_colours"), 1);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_BUFFER, s.colour_texture);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, s.texture);
-    glBindVertexArray(s.mesh_array);
-    glDrawArrays(GL_TRIANGLES, 0, s.n_corners);
+    if (options.shading == Shading::triangles) {
+        glBindVertexArray(s.mesh_array);
+        glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
+    } else {
+        draw_clusters(c, part);
+    }
     glBindVertexArray(0);
+    glDisable(GL_SCISSOR_TEST);
 }
 
-void GlScene::draw_solid(const GlCamera& c, const GlSolid& solid, float opacity) {
+void GlScene::draw_solid(const GlCamera& c, const GlLight& light, const GlSolid& solid, float opacity) {
     State& s = *state_;
-    if (solid.triangles.empty()) return;
+    if (solid.triangles.empty() || opacity <= 0) return;
     std::vector<SolidVertex> vertices(solid.positions.size());
     for (std::size_t i = 0; i < vertices.size(); ++i)
         vertices[i] = {solid.positions[i], solid.normals[i], solid.colours[i]};
-    glUseProgram(s.solid_program);
-    set_camera(s.solid_program, c);
+    glViewport(0, 0, c.width, c.height);
+    set_view(s.solid_program, c, light);
     glUniform1f(glGetUniformLocation(s.solid_program, "u_opacity"), opacity);
     glEnable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glBindVertexArray(s.solid_array);
-    glBindBuffer(GL_ARRAY_BUFFER, s.solid_buffer);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(SolidVertex)), vertices.data(), GL_STREAM_DRAW);
+    fill_buffer(GL_ARRAY_BUFFER, s.solid_buffer, vertices, GL_STREAM_DRAW);
     attribute(0, 3, sizeof(SolidVertex), offsetof(SolidVertex, position));
     attribute(1, 3, sizeof(SolidVertex), offsetof(SolidVertex, normal));
     attribute(2, 3, sizeof(SolidVertex), offsetof(SolidVertex, colour));
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, s.solid_index);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(solid.triangles.size() * sizeof(std::uint32_t)),
-                 solid.triangles.data(), GL_STREAM_DRAW);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(solid.triangles.size()), GL_UNSIGNED_INT, nullptr);
-    glBindVertexArray(0);
+    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, s.solid_index, solid.triangles, GL_STREAM_DRAW);
+    const auto draw = [&] {
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(solid.triangles.size()), GL_UNSIGNED_INT, nullptr);
+    };
+    if (opacity < 1) {  // depth first, so that only the front of the tuft is seen through
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        draw();
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDepthFunc(GL_LEQUAL);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    }
+    draw();
+    glDepthFunc(GL_LESS);
     glDisable(GL_BLEND);
+    glBindVertexArray(0);
 }
 
 }  // namespace tuft::render

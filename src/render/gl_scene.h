@@ -1,26 +1,22 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/types.h"
-#include "ink/composite.h"
 #include "mesh/triangle_mesh.h"
+#include "render/gl_camera.h"
+#include "render/gl_light.h"
+#include "render/gl_target.h"
 
 /// The window's picture by OpenGL 3.3 core. Every call needs the current context that the
 /// object was made in.
 namespace tuft::render {
 
-enum class Shading { lit = 0, flat = 1, texels = 2 };
-
-struct GlCamera {
-    Vec3 eye{0};                    ///< metres, world
-    Vec3 right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};
-    double field_of_view = 0.6;     ///< radians over the height
-    double near = 0.01, far = 10;   ///< metres
-    int width = 1280, height = 720; ///< pixels
-};
+enum class Shading { glaze = 0, clay = 1, flat = 2, height = 3, texels = 4, triangles = 5 };
 
 /// Colour mesh for things that change every frame, such as the tuft.
 struct GlSolid {
@@ -30,7 +26,31 @@ struct GlSolid {
     std::vector<std::uint32_t> triangles;
 };
 
-/// GPU twin of one model with its base colour map.
+inline constexpr int kTextureLevels = 5;  ///< 16 × 16 down to 1 × 1 texels of a tile
+
+/// One tile of the atlas at all levels, RGBA: sRGB colour and height in units of 0.1 µm.
+struct TilePixels {
+    static constexpr std::array<int, kTextureLevels + 1> kStart{0, 256, 320, 336, 340, 341};
+    std::uint32_t tile = 0;  ///< row · per side + column
+    std::array<std::array<std::uint8_t, 4>, 341> rgba;
+    Vec3f lo{1}, hi{-1};     ///< metres: box round its texels; empty where it has none
+};
+
+/// The whole atlas at all levels, row 0 at v = 0.
+struct MapPixels {
+    std::uint32_t size = 0;  ///< texels per side, a multiple of 16
+    std::array<std::vector<std::array<std::uint8_t, 4>>, kTextureLevels> levels;
+};
+
+struct DrawOptions {
+    Shading shading = Shading::glaze;
+    float roughness = 0.1f;         ///< of the coat
+    Vec4f section{0};               ///< plane, metres; cuts away dot((p, 1), section) > 0; zero: none
+
+    bool operator==(const DrawOptions&) const = default;
+};
+
+/// GPU twin of one model with its texture.
 class GlScene {
   public:
     GlScene();
@@ -38,20 +58,23 @@ class GlScene {
     GlScene(const GlScene&) = delete;
     GlScene& operator=(const GlScene&) = delete;
 
-    /// Uploads the mesh with one vertex per corner; `corner_uvs` [3 n_triangles], v up.
+    /// Uploads the mesh; `corner_uvs` [3 n_triangles], v up. Corners that agree in place,
+    /// normal and uv become one vertex.
     void set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs);
-    /// Uploads the whole map and its mip levels.
-    void set_base_colour(const ink::AtlasMap<std::uint8_t>& map);
-    /// Uploads the 16 × 16 tiles at `tiles` (index = row · per side + column), a margin of
-    /// `gutter` texels round each, and the mip levels under them.
-    void update_tiles(const ink::AtlasMap<std::uint8_t>& map, std::span<const std::uint32_t> tiles,
-                      int gutter);
+    /// sRGB-encoded colours for `Shading::triangles` [n_triangles].
+    void set_triangle_colours(std::span<const std::array<std::uint8_t, 4>> colours);
+    void set_texture(const MapPixels& map);
+    void update_tiles(std::span<const TilePixels> tiles);
 
-    void clear(const GlCamera& camera);
-    void draw_model(const GlCamera& camera, Shading shading, float roughness);
-    void draw_solid(const GlCamera& camera, const GlSolid& solid, float opacity);
+    /// Clears a part of the picture to the backdrop, from sRGB colour `low` at the bottom to `high`.
+    void draw_backdrop(const GlCamera& camera, const Vec3f& low, const Vec3f& high, const PixelRect& part);
+    /// Draws what of the model may be seen in a part of the picture, nothing outside it.
+    void draw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, const PixelRect& part);
+    void draw_solid(const GlCamera& camera, const GlLight& light, const GlSolid& solid, float opacity);
 
   private:
+    void draw_clusters(const GlCamera& camera, const PixelRect& part);
+
     struct State;
     std::unique_ptr<State> state_;
 };

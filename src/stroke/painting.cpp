@@ -187,10 +187,12 @@ void Painting::begin(Stroke stroke) {
 }
 
 void Painting::extend(std::span<const brush::Pose> poses) {
+    Trace piece{.flat = false};
     for (const brush::Pose& pose : poses)
-        hand_->stroke.trace.samples.push_back(
-            {.time = pose.time, .position = pose.position, .rotation = pose.rotation});
-    advance(poses);
+        piece.samples.push_back({.time = pose.time, .position = pose.position, .rotation = pose.rotation});
+    std::vector<TraceSample>& samples = hand_->stroke.trace.samples;
+    samples.insert(samples.end(), piece.samples.begin(), piece.samples.end());
+    advance(spatial_poses(piece));  // as a replay will see them, to the bit
 }
 
 void Painting::advance(std::span<const brush::Pose> poses) {

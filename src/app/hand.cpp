@@ -1,0 +1,142 @@
+#include "app/hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tuft::app {
+namespace {
+
+constexpr double kRise = 0.05;    // seconds in which the pressure follows
+constexpr double kLift = 0.06;    // seconds of the lift
+constexpr double kFrame = 0.004;  // seconds between the poses made between two aims
+constexpr double kJump = 0.004;   // metres between two aims that may be an edge of the outline
+constexpr double kGrazing = 6;    // times further on a slanting surface than across the view
+constexpr double kMaxTilt = 1.2;  // radians
+
+double part(double dt, double constant) { return 1.0 - std::exp(-dt / std::max(constant, 1e-6)); }
+
+}  // namespace
+
+std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, const Aim& aim) {
+    double from = 0;
+    for (int i = 0; i < 64; ++i) {
+        auto hit = surface.ray(aim.ray.origin, aim.ray.direction, from);
+        if (!hit || glm::dot(Vec4(hit->position, 1), Vec4(aim.section)) <= 0) return hit;
+        from = hit->distance + 1e-6;
+    }
+    return std::nullopt;
+}
+
+Hand::Hand(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const HandSettings& settings)
+    : surface_(surface), hold_(stroke::hold_options(preset)), settings_(settings) {}
+
+brush::Pose Hand::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const {
+    const Vec2 tilt = glm::clamp(aim.tilt.value_or(settings_.tilt), -kMaxTilt, kMaxTilt);
+    const auto along = [&](const Vec3& v) {
+        const Vec3 d = v - glm::dot(v, normal) * normal;
+        return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
+    };
+    const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) + std::tan(tilt.y) * along(aim.view_up));
+    const Frame f = make_frame(point, up);
+    const double height = hold_.tuft_length + (pressure > 0 ? -pressure * hold_.working_depth : hold_.hover);
+    return {.position = point + height * up,
+            .rotation = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n))),
+            .time = time};
+}
+
+double Hand::goal_pressure(const Aim& aim) const {
+    if (aim.pressure >= 0) return std::pow(std::min(1.0, aim.pressure), settings_.pen_gamma);
+    const double slow = 1.0 - settings_.speed_effect * std::min(1.0, speed_ / settings_.fast);
+    const double rested = settings_.dwell_effect * std::min(1.0, rest_ / settings_.dwell);
+    return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
+}
+
+void Hand::touch_down(const Aim& aim, const mesh::SurfacePoint& hit, const Vec3& normal, std::vector<HandStep>& steps) {
+    down_ = true;
+    goal_ = point_ = hit.position;
+    normal_ = normal;
+    start_ = aim.time;
+    time_ = speed_ = rest_ = pressure_ = 0;
+    steps.push_back({HandStep::Kind::begin, {}});
+    steps.push_back({HandStep::Kind::poses, {pose_at(aim, point_, normal_, 0, 0)}});
+}
+
+void Hand::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses) {
+    const double span = std::max(1e-4, aim.time - start_ - time_);
+    const int steps = std::clamp(static_cast<int>(std::ceil(span / kFrame)), 1, 64);
+    const double dt = span / steps;
+    for (int i = 0; i < steps; ++i) {
+        const Vec3 before = point_;
+        Vec3 target = goal_ + static_cast<double>(i + 1) / steps * (goal - goal_), pace = (goal - goal_) / span;
+        if (settings_.string > 0) {
+            const double away = glm::distance(target, point_);
+            target = away > settings_.string ? point_ + (1 - settings_.string / away) * (target - point_) : point_;
+            pace = Vec3(0);
+        }
+        // Low-pass of a goal that moves evenly, solved exactly: y' = (x - y) / τ, x' = pace.
+        const Vec3 behind = target - settings_.smoothing * pace;
+        point_ = behind + (1 - part(dt, settings_.smoothing)) * (point_ - behind + pace * dt);
+        normal_ = glm::normalize(normal_ + part(dt, std::max(0.01, settings_.smoothing)) * (normal - normal_));
+        // The smoothed point cuts the corners of a curved surface: bring it back.
+        if (const auto on = surface_.closest_point(point_, 5e-3)) {
+            const double side = glm::dot(on->normal, normal_) < 0 ? -1 : 1;
+            point_ = on->position;
+            if (settings_.string > 0) normal_ = side * on->normal;
+        }
+        const double v = glm::distance(before, point_) / dt;
+        speed_ += part(dt, 0.05) * (v - speed_);
+        rest_ = speed_ < 0.004 ? rest_ + dt : 0;
+        pressure_ += part(dt, aim.pressure >= 0 ? 0.004 : kRise) * (goal_pressure(aim) - pressure_);
+        time_ += dt;
+        poses.push_back(pose_at(aim, point_, normal_, pressure_, time_));
+    }
+    goal_ = goal;
+}
+
+std::vector<HandStep> Hand::move(const Aim& aim) {
+    std::vector<HandStep> steps;
+    const auto hit = aim_at(surface_, aim);
+    // A small movement of the cursor that goes far on the model crossed an edge of its outline.
+    const double expected = down_ && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
+                                               glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
+                                         : 0;
+    if (down_ && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected))
+        steps = lift();
+    if (!hit) return steps;
+    const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
+    if (!down_) {
+        touch_down(aim, *hit, normal, steps);
+    } else {
+        HandStep step;
+        follow(aim, hit->position, normal, step.poses);
+        steps.push_back(std::move(step));
+    }
+    aim_ = aim;
+    return steps;
+}
+
+std::vector<HandStep> Hand::lift() {
+    std::vector<HandStep> steps;
+    if (!down_) return steps;
+    constexpr int count = 12;
+    HandStep step;
+    const double start = pressure_;
+    for (int i = 1; i <= count; ++i) {
+        const double s = static_cast<double>(i) / count;
+        time_ += kLift / count;
+        step.poses.push_back(pose_at(aim_, point_, normal_, i == count ? 0.0 : start * (1 - s), time_));
+    }
+    down_ = false;
+    steps.push_back(std::move(step));
+    steps.push_back({HandStep::Kind::end, {}});
+    return steps;
+}
+
+std::optional<brush::Pose> Hand::hover(const Aim& aim) const {
+    const auto hit = aim_at(surface_, aim);
+    if (!hit) return std::nullopt;
+    const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
+    return pose_at(aim, hit->position, normal, 0, aim.time);
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "brush/preset.h"
+#include "mesh/surface_query.h"
+#include "render/gl_camera.h"
+#include "stroke/placement.h"
+
+namespace tuft::app {
+
+struct HandSettings {
+    double pressure = 0.45;       ///< 0–1 of the working depth at rest
+    double speed_effect = 0.5;    ///< part of the pressure lost at `fast`
+    double dwell_effect = 0.25;   ///< pressure added by resting for `dwell`
+    double fast = 0.25;           ///< m/s
+    double dwell = 0.8;           ///< seconds
+    double smoothing = 0.03;      ///< seconds of the low-pass on position
+    double string = 0;            ///< metres of the string on which the brush is drawn behind the cursor
+    double pen_gamma = 1;         ///< exponent on a pen's pressure
+    Vec2 tilt{0};                 ///< radians, lean of the holder to the right and upwards in the view
+};
+
+/// Where the cursor points at one moment.
+struct Aim {
+    render::GlRay ray;
+    Vec3 view_right{1, 0, 0}, view_up{0, 0, 1};  ///< unit, of the camera
+    double metres_per_pixel = 1e-4;              ///< at the model
+    double time = 0;                             ///< seconds
+    double pressure = -1;                        ///< of a pen, below 0: none
+    std::optional<Vec2> tilt;                    ///< of a pen, as `HandSettings::tilt`
+    Vec4f section{0};                            ///< cut plane: what it hides is not met
+};
+
+/// Part of a stroke, for the painter.
+struct HandStep {
+    enum class Kind { begin, poses, end };
+    Kind kind = Kind::poses;
+    std::vector<brush::Pose> poses;
+};
+
+/// Makes a cursor hold a brush: its point on the surface, smoothed or drawn on a string;
+/// pressure from a pen, or from speed and rest (a fast mouse presses less, a resting one
+/// more, as a hand does); a soft landing and a soft lift. Where the cursor leaves the model or
+/// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it.
+class Hand {
+  public:
+    Hand(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const HandSettings& settings);
+
+    std::vector<HandStep> move(const Aim& aim);
+    /// The hand lifts off.
+    std::vector<HandStep> lift();
+    bool drawing() const { return down_; }
+
+    /// The brush above what the cursor points at, not pressed; nothing where it meets nothing.
+    std::optional<brush::Pose> hover(const Aim& aim) const;
+    const stroke::HoldOptions& hold() const { return hold_; }
+
+  private:
+    brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
+    void touch_down(const Aim& aim, const mesh::SurfacePoint& hit, const Vec3& normal, std::vector<HandStep>& steps);
+    void follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses);
+    double goal_pressure(const Aim& aim) const;
+
+    const mesh::SurfaceQuery& surface_;
+    stroke::HoldOptions hold_;
+    HandSettings settings_;
+    bool down_ = false;
+    Aim aim_;                              ///< the last one
+    Vec3 goal_{0}, point_{0}, normal_{0, 0, 1};
+    double pressure_ = 0, time_ = 0, speed_ = 0, rest_ = 0, start_ = 0;
+};
+
+/// First place the aim meets that its section does not hide.
+std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, const Aim& aim);
+
+}  // namespace tuft::app

@@ -1,0 +1,110 @@
+#include "app/keeper.h"
+
+#include <algorithm>
+
+namespace tuft::app {
+
+template <class Action>
+void Keeper::attempt(const Action& action) {
+    try {
+        action();
+        trouble_.clear();
+    } catch (const std::exception& error) {
+        trouble_ = error.what();
+    }
+}
+
+void Keeper::adopt(io::Project project) {
+    for (const auto& [name, toml] : project.brushes()) brushes_[name] = toml;
+    for (const auto& [name, toml] : project.inks()) inks_[name] = toml;
+    project_ = std::move(project);
+    pending_.clear();
+}
+
+std::string Keeper::start(const std::filesystem::path& path, const std::string& source, const std::string& unit,
+                          stroke::Painting& painting) {
+    try {
+        const stroke::Model& model = painting.model();
+        io::Project project = io::Project::create(path, {.source = source,
+                                                         .unit = unit,
+                                                         .mesh = *model.mesh,
+                                                         .atlas = model.atlas,
+                                                         .substrate = ink::substrate_toml(painting.substrate())});
+        for (const auto& preset : brushes_) project.put_brush(preset);
+        for (const auto& preset : inks_) project.put_ink(preset);
+        project.append(painting.journal().strokes());
+        if (!painting.journal().empty())
+            project.save_canvas(painting.canvas(), painting.journal().strokes().back().id);
+        project_ = std::move(project);
+        pending_.clear();
+        trouble_.clear();
+        return "";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
+void Keeper::prepare(stroke::Painting& painting, const std::string& brush, const std::string& ink) {
+    if (!brushes_.contains(brush)) {
+        const std::string toml = brush::preset_toml(painting.brush(brush));
+        brush::Preset preset = brush::parse_preset(toml, brush);
+        preset.name = brush;
+        painting.use_brush(preset);
+        brushes_[brush] = toml;
+        attempt([&] { if (project_) project_->put_brush({brush, toml}); });
+    }
+    if (!inks_.contains(ink)) {
+        const std::string toml = ink::ink_toml(painting.ink(ink));
+        ink::Ink parsed = ink::parse_ink(toml, ink);
+        parsed.name = ink;
+        painting.use_ink(parsed);
+        inks_[ink] = toml;
+        attempt([&] { if (project_) project_->put_ink({ink, toml}); });
+    }
+}
+
+void Keeper::flush() {
+    if (!project_) throw Error("there is no project file");
+    for (const auto& preset : brushes_) project_->put_brush(preset);
+    for (const auto& preset : inks_) project_->put_ink(preset);
+    project_->append(pending_);
+    pending_.clear();
+}
+
+void Keeper::add(const stroke::Stroke& stroke) {
+    attempt([&] {
+        if (pending_.empty() && trouble_.empty() && project_) {
+            try {
+                project_->append(stroke);
+            } catch (...) {
+                pending_.push_back(stroke);
+                throw;
+            }
+        } else {
+            pending_.push_back(stroke);
+            flush();
+        }
+    });
+}
+
+void Keeper::remove(std::uint64_t id) {
+    const auto waits = std::find_if(pending_.begin(), pending_.end(), [id](const auto& s) { return s.id == id; });
+    if (waits != pending_.end()) {
+        pending_.erase(waits);
+        return;
+    }
+    attempt([&] { if (project_) project_->remove(id); });
+}
+
+void Keeper::set_hidden(std::uint64_t id, bool hidden) {
+    for (stroke::Stroke& stroke : pending_)
+        if (stroke.id == id) stroke.hidden = hidden;
+    attempt([&] { if (project_) project_->set_hidden(id, hidden); });
+}
+
+void Keeper::store_canvas(const stroke::Painting& painting) {
+    if (painting.journal().empty()) return;
+    attempt([&] { if (project_ && pending_.empty()) project_->save_canvas(painting.canvas(), painting.journal().strokes().back().id); });
+}
+
+}  // namespace tuft::app

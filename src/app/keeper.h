@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/project.h"
+#include "stroke/painting.h"
+
+namespace tuft::app {
+
+/// Keeps the work on disk: every finished stroke goes into the project file at once.
+/// What cannot be written (disk full, folder gone) waits in memory and is tried again with
+/// the next stroke. Nothing here throws; `trouble` says what is wrong.
+class Keeper {
+  public:
+    /// Goes on with a project that is open already.
+    void adopt(io::Project project);
+    /// Writes everything to a new project at `path` and keeps that one from now on. On
+    /// failure the old one stays, the reason is returned, else "".
+    std::string start(const std::filesystem::path& path, const std::string& source, const std::string& unit,
+                      stroke::Painting& painting);
+
+    /// The preset as a replay of the file will read it; call before a stroke uses it.
+    void prepare(stroke::Painting& painting, const std::string& brush, const std::string& ink);
+    void add(const stroke::Stroke& stroke);
+    void remove(std::uint64_t id);
+    void set_hidden(std::uint64_t id, bool hidden);
+    /// Stores the texels, so that the next opening needs no replay.
+    void store_canvas(const stroke::Painting& painting);
+
+    std::filesystem::path path() const { return project_ ? project_->path() : std::filesystem::path{}; }
+    const std::string& trouble() const { return trouble_; }
+    std::size_t waiting() const { return pending_.size(); }
+
+  private:
+    template <class Action>
+    void attempt(const Action& action);
+    void flush();
+
+    std::optional<io::Project> project_;
+    std::vector<stroke::Stroke> pending_;
+    std::map<std::string, std::string> brushes_, inks_;  ///< TOML by name
+    std::string trouble_;
+};
+
+}  // namespace tuft::app

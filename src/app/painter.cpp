@@ -1,0 +1,324 @@
+#include "app/painter.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "io/export.h"
+
+namespace tuft::app {
+namespace {
+
+constexpr double kPublishEvery = 0.012;  // seconds
+constexpr std::size_t kPosesAtOnce = 8;  // between two looks at the clock
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+template <class... Fs>
+struct Overloaded : Fs... {
+    using Fs::operator()...;
+};
+
+}  // namespace
+
+Painter::Painter(Work work) : work_(std::move(work)), roughness_(work_.painting->substrate().roughness) {
+    work_.painting->take_dirty();
+    groups_.assign(work_.painting->journal().strokes().size(), 1);
+    publish(true);
+    thread_ = std::thread([this] { run(); });
+}
+
+Painter::~Painter() {
+    {
+        const std::lock_guard lock(mutex_);
+        quit_ = true;
+    }
+    wake_.notify_all();
+    thread_.join();
+}
+
+void Painter::post(Command command) {
+    {
+        const std::lock_guard lock(mutex_);
+        queue_.push_back(std::move(command));
+    }
+    wake_.notify_all();
+}
+
+bool Painter::idle() const {
+    const std::lock_guard lock(mutex_);
+    return queue_.empty() && !working_;
+}
+
+Update Painter::take() {
+    const std::lock_guard lock(mutex_);
+    Update out = std::move(update_);
+    update_.tiles.clear();
+    update_.strokes.reset();
+    update_.messages.clear();
+    update_.tuft.reset();
+    update_.done = out.done;
+    update_.busy = out.busy;
+    update_.fraction = out.fraction;
+    update_.can_undo = out.can_undo;
+    update_.can_redo = out.can_redo;
+    update_.trouble = out.trouble;
+    update_.project = out.project;
+    out.waiting = queue_.size() + (working_ ? 1 : 0);
+    return out;
+}
+
+void Painter::run() {
+    for (;;) {
+        Command command;
+        {
+            std::unique_lock lock(mutex_);
+            working_ = false;
+            wake_.wait(lock, [this] { return quit_ || !queue_.empty(); });
+            if (queue_.empty()) break;
+            command = std::move(queue_.front());
+            queue_.pop_front();
+            working_ = true;
+        }
+        try {
+            perform(command);
+        } catch (const Cancelled&) {
+            say("Stopped; everything is as it was.");
+        } catch (const std::exception& error) {
+            if (work_.painting->in_stroke()) work_.painting->cancel();
+            say(error.what());
+            publish(true);
+        }
+    }
+    if (work_.painting->in_stroke()) end();
+    work_.keeper.store_canvas(*work_.painting);
+}
+
+void Painter::perform(Command& command) {
+    stop_ = false;
+    std::visit(Overloaded{[this](BeginStroke& c) { begin(c); }, [this](ExtendStroke& c) { extend(c); },
+                          [this](EndStroke&) { end(); },
+                          [this](CancelStroke&) {
+                              work_.painting->cancel();
+                              publish();
+                          },
+                          [this](UndoStroke&) { undo(); }, [this](RedoStroke&) { redo(); },
+                          [this](SaveProject& c) {
+                              const std::string fault =
+                                  work_.keeper.start(c.path, work_.source, work_.unit, *work_.painting);
+                              say(fault.empty() ? "Saved as " + c.path.string() : fault);
+                              publish();
+                          },
+                          [this](ExportModel& c) { export_model(c); }, [this](EditStroke& c) { edit(c); }},
+               command);
+}
+
+void Painter::say(std::string message) {
+    const std::lock_guard lock(mutex_);
+    update_.messages.push_back(std::move(message));
+}
+
+ProgressFn Painter::progress(const std::string& name) {
+    return [this, name](std::string_view, double fraction) {
+        const std::lock_guard lock(mutex_);
+        update_.busy = name;
+        update_.fraction = fraction;
+        return !stop_.load();
+    };
+}
+
+// Hands over what changed. Only this thread calls it (or the maker, before there is one).
+void Painter::publish(bool strokes_changed) {
+    stroke::Painting& painting = *work_.painting;
+    std::vector<render::TilePixels> tiles = work_.texture->refresh(painting.take_dirty(), painting);
+    if (strokes_changed) {
+        const auto& strokes = painting.journal().strokes();
+        // Entries that are still right stay; ids and order tell.
+        std::size_t same = 0;
+        while (same < lines_.size() && same < strokes.size() && lines_[same].id == strokes[same].id &&
+               lines_[same].brush == strokes[same].trace.brush && lines_[same].ink == strokes[same].trace.ink &&
+               lines_[same].hidden == strokes[same].hidden)
+            ++same;
+        lines_.resize(same);
+        for (; same < strokes.size(); ++same) lines_.push_back(stroke_line(strokes[same]));
+    }
+    const brush::TuftState* tuft = painting.tuft();
+    const std::lock_guard lock(mutex_);
+    if (update_.tiles.empty()) update_.tiles = std::move(tiles);
+    else {
+        std::set<std::uint32_t> fresh;
+        for (const render::TilePixels& tile : tiles) fresh.insert(tile.tile);
+        std::erase_if(update_.tiles, [&](const render::TilePixels& t) { return fresh.contains(t.tile); });
+        update_.tiles.insert(update_.tiles.end(), tiles.begin(), tiles.end());
+    }
+    if (strokes_changed) update_.strokes = lines_;
+    update_.tuft = tuft ? *tuft : brush::TuftState{};
+    update_.done = asked_;
+    update_.busy.clear();
+    update_.fraction = 0;
+    update_.can_undo = painting.journal().can_undo();
+    update_.can_redo = painting.journal().can_redo();
+    update_.project = work_.keeper.path();
+    update_.trouble = work_.keeper.trouble();
+    if (!update_.trouble.empty() && work_.keeper.waiting() > 0)
+        update_.trouble += " (" + std::to_string(work_.keeper.waiting()) + " strokes wait in memory)";
+    last_publish_ = now();
+}
+
+void Painter::begin(const BeginStroke& command) {
+    current_ = command;
+    work_.keeper.prepare(*work_.painting, command.brush, command.ink);
+    stroke::Stroke stroke;
+    stroke.trace.flat = false;
+    stroke.trace.brush = command.brush;
+    stroke.trace.ink = command.ink;
+    work_.painting->begin(std::move(stroke));
+}
+
+void Painter::extend(const ExtendStroke& command) {
+    if (!work_.painting->in_stroke()) return;
+    const std::span<const brush::Pose> poses(command.poses);
+    for (std::size_t i = 0; i < poses.size(); i += kPosesAtOnce) {
+        work_.painting->extend(poses.subspan(i, std::min(kPosesAtOnce, poses.size() - i)));
+        if (now() - last_publish_ > kPublishEvery) publish();
+    }
+    asked_ = command.asked;
+    publish();
+}
+
+void Painter::end() {
+    stroke::Painting& painting = *work_.painting;
+    if (!painting.in_stroke()) return;
+    painting.end();
+    work_.keeper.add(painting.journal().strokes().back());
+    const stroke::Stroke original = painting.journal().strokes().back();
+    std::size_t made = 1;
+    publish(true);
+    for (const stroke::PoseMap& map : stroke::symmetry_copies(current_.symmetry)) {
+        stroke::Stroke copy = original;
+        copy.trace.label = "symmetric to " + std::to_string(original.id);
+        for (stroke::TraceSample& sample : copy.trace.samples) {
+            const brush::Pose pose = map.pose({sample.position, sample.rotation, sample.time});
+            sample.position = pose.position;
+            sample.rotation = pose.rotation;
+        }
+        painting.paint(std::move(copy));
+        work_.keeper.add(painting.journal().strokes().back());
+        ++made;
+        publish(true);
+    }
+    groups_.push_back(made);
+    undone_groups_.clear();
+}
+
+void Painter::undo() {
+    if (groups_.empty() || !work_.painting->journal().can_undo()) return;
+    for (std::size_t i = 0; i < groups_.back() && work_.painting->journal().can_undo(); ++i) {
+        const std::uint64_t id = work_.painting->journal().strokes().back().id;
+        work_.painting->undo();
+        work_.keeper.remove(id);
+    }
+    undone_groups_.push_back(groups_.back());
+    groups_.pop_back();
+    publish(true);
+}
+
+void Painter::redo() {
+    if (undone_groups_.empty()) return;
+    for (std::size_t i = 0; i < undone_groups_.back(); ++i)
+        if (work_.painting->redo()) work_.keeper.add(work_.painting->journal().strokes().back());
+    groups_.push_back(undone_groups_.back());
+    undone_groups_.pop_back();
+    publish(true);
+}
+
+void Painter::edit(const EditStroke& command) {
+    std::vector<stroke::Stroke> strokes = work_.painting->journal().strokes();
+    const auto at = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.id == command.id; });
+    if (at == strokes.end()) return;
+    if (command.hidden) at->hidden = *command.hidden;
+    if (command.brush) at->trace.brush = *command.brush;
+    if (command.ink) at->trace.ink = *command.ink;
+    if (command.brush || command.ink) work_.keeper.prepare(*work_.painting, at->trace.brush, at->trace.ink);
+    if (command.remove) strokes.erase(at);
+    rewrite(std::move(strokes));
+    if (command.remove) work_.keeper.remove(command.id);
+    else if (command.hidden) work_.keeper.set_hidden(command.id, *command.hidden);
+    if (command.brush || command.ink) {
+        // A stroke's row cannot change its presets: the file is written anew, whole or not at all.
+        const std::string fault = work_.keeper.start(work_.keeper.path(), work_.source, work_.unit, *work_.painting);
+        if (!fault.empty()) say(fault);
+    }
+}
+
+// Paints all strokes anew beside what is there, then puts it in its place.
+void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
+    stroke::Painting& old = *work_.painting;
+    auto painting = std::make_unique<stroke::Painting>(*work_.model);
+    painting->use_substrate(old.substrate());
+    for (const stroke::Stroke& s : strokes) {
+        painting->use_brush(old.brush(s.trace.brush));
+        painting->use_ink(old.ink(s.trace.ink));
+    }
+    painting->replay(std::move(strokes), progress("Painting again"));
+    for (const std::uint32_t slot : old.canvas().touched_slots()) painting->canvas().mark_dirty(slot);
+    work_.painting = std::move(painting);
+    groups_.assign(work_.painting->journal().strokes().size(), 1);
+    undone_groups_.clear();
+    publish(true);
+}
+
+void Painter::export_model(const ExportModel& command) {
+    const stroke::Model& model = *work_.model;
+    progress("Exporting")("", 0);
+    io::ModelMaps maps = io::make_maps(work_.painting->canvas(), model.texels, work_.painting->substrate(),
+                                       {.gutter = model.atlas.gutter, .progress = progress("Exporting")});
+    if (!command.height) maps.height = {};
+    if (!command.orm) maps.orm = {};
+    io::export_model(command.path, *model.mesh, model.atlas, maps,
+                     {.unit = work_.unit, .progress = progress("Exporting")});
+    say("Exported " + command.path.string());
+    publish();
+}
+
+StrokeLine stroke_line(const stroke::Stroke& stroke) {
+    StrokeLine line{.id = stroke.id, .brush = stroke.trace.brush, .ink = stroke.trace.ink, .label = stroke.trace.label,
+                    .hidden = stroke.hidden};
+    const auto& samples = stroke.trace.samples;
+    if (samples.empty()) return line;
+    Vec3 normal(0);
+    Vec3 mean(0);
+    for (const stroke::TraceSample& s : samples) {
+        normal += stroke.trace.flat ? Vec3(0, 0, 1) : glm::normalize(s.rotation) * Vec3(0, 0, 1);
+        mean += s.position / static_cast<double>(samples.size());
+    }
+    if (glm::length(normal) < 1e-9) normal = {0, 0, 1};
+    normal = glm::normalize(normal);
+    // Seen from outside with z, or else y, upwards.
+    const Vec3 above = std::abs(normal.z) < 0.95 ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+    Vec3 right = glm::normalize(glm::cross(above, normal));
+    Vec3 down = -glm::cross(normal, right);
+    if (stroke.trace.flat) right = {1, 0, 0}, down = {0, 1, 0};
+    double lo_x = 0, hi_x = 0, lo_y = 0, hi_y = 0, lo_z = 1e9, hi_z = -1e9;
+    const std::size_t n = std::min<std::size_t>(40, samples.size());
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < n; ++i) {
+        const stroke::TraceSample& s = samples[i * (samples.size() - 1) / std::max<std::size_t>(1, n - 1)];
+        const Vec3 d = s.position - mean;
+        points.emplace_back(glm::dot(d, right), glm::dot(d, down), stroke.trace.flat ? -s.pressure : glm::dot(d, normal));
+        lo_x = std::min(lo_x, points.back().x), hi_x = std::max(hi_x, points.back().x);
+        lo_y = std::min(lo_y, points.back().y), hi_y = std::max(hi_y, points.back().y);
+        lo_z = std::min(lo_z, points.back().z), hi_z = std::max(hi_z, points.back().z);
+    }
+    const double span = std::max({hi_x - lo_x, hi_y - lo_y, 1e-4});
+    for (const Vec3& p : points)
+        line.way.emplace_back(0.5 + (p.x - 0.5 * (lo_x + hi_x)) / span, 0.5 + (p.y - 0.5 * (lo_y + hi_y)) / span,
+                              (hi_z - p.z) / std::max(1e-6, hi_z - lo_z));
+    for (std::size_t i = 1; i < samples.size(); ++i)
+        line.length += glm::distance(samples[i - 1].position, samples[i].position);
+    return line;
+}
+
+}  // namespace tuft::app

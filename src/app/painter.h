@@ -1,0 +1,139 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "app/keeper.h"
+#include "app/texture.h"
+#include "stroke/painting.h"
+#include "stroke/symmetry.h"
+
+namespace tuft::app {
+
+/// What the painter is asked to do; it does so in order.
+struct BeginStroke {
+    std::string brush, ink;
+    stroke::Symmetry symmetry;
+};
+struct ExtendStroke {
+    std::vector<brush::Pose> poses;
+    double asked = 0;             ///< seconds on the window's clock, comes back in `Update::done`
+};
+struct EndStroke {};
+struct CancelStroke {};
+struct UndoStroke {};
+struct RedoStroke {};
+struct SaveProject {
+    std::filesystem::path path;
+};
+struct ExportModel {
+    std::filesystem::path path;
+    bool height = true, orm = true;  ///< maps besides the base colour
+};
+/// Changes a stroke that is already there; the rest is painted again.
+struct EditStroke {
+    std::uint64_t id = 0;
+    std::optional<bool> hidden;
+    std::optional<std::string> brush, ink;
+    bool remove = false;
+};
+using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, UndoStroke, RedoStroke, SaveProject,
+                             ExportModel, EditStroke>;
+
+/// A stroke for the list.
+struct StrokeLine {
+    std::uint64_t id = 0;
+    std::string brush, ink, label;
+    bool hidden = false;
+    double length = 0;            ///< metres of the hand's way
+    std::vector<Vec3f> way;       ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
+};
+
+/// What changed since the last look.
+struct Update {
+    std::vector<render::TilePixels> tiles;
+    std::optional<std::vector<StrokeLine>> strokes;
+    std::vector<std::string> messages;
+    std::optional<brush::TuftState> tuft;  ///< of the stroke in work; no branches: none
+    double done = 0;              ///< the latest `ExtendStroke::asked` that is painted
+    std::size_t waiting = 0;      ///< commands not done yet
+    std::string busy;             ///< long work being done, ""
+    double fraction = 0;          ///< of it
+    bool can_undo = false, can_redo = false;
+    std::string trouble;          ///< why work is not being kept, ""
+    std::filesystem::path project;
+};
+
+/// Paints on a thread of its own, so that drawing never waits for the simulation nor the
+/// simulation for drawing. From its making on, only that thread touches the painting.
+class Painter {
+  public:
+    struct Work {
+        std::unique_ptr<stroke::Model> model;
+        std::unique_ptr<stroke::Painting> painting;
+        std::unique_ptr<Texture> texture;
+        render::MapPixels pixels;  ///< what the texture shows at the start, for the graphics card
+        Keeper keeper;
+        std::string source, unit = "mm";
+    };
+    explicit Painter(Work work);
+    /// Finishes everything that was asked for first.
+    ~Painter();
+
+    void post(Command command);
+    Update take();
+    /// Nothing asked for is left to do.
+    bool idle() const;
+    /// Stops a repainting in work; what was before stays.
+    void stop_long_work() { stop_ = true; }
+
+    const stroke::Model& model() const { return *work_.model; }  ///< never changes
+    /// The texture as it was at the start; once.
+    render::MapPixels take_pixels() { return std::move(work_.pixels); }
+    const std::string& source() const { return work_.source; }
+    float roughness() const { return roughness_; }
+
+  private:
+    void run();
+    void perform(Command& command);
+    void begin(const BeginStroke& command);
+    void extend(const ExtendStroke& command);
+    void end();
+    void undo();
+    void redo();
+    void edit(const EditStroke& command);
+    void rewrite(std::vector<stroke::Stroke> strokes);
+    void export_model(const ExportModel& command);
+    void publish(bool strokes_changed = false);
+    void say(std::string message);
+    ProgressFn progress(const std::string& name);
+
+    Work work_;
+    float roughness_ = 0.1f;
+    BeginStroke current_;
+    double asked_ = 0, last_publish_ = 0;
+    std::vector<std::size_t> groups_, undone_groups_;  ///< strokes that one movement of the hand made
+    std::vector<StrokeLine> lines_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable wake_;
+    std::deque<Command> queue_;
+    Update update_;
+    bool working_ = false, quit_ = false;
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+/// The list entry of a stroke.
+StrokeLine stroke_line(const stroke::Stroke& stroke);
+
+}  // namespace tuft::app

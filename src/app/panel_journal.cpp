@@ -1,0 +1,93 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/panels.h"
+
+namespace tuft::app {
+namespace {
+
+void draw_way(const StrokeLine& line, ImVec2 at, float size) {
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(at, ImVec2(at.x + size, at.y + size), IM_COL32(238, 236, 230, line.hidden ? 70 : 255), 3);
+    const float pad = 0.16f * size, inner = size - 2 * pad;
+    const unsigned colour = (ink_colour(line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
+    for (std::size_t i = 1; i < line.way.size(); ++i) {
+        const Vec3f &a = line.way[i - 1], &b = line.way[i];
+        draw->AddLine(ImVec2(at.x + pad + a.x * inner, at.y + pad + a.y * inner),
+                      ImVec2(at.x + pad + b.x * inner, at.y + pad + b.y * inner), colour, 1.0f + 0.055f * size * (a.z + b.z));
+    }
+}
+
+void edit_row(Session& s, const StrokeLine& line) {
+    Ui& ui = s.ui;
+    const float half = (kJournalWidth - 24 - 8) / 2 - (ImGui::GetScrollMaxY() > 0 ? 6.0f : 0.0f);
+    if (ui.button(line.hidden ? "Show" : "Hide", line.hidden ? "Paints it again in its place" : "The other strokes are painted again without it", half))
+        s.painter->post(EditStroke{.id = line.id, .hidden = !line.hidden});
+    ImGui::SameLine();
+    if (ui.button("Delete", "Takes the stroke away and paints the others again", half))
+        s.painter->post(EditStroke{.id = line.id, .remove = true});
+    std::string brush = line.brush, ink = line.ink;
+    if (ui.combo("Change brush", brush, s.brushes)) s.painter->post(EditStroke{.id = line.id, .brush = brush});
+    if (ui.combo("Change ink", ink, s.inks)) s.painter->post(EditStroke{.id = line.id, .ink = ink});
+}
+
+void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
+    const float size = s.ui.px(42);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::PushID(static_cast<int>(line.id));
+    const bool chosen = s.selected == line.id;
+    if (ImGui::Selectable("##row", chosen, 0, ImVec2(0, size))) s.selected = chosen ? 0 : line.id;
+    s.ui.mark("stroke " + std::to_string(number));
+    draw_way(line, ImVec2(at.x, at.y), size);
+    char text[96];
+    std::snprintf(text, sizeof text, "%zu   %.0f mm", number, line.length * 1e3);
+    const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);
+    const std::string what = std::string(s.ui.tr(line.brush.c_str())) + " \xc2\xb7 " + s.ui.tr(line.ink.c_str());
+    draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), s.ui.faint, what.c_str());
+    if (ImGui::IsItemHovered() && !line.label.empty()) ImGui::SetTooltip("%s", line.label.c_str());
+    if (chosen) edit_row(s, line);
+    ImGui::PopID();
+}
+
+}  // namespace
+
+void journal_panel(Session& s, float top, float bottom, float left) {
+    Ui& ui = s.ui;
+    ImGui::SetNextWindowPos(ImVec2(left, top));
+    ImGui::SetNextWindowSize(ImVec2(ui.px(kJournalWidth), bottom - top));
+    ImGui::Begin("###journal", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    const float half = (kJournalWidth - 24 - 8) / 2;
+    if (ui.button("Undo", "Ctrl+Z", half, s.last.can_undo)) s.painter->post(UndoStroke{});
+    ImGui::SameLine();
+    if (ui.button("Redo", "Ctrl+Shift+Z", half, s.last.can_redo)) s.painter->post(RedoStroke{});
+    if (!s.last.busy.empty()) {
+        ImGui::TextUnformatted(ui.tr(s.last.busy.c_str()));
+        ImGui::ProgressBar(static_cast<float>(s.last.fraction), ImVec2(-1, ui.px(16)), "");
+        if (ui.button("Stop")) s.painter->stop_long_work();
+    }
+    ui.heading("Journal");
+    if (s.strokes.empty()) ui.note(ui.tr("Every stroke you paint is listed here, and can be hidden, changed or taken out later."));
+    ImGui::BeginChild("strokes");
+    const float row = ui.px(42) + ImGui::GetStyle().ItemSpacing.y;
+    ImGuiListClipper clipper;
+    // Rows are of one height but for the chosen one, so only long lists are clipped, unchosen.
+    const bool clip = s.strokes.size() > 200 && s.selected == 0;
+    if (clip) {
+        clipper.Begin(static_cast<int>(s.strokes.size()), row);
+        while (clipper.Step())
+            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+                const std::size_t k = s.strokes.size() - 1 - static_cast<std::size_t>(i);
+                stroke_row(s, s.strokes[k], k + 1);
+            }
+    } else {
+        for (std::size_t k = s.strokes.size(); k-- > 0;) stroke_row(s, s.strokes[k], k + 1);
+    }
+    ImGui::EndChild();
+    ImGui::End();
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,95 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/panels.h"
+
+namespace tuft::app {
+namespace {
+
+void file_menu(Session& s) {
+    if (!s.ui.begin_menu("File")) return;
+    const bool ready = s.painter != nullptr;
+    if (s.ui.menu_item("Open...", "Ctrl+O")) s.files.show(FileDialog::Purpose::open, {});
+    if (s.ui.menu_item("Save as...", "Ctrl+S", false, ready))
+        s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft");
+    if (s.ui.menu_item("Export...", "Ctrl+E", false, ready)) s.show_export = true;
+    ImGui::Separator();
+    if (s.ui.menu_item("Close model", nullptr, false, ready)) {
+        close_model(s);
+        s.recent = recent_projects();
+        s.lost = find_lost_work();
+    }
+    if (s.ui.menu_item("Quit", "Ctrl+Q")) s.quit = true;
+    ImGui::EndMenu();
+}
+
+void edit_menu(Session& s) {
+    if (!s.ui.begin_menu("Edit")) return;
+    if (s.ui.menu_item("Undo", "Ctrl+Z", false, s.last.can_undo) && s.painter) s.painter->post(UndoStroke{});
+    if (s.ui.menu_item("Redo", "Ctrl+Shift+Z", false, s.last.can_redo) && s.painter) s.painter->post(RedoStroke{});
+    ImGui::Separator();
+    if (s.ui.menu_item("Settings...")) s.show_settings = true;
+    ImGui::EndMenu();
+}
+
+void view_menu(Session& s) {
+    if (!s.ui.begin_menu("View")) return;
+    Orbit& o = s.view.orbit;
+    if (s.ui.menu_item("Frame all", "Home") && s.painter)
+        o.frame(s.painter->model().mesh->bounds, static_cast<double>(s.area.width) / s.area.height);
+    if (s.ui.menu_item("Front", "1")) o.look_from(StandardView::front);
+    if (s.ui.menu_item("Back", "Ctrl+1")) o.look_from(StandardView::back);
+    if (s.ui.menu_item("Right", "3")) o.look_from(StandardView::right);
+    if (s.ui.menu_item("Left", "Ctrl+3")) o.look_from(StandardView::left);
+    if (s.ui.menu_item("Top", "7")) o.look_from(StandardView::top);
+    if (s.ui.menu_item("Bottom", "Ctrl+7")) o.look_from(StandardView::bottom);
+    ImGui::Separator();
+    if (s.ui.menu_item("Parallel projection", "5", o.parallel)) o.parallel = !o.parallel;
+    if (s.ui.menu_item("See through the brush", "X", s.view.see_through)) s.view.see_through = !s.view.see_through;
+    if (s.ui.menu_item("Side view of the tuft", nullptr, s.view.inset)) s.view.inset = !s.view.inset;
+    ImGui::EndMenu();
+}
+
+void shading_combo(Session& s) {
+    static const std::vector<std::string> names{"Glaze", "Clay", "Flat colour", "Ink height", "Texel grid", "Charts", "Stretch"};
+    std::string name = names[static_cast<std::size_t>(s.view.shown)];
+    if (s.ui.combo("Shading", name, names, 130))
+        s.view.shown = static_cast<ModelView>(std::find(names.begin(), names.end(), name) - names.begin());
+    s.ui.hint("How the model is shown");
+    static const std::vector<std::string> rigs{"Studio light", "Window light", "Raking light"};
+    std::string rig = rigs[static_cast<std::size_t>(s.view.rig)];
+    if (s.ui.combo("Light", rig, rigs, 140))
+        s.view.rig = static_cast<render::LightRig>(std::find(rigs.begin(), rigs.end(), rig) - rigs.begin());
+    s.ui.hint("Raking light shows the relief of the ink");
+}
+
+}  // namespace
+
+void menu_bar(Session& s) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(8), s.ui.px(6)));
+    if (ImGui::BeginMainMenuBar()) {
+        file_menu(s);
+        edit_menu(s);
+        view_menu(s);
+        if (s.ui.begin_menu("Help")) {
+            if (s.ui.menu_item("Keys and mouse", "F1")) s.show_keys = true;
+            ImGui::EndMenu();
+        }
+        if (s.painter) {
+            const std::string name = project_name(s);
+            const float width = ImGui::GetWindowWidth();
+            ImGui::SetCursorPosX(0.5f * (width - ImGui::CalcTextSize(name.c_str()).x));
+            ImGui::TextUnformatted(name.c_str());
+            ImGui::SetCursorPosX(width - s.ui.px(130 + 140 + 24));
+            ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(8), s.ui.px(2)));
+            ImGui::SetCursorPosY(ImGui::GetCursorPosY() + s.ui.px(3));
+            shading_combo(s);
+            ImGui::PopStyleVar();
+        }
+        ImGui::EndMainMenuBar();
+    }
+    ImGui::PopStyleVar();
+}
+
+}  // namespace tuft::app

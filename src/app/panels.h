@@ -1,0 +1,35 @@
+#pragma once
+
+#include "app/session.h"
+
+/// What is drawn round and over the model. Each function draws one panel and writes what
+/// the person changed into the session.
+namespace tuft::app {
+
+/// Heights and widths in pixels for a scale of 1.
+inline constexpr float kToolWidth = 256, kJournalWidth = 256, kStatusHeight = 30;
+
+void menu_bar(Session& s);
+void tool_panel(Session& s, float top, float bottom, float left);
+void journal_panel(Session& s, float top, float bottom, float left);
+void status_bar(Session& s, float top);
+void welcome(Session& s);
+void open_dialog(Session& s);
+void opening_progress(Session& s);
+void recovery_dialog(Session& s);
+void export_dialog(Session& s);
+void settings_dialog(Session& s);
+void keys_dialog(Session& s);
+/// The tuft from the side with the surface under it, and what the hand feels.
+void tuft_inset(Session& s);
+/// Marks on the model: where the tuft touches, planes of symmetry, the line being drawn.
+void view_marks(const Session& s, const render::GlCamera& camera);
+
+/// sRGB colour (ImU32) of a full film of this ink on porcelain.
+unsigned ink_colour(const std::string& ink);
+
+/// Modal window in the middle; true while it is drawn. Close it with `end_dialog`.
+bool begin_dialog(Session& s, const char* title, float width);
+void end_dialog();
+
+}  // namespace tuft::app

@@ -1,0 +1,274 @@
+#include "app/script.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "app/studio.h"
+#include "core/random.h"
+#include "io/image.h"
+#include "render/gl_target.h"
+
+namespace tuft::app {
+namespace {
+
+constexpr double kSample = 0.004;      // seconds between two samples of a stroke
+constexpr double kStrokeSpeed = 260;   // pixels per second
+constexpr double kLongestWait = 120;   // seconds until a wait is given up
+constexpr double kLabelWait = 5;       // seconds until a label is given up
+
+int key_code(const std::string& name) {
+    static const std::map<std::string, int> names{
+        {"home", GLFW_KEY_HOME}, {"end", GLFW_KEY_END}, {"escape", GLFW_KEY_ESCAPE}, {"enter", GLFW_KEY_ENTER}, {"tab", GLFW_KEY_TAB},
+        {"space", GLFW_KEY_SPACE}, {"left", GLFW_KEY_LEFT}, {"right", GLFW_KEY_RIGHT}, {"up", GLFW_KEY_UP}, {"down", GLFW_KEY_DOWN},
+        {"delete", GLFW_KEY_DELETE}, {"backspace", GLFW_KEY_BACKSPACE}, {"f1", GLFW_KEY_F1}};
+    if (const auto at = names.find(name); at != names.end()) return at->second;
+    if (name.size() == 1) return std::toupper(static_cast<unsigned char>(name[0]));
+    return -1;
+}
+
+unsigned modifier_of(const std::string& name) {
+    return name == "ctrl" ? unsigned{kControl} : name == "shift" ? unsigned{kShift} : name == "alt" ? unsigned{kAlt} : 0u;
+}
+
+int button_of(const ScriptCommand& c) {
+    if (c.words.empty() || c.words[0] == "left") return 0;
+    return c.words[0] == "right" ? 1 : 2;
+}
+
+}  // namespace
+
+Script::Script(const std::filesystem::path& path) : path_(path), commands_(parse_script(path)) {}
+
+void Script::fail(const ScriptCommand& command, const std::string& why) const { throw Error(path_.string(), command.line, why); }
+
+void Script::add(Event event, double after) {
+    clock_ += after;
+    event.time = clock_;
+    if (event.kind != Event::Kind::key_down && event.kind != Event::Kind::key_up && event.kind != Event::Kind::text) cursor_ = event;
+    pending_.push_back(std::move(event));
+}
+
+void Script::click(double x, double y, int button) {
+    add({.kind = Event::Kind::move, .x = x, .y = y}, 0.02);
+    add({.kind = Event::Kind::press, .x = x, .y = y, .button = button}, 0.05);
+    add({.kind = Event::Kind::release, .x = x, .y = y, .button = button}, 0.05);
+}
+
+void Script::press_key(const std::string& chord, int line) {
+    unsigned modifiers = 0;
+    std::string rest = chord;
+    for (std::size_t plus; (plus = rest.find('+')) != std::string::npos && plus > 0; rest = rest.substr(plus + 1)) {
+        const unsigned m = modifier_of(rest.substr(0, plus));
+        if (!m) throw Error(path_.string(), line, "unknown key '" + chord + "'");
+        modifiers |= m;
+    }
+    const int code = key_code(rest);
+    if (code < 0) throw Error(path_.string(), line, "unknown key '" + chord + "'");
+    add({.kind = Event::Kind::key_down, .key = code, .modifiers = modifiers}, 0.03);
+    add({.kind = Event::Kind::key_up, .key = code}, 0.03);
+}
+
+void Script::stroke(Studio& studio, const ScriptCommand& command) {
+    const Area& area = studio.session().area;
+    std::vector<Vec3> places;
+    for (const ScriptPoint& p : command.points)
+        places.emplace_back(p.relative_x ? area.x + p.x * area.width : p.x, p.relative_y ? area.y + p.y * area.height : p.y, p.pressure);
+    add({.kind = Event::Kind::move, .x = places[0].x, .y = places[0].y}, 0.05);
+    add({.kind = Event::Kind::press, .x = places[0].x, .y = places[0].y, .pressure = places[0].z}, 0.02);
+    for (std::size_t i = 1; i < places.size(); ++i) {
+        const double length = std::hypot(places[i].x - places[i - 1].x, places[i].y - places[i - 1].y);
+        const int n = std::clamp(static_cast<int>(length / (kStrokeSpeed * kSample)), 1, 100000);
+        for (int k = 1; k <= n; ++k) {
+            const Vec3 p = glm::mix(places[i - 1], places[i], static_cast<double>(k) / n);
+            add({.kind = Event::Kind::move, .x = p.x, .y = p.y, .pressure = p.z}, kSample);
+        }
+    }
+    add({.kind = Event::Kind::release, .x = places.back().x, .y = places.back().y, .pressure = places.back().z}, kSample);
+}
+
+// Mostly the things people do, and some that nobody should: seeded, so that it can be repeated.
+void Script::random_events(Studio& studio, const ScriptCommand& command) {
+    const int count = std::atoi(command.words[0].c_str());
+    Random random(static_cast<std::uint64_t>(std::atoll(command.words[1].c_str())));
+    const Session& s = studio.session();
+    const double w = s.area.x + s.area.width + 240, h = s.area.y + s.area.height + 30;
+    Event e{.x = 0.5 * w, .y = 0.5 * h};
+    bool down[3] = {};
+    // Not what ends the program or writes files wherever a dialog happens to be.
+    constexpr int keys[] = {GLFW_KEY_Z, GLFW_KEY_Y, GLFW_KEY_HOME, GLFW_KEY_1, GLFW_KEY_3, GLFW_KEY_7, GLFW_KEY_5, GLFW_KEY_LEFT_BRACKET,
+                            GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_LEFT, GLFW_KEY_UP, GLFW_KEY_B, GLFW_KEY_L, GLFW_KEY_X, GLFW_KEY_ESCAPE,
+                            GLFW_KEY_PERIOD, GLFW_KEY_F1, GLFW_KEY_BACKSLASH, GLFW_KEY_E};
+    for (int i = 0; i < count; ++i) {
+        Event next = e;
+        next.modifiers = random.uniform() < 0.2 ? static_cast<unsigned>(random.uniform(0, 8)) : 0;
+        const double what = random.uniform();
+        if (what < 0.55) {
+            const double reach = random.uniform() < 0.1 ? 600 : 25;
+            next.kind = Event::Kind::move;
+            next.x = std::clamp(e.x + random.uniform(-reach, reach), -20.0, w + 20);
+            next.y = std::clamp(e.y + random.uniform(-reach, reach), 40.0, h + 20);
+            if (random.uniform() < 0.3) next.pressure = random.uniform();
+        } else if (what < 0.8) {
+            next.button = random.uniform() < 0.8 ? 0 : random.uniform() < 0.5 ? 1 : 2;
+            bool& held = down[next.button];
+            next.kind = held ? Event::Kind::release : Event::Kind::press;
+            held = !held;
+        } else if (what < 0.85) {
+            next.kind = Event::Kind::scroll;
+            next.steps = random.uniform(-3, 3);
+        } else if (what < 0.98) {
+            next.kind = random.uniform() < 0.5 ? Event::Kind::key_down : Event::Kind::key_up;
+            next.key = keys[static_cast<std::size_t>(random.uniform(0, std::size(keys)))];
+            if (next.key == GLFW_KEY_Z && random.uniform() < 0.5) next.modifiers = kControl | (random.uniform() < 0.5 ? unsigned{kShift} : 0u);
+        } else {
+            next.kind = Event::Kind::hover_end;
+        }
+        add(next, random.uniform(0, 0.02));
+        e.x = next.x;
+        e.y = next.y;
+    }
+    for (int button = 0; button < 3; ++button)
+        if (down[button]) add({.kind = Event::Kind::release, .x = e.x, .y = e.y, .button = button}, 0.02);
+    for (const int key : keys) add({.kind = Event::Kind::key_up, .key = key}, 0);
+}
+
+void Script::report(Studio& studio, double now) {
+    const double seconds = now - report_start_;
+    std::vector<double> delays = studio.take_delays();
+    std::sort(delays.begin(), delays.end());
+    const auto at = [&](double q) { return delays.empty() ? 0.0 : 1e3 * delays[static_cast<std::size_t>(q * static_cast<double>(delays.size() - 1))]; };
+    std::printf("{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, \"delay_ms_p95\": %.1f, "
+                "\"strokes\": %zu, \"since_start\": %.3f}\n",
+                report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95),
+                studio.session().strokes.size(), now);
+    std::fflush(stdout);
+    report_frames_ = 0;
+    report_start_ = now;
+}
+
+void Script::expect(Studio& studio, const ScriptCommand& c) const {
+    const Session& s = studio.session();
+    const std::string& what = c.words[0];
+    const std::string value = c.words.size() > 1 ? c.words[1] : "";
+    if (what == "strokes") {
+        if (s.strokes.size() != static_cast<std::size_t>(std::atoi(value.c_str())))
+            fail(c, "there are " + std::to_string(s.strokes.size()) + " strokes, not " + value);
+    } else if (what == "model" || what == "no-model") {
+        if ((s.painter != nullptr) != (what == "model")) fail(c, s.painter ? "a model is open" : "no model is open: " + s.message);
+    } else if (what == "kept") {
+        if (!s.last.trouble.empty()) fail(c, s.last.trouble);
+    } else if (what == "message") {
+        if (s.message.find(value) == std::string::npos && s.last.trouble.find(value) == std::string::npos) fail(c, "the message is '" + s.message + "'");
+    } else if (what == "label") {
+        if (!s.ui.find(value)) fail(c, "'" + value + "' is not on the screen");
+    } else {
+        fail(c, "unknown expectation '" + what + "'");
+    }
+}
+
+// True when the command is done; false: again at the next frame.
+bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
+    Session& s = studio.session();
+    const std::string word = c.words.empty() ? "" : c.words[0];
+    if (waiting_since_ < 0) waiting_since_ = now;
+    const double waited = now - waiting_since_;
+    if (c.name == "open") add({.kind = Event::Kind::drop, .text = word}, 0);
+    else if (c.name == "wait-ready") {
+        if (waited > kLongestWait) fail(c, "waited too long");
+        return settled(s) && !s.model_is_new && waited > 0 && frames_ > 1;
+    } else if (c.name == "wait") return waited >= std::atof(word.c_str());
+    else if (c.name == "move") {
+        const ScriptPoint& p = c.points[0];
+        add({.kind = Event::Kind::move, .x = p.relative_x ? s.area.x + p.x * s.area.width : p.x,
+             .y = p.relative_y ? s.area.y + p.y * s.area.height : p.y, .pressure = p.pressure}, kSample);
+    } else if (c.name == "press" || c.name == "release") {
+        Event e = cursor_;
+        e.kind = c.name == "press" ? Event::Kind::press : Event::Kind::release;
+        e.button = button_of(c);
+        add(e, 0.02);
+    } else if (c.name == "stroke") stroke(studio, c);
+    else if (c.name == "key") press_key(word, c.line);
+    else if (c.name == "type") add({.kind = Event::Kind::text, .text = word}, 0.02);
+    else if (c.name == "scroll") {
+        Event e = cursor_;
+        e.kind = Event::Kind::scroll;
+        e.steps = std::atof(word.c_str());
+        add(e, 0.02);
+    } else if (c.name == "click") {
+        const Ui::Place* place = s.ui.find(word);
+        if (!place && waited < kLabelWait) return false;
+        if (!place) fail(c, "'" + word + "' is not on the screen");
+        // Panels that are being laid out anew move: a place counts once it has stayed.
+        if (waited == 0 || place->x != last_place_.x || place->y != last_place_.y) {
+            last_place_ = {place->x, place->y};
+            return false;
+        }
+        click(place->x, place->y);
+    } else if (c.name == "set") studio.set(word, c.words[1]);
+    else if (c.name == "undo") press_key("ctrl+z", c.line);
+    else if (c.name == "redo") press_key("ctrl+shift+z", c.line);
+    else if (c.name == "save") save_as(s, word);
+    else if (c.name == "export") {
+        if (s.painter) s.painter->post(ExportModel{word, true, true});
+    } else if (c.name == "close") {
+        studio.finish();
+        s.recent = recent_projects();
+        s.lost = find_lost_work();
+    } else if (c.name == "screenshot") picture_ = word;
+    else if (c.name == "expect") {
+        if (word == "label" && !s.ui.find(c.words.back()) && waited < kLabelWait) return false;
+        expect(studio, c);
+    }
+    else if (c.name == "pace") {
+        paced_ = word == "on";
+        pace_start_ = now;
+        pace_from_ = clock_;
+    } else if (c.name == "random") random_events(studio, c);
+    else if (c.name == "report") report(studio, now);
+    else if (c.name == "names") {
+        for (const std::string& name : s.ui.names()) std::printf("%s\n", name.c_str());
+    } else if (c.name == "quit") s.quit = true;
+    return true;
+}
+
+void Script::before_frame(Studio& studio, EventQueue& events, double now) {
+    const auto hand_out = [&] {
+        while (!pending_.empty() && (!paced_ || pending_.front().time - pace_from_ <= now - pace_start_)) {
+            Event event = std::move(pending_.front());
+            pending_.pop_front();
+            // Delays are measured on the window's clock.
+            if (paced_) event.time += pace_start_ - pace_from_;
+            events.push_back(std::move(event));
+        }
+    };
+    hand_out();
+    while (next_ < commands_.size() && pending_.empty() && events.empty() && picture_.empty()) {
+        const bool done = perform(studio, commands_[next_], now);
+        if (!done) break;
+        ++next_;
+        waiting_since_ = -1;
+        if (paced_ && !pending_.empty()) {
+            pace_start_ = now;
+            pace_from_ = pending_.front().time;
+        }
+        hand_out();
+        // What was done is seen before the next command looks.
+        break;
+    }
+}
+
+void Script::after_frame(int width, int height, double) {
+    ++frames_;
+    ++report_frames_;
+    if (picture_.empty()) return;
+    const std::vector<std::uint8_t> rgb = render::read_pixels(0, 0, width, height);
+    io::write_image(picture_, io::view_of(width, height, 3, rgb.data()));
+    picture_.clear();
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,155 @@
+#include "app/session.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "core/files.h"
+#include "core/units.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::app {
+namespace {
+
+bool is_sample(const Session& s, const fs::path& path) {
+    return std::find(s.samples.begin(), s.samples.end(), path) != s.samples.end();
+}
+
+std::unique_ptr<Painter> start_painter(Session& s, Painter::Work work) {
+    const fs::path project = work.keeper.path();
+    s.note.write(project, work.source);
+    if (!is_unnamed(project)) remember_project(project);
+    return std::make_unique<Painter>(std::move(work));
+}
+
+}  // namespace
+
+void say(Session& s, std::string message) {
+    s.message = std::move(message);
+    s.message_time = 0;
+}
+
+void open_path(Session& s, const fs::path& path) {
+    s.pictures.rest();
+    s.inspected.reset();
+    s.files.close();
+    std::error_code ec;
+    if (fs::is_regular_file(path, ec) && (path.extension() == ".tuft" || io::is_project(path)))
+        s.opening.load(path, s.note.new_project(path.stem().string()));
+    else
+        s.opening.inspect(path);
+}
+
+void accept_inspected(Session& s) {
+    if (!s.inspected) return;
+    const fs::path project = s.note.new_project(s.inspected->path.stem().string());
+    s.opening.prepare(std::move(*s.inspected), s.open_options, project);
+    s.inspected.reset();
+}
+
+void close_model(Session& s) {
+    if (!s.painter) return;
+    const bool empty = s.strokes.empty() && s.painter->idle();
+    const fs::path project = s.last.project;
+    s.painter.reset();  // finishes and keeps what is in work
+    s.strokes.clear();
+    s.selected = 0;
+    s.tuft = {};
+    if (empty && is_unnamed(project)) {
+        std::error_code ec;
+        fs::remove(project, ec);
+    }
+    if (empty || !is_unnamed(project)) s.note.clear();
+}
+
+void poll_session(Session& s) {
+    Opening::Result result = s.opening.poll();
+    if (!result.error.empty()) say(s, result.error);
+    if (result.inspected) {
+        s.inspected = std::move(result.inspected);
+        s.open_options.unit = s.inspected->summary.unit.unit;
+        if (s.inspected->unit_fixed) s.open_options.unit = "m";
+        s.open_options.atlas_size = 2048;
+        if (is_sample(s, s.inspected->path)) accept_inspected(s);
+    }
+    if (result.work) {
+        // Unnamed work that is left for other work is offered again at the next start.
+        if (s.painter && !s.strokes.empty() && is_unnamed(s.last.project)) remember_project(s.last.project);
+        close_model(s);
+        s.painter = start_painter(s, std::move(*result.work));
+        s.model_is_new = true;
+        s.symmetry.centre = s.painter->model().mesh->bounds.centre();
+        say(s, "");
+    }
+    if (s.painter) {
+        Update u = s.painter->take();
+        if (u.strokes) s.strokes = std::move(*u.strokes);
+        for (std::string& message : u.messages) {
+            if (message.starts_with("Saved")) {
+                remember_project(u.project);
+                s.recent = recent_projects();
+                s.note.write(u.project, s.painter->source());
+            }
+            say(s, std::move(message));
+        }
+        u.messages.clear();
+        // The scene takes the tiles.
+        std::vector<render::TilePixels> tiles = std::move(s.last.tiles);
+        tiles.insert(tiles.end(), u.tiles.begin(), u.tiles.end());
+        u.tiles = std::move(tiles);
+        if (!u.tuft) u.tuft = std::move(s.last.tuft);
+        s.last = std::move(u);
+    }
+}
+
+bool settled(const Session& s) {
+    return !s.opening.running() && (!s.painter || s.painter->idle()) && !s.hand_down;
+}
+
+void save_as(Session& s, const fs::path& path) {
+    if (s.painter) s.painter->post(SaveProject{path});
+}
+
+Vec4f section_plane(const Session& s) {
+    if (!s.view.section || !s.painter) return Vec4f(0);
+    const Box& b = s.painter->model().mesh->bounds;
+    Vec3 normal(0);
+    normal[s.view.section_axis] = s.view.section_axis == 1 ? -1 : 1;
+    const int k = s.view.section_axis;
+    const double margin = 1e-3 * b.diagonal();
+    const double at = normal[k] > 0 ? b.lo[k] - margin + s.view.section_at * (b.size()[k] + 2 * margin)
+                                    : b.hi[k] + margin - s.view.section_at * (b.size()[k] + 2 * margin);
+    return Vec4f(Vec4(normal, -normal[k] * at));
+}
+
+std::string project_name(const Session& s) {
+    if (!s.painter) return "";
+    return is_unnamed(s.last.project) ? fs::path(s.painter->source()).stem().string() : s.last.project.stem().string();
+}
+
+void load_settings(Session& s) {
+    std::ifstream in(state_folder() / "settings");
+    for (std::string key, value; in >> key >> value;) {
+        if (key == "language") s.wanted.language = value == "chinese" ? Language::chinese : Language::english;
+        else if (key == "theme") s.wanted.theme = value == "light" ? Theme::light : Theme::dark;
+        else if (key == "scale") s.wanted.scale = std::clamp(static_cast<float>(std::atof(value.c_str())), 0.75f, 3.0f);
+        else if (key == "left_handed") s.wanted.left_handed = value == "1";
+        else if (key == "keymap") s.keymap = value == "maya" ? Keymap::maya : Keymap::blender;
+    }
+}
+
+void store_settings(const Session& s) {
+    std::ostringstream out;
+    out << "language " << (s.wanted.language == Language::chinese ? "chinese" : "english") << "\ntheme "
+        << (s.wanted.theme == Theme::light ? "light" : "dark") << "\nscale " << s.wanted.scale << "\nleft_handed "
+        << s.wanted.left_handed << "\nkeymap " << (s.keymap == Keymap::maya ? "maya" : "blender") << '\n';
+    const std::string text = out.str();
+    try {
+        write_file(state_folder() / "settings", text.data(), text.size());
+    } catch (const Error&) {
+        // They hold for this run then.
+    }
+}
+
+}  // namespace tuft::app

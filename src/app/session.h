@@ -1,0 +1,108 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/file_dialog.h"
+#include "app/hand.h"
+#include "app/opening.h"
+#include "app/painter.h"
+#include "app/pictures.h"
+#include "app/state_folder.h"
+#include "app/ui.h"
+#include "app/viewport.h"
+#include "render/gl_scene.h"
+
+namespace tuft::app {
+
+enum class ModelView { glaze, clay, flat, height, texels, charts, stretch };
+enum class Tool { brush, line };
+enum class Keymap { blender, maya };
+
+/// How the model is looked at.
+struct ViewState {
+    Orbit orbit;
+    ModelView shown = ModelView::glaze;
+    render::LightRig rig = render::LightRig::studio;
+    bool section = false;         ///< cut open
+    int section_axis = 1;         ///< 0 x, 1 y, 2 z
+    double section_at = 0.5;      ///< part of the model's size that stays
+    bool see_through = false;     ///< tuft
+    bool inset = true;            ///< side view of the tuft
+};
+
+/// Which part of the window the model has, pixels.
+struct Area {
+    int x = 0, y = 0, width = 1, height = 1;
+};
+
+struct ExportChoice {
+    std::string preset = "Blender";
+    bool relief = true, roughness = true;
+};
+
+/// Everything the window knows, as plain data; panels read and change it.
+struct Session {
+    Ui ui;
+    UiSettings wanted;                     ///< taken over between two frames
+    bool restyle = false;
+    Keymap keymap = Keymap::blender;
+
+    Opening opening;
+    std::unique_ptr<Painter> painter;
+    std::optional<Inspected> inspected;    ///< waits for the person's yes
+    OpenOptions open_options;
+    bool model_is_new = false;             ///< the scene must take it over
+    SessionNote note;
+    std::vector<LostWork> lost;
+    std::vector<std::filesystem::path> samples, recent;
+    Pictures pictures;
+
+    ViewState view;
+    Area area;
+    Tool tool = Tool::brush;
+    std::vector<std::string> brushes, inks, substrates;
+    std::string brush = "wolf-medium", ink = "carbon";
+    HandSettings hand;
+    stroke::Symmetry symmetry;
+    bool hand_down = false;
+
+    std::vector<StrokeLine> strokes;
+    std::uint64_t selected = 0;
+    Update last;                           ///< without tiles and messages
+    brush::TuftState tuft;                 ///< drawn: pressed, or hovering
+    double depth = 0;                      ///< metres of the unbent tip below the surface
+    bool pressed = false;
+
+    FileDialog files;
+    ExportChoice export_choice;
+    bool show_export = false, show_settings = false, show_keys = false;
+    std::string message;
+    double message_time = 0;
+    bool quit = false;
+};
+
+void say(Session& s, std::string message);
+
+/// Opens a model or a project; the work in hand is kept where it is.
+void open_path(Session& s, const std::filesystem::path& path);
+/// Goes on from the dialog of a model that was looked at.
+void accept_inspected(Session& s);
+/// Takes over what threads have finished.
+void poll_session(Session& s);
+/// Nothing runs in the background and nothing waits.
+bool settled(const Session& s);
+void close_model(Session& s);
+void save_as(Session& s, const std::filesystem::path& path);
+/// Where the model's cut plane lies; zero when it is not cut.
+Vec4f section_plane(const Session& s);
+/// What the window's title and status say about the project.
+std::string project_name(const Session& s);
+
+void load_settings(Session& s);
+void store_settings(const Session& s);
+
+}  // namespace tuft::app

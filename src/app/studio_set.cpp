@@ -1,0 +1,47 @@
+#include <algorithm>
+#include <cstdlib>
+
+#include "app/studio.h"
+#include "core/units.h"
+
+/// Settings by name, for scripts.
+namespace tuft::app {
+
+void Studio::set(const std::string& name, const std::string& value) {
+    Session& s = session_;
+    const double number = std::atof(value.c_str());
+    const bool on = value == "on";
+    const auto one_of = [&](const std::vector<std::string>& names) {
+        const auto at = std::find(names.begin(), names.end(), value);
+        if (at != names.end()) return static_cast<int>(at - names.begin());
+        const std::string near = nearest_name(value, names);
+        throw Error("unknown " + name + " '" + value + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+    };
+    if (name == "brush") s.brush = s.brushes[static_cast<std::size_t>(one_of(s.brushes))];
+    else if (name == "ink") s.ink = s.inks[static_cast<std::size_t>(one_of(s.inks))];
+    else if (name == "shading")
+        s.view.shown = static_cast<ModelView>(one_of({"glaze", "clay", "flat", "height", "texels", "charts", "stretch"}));
+    else if (name == "light") s.view.rig = static_cast<render::LightRig>(one_of({"studio", "window", "raking"}));
+    else if (name == "parallel") s.view.orbit.parallel = on;
+    else if (name == "azimuth") s.view.orbit.azimuth = number * kDegree;
+    else if (name == "elevation") s.view.orbit.elevation = number * kDegree;
+    else if (name == "zoom") s.view.orbit.zoom(number, s.view.orbit.target);
+    else if (name == "pressure") s.hand.pressure = std::clamp(number, 0.02, 1.0);
+    else if (name == "string") s.hand.string = std::max(0.0, number) * kMillimetre;
+    else if (name == "radial") s.symmetry.radial = std::clamp(static_cast<int>(number), 1, 32);
+    else if (name == "mirror") {
+        s.symmetry.mirror_x = value.find('x') != std::string::npos;
+        s.symmetry.mirror_y = value.find('y') != std::string::npos;
+        s.symmetry.mirror_z = value.find('z') != std::string::npos;
+    } else if (name == "tool") s.tool = one_of({"brush", "line"}) ? Tool::line : Tool::brush;
+    else if (name == "section") {
+        s.view.section = number > 0;
+        s.view.section_at = std::clamp(number, 0.02, 1.0);
+    } else if (name == "see-through") s.view.see_through = on;
+    else if (name == "language") s.wanted.language = one_of({"english", "chinese"}) ? Language::chinese : Language::english, s.restyle = true;
+    else if (name == "theme") s.wanted.theme = one_of({"dark", "light"}) ? Theme::light : Theme::dark, s.restyle = true;
+    else if (name == "scale") s.wanted.scale = static_cast<float>(std::clamp(number, 0.75, 3.0)), s.restyle = true;
+    else throw Error("unknown setting '" + name + "'");
+}
+
+}  // namespace tuft::app

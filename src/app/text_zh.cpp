@@ -1,0 +1,82 @@
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "app/ui.h"
+
+/// Chinese texts of the interface. What is not here is shown in English.
+namespace tuft::app {
+namespace {
+
+constexpr std::pair<const char*, const char*> kTexts[] = {
+    {"File", "文件"}, {"Edit", "编辑"}, {"View", "视图"}, {"Help", "帮助"},
+    {"Open...", "打开…"}, {"Save as...", "另存为…"}, {"Export...", "导出…"}, {"Close model", "关闭模型"}, {"Quit", "退出"},
+    {"Undo", "撤销"}, {"Redo", "重做"}, {"Settings...", "设置…"}, {"Settings", "设置"},
+    {"Frame all", "显示全部"}, {"Front", "前"}, {"Back", "后"}, {"Right", "右"}, {"Left", "左"}, {"Top", "上"}, {"Bottom", "下"},
+    {"Parallel projection", "平行投影"}, {"See through the brush", "透视笔头"}, {"Side view of the tuft", "笔头侧视"},
+    {"Glaze", "釉面"}, {"Clay", "泥胎"}, {"Flat colour", "纯色"}, {"Ink height", "墨层高度"}, {"Texel grid", "纹素网格"},
+    {"Charts", "分片"}, {"Stretch", "拉伸"}, {"Studio light", "影棚光"}, {"Window light", "窗光"}, {"Raking light", "侧掠光"},
+    {"How the model is shown", "模型的显示方式"}, {"Raking light shows the relief of the ink", "侧掠光显出墨的起伏"},
+    {"Keys and mouse", "键盘与鼠标"}, {"Brush", "毛笔"}, {"Line", "直线"}, {"Ink", "墨色"}, {"Hand", "手"},
+    {"Paint freely (B)", "自由书写 (B)"}, {"Straight on the screen, from press to release (L)", "屏幕上的直线，按下起，松开止 (L)"},
+    {"Pressure", "笔压"}, {"Speed lightens", "行笔快则轻"}, {"Rest deepens", "驻笔则重"}, {"Stabiliser", "稳笔"},
+    {"Pen softness", "压感曲线"}, {"Lean sideways", "左右倾斜"}, {"Lean away", "前后倾斜"},
+    {"Symmetry", "对称"}, {"Copies round", "绕轴份数"}, {"Look inside", "剖视"}, {"Cut open", "剖开"}, {"What stays", "保留部分"},
+    {"Across", "横向"}, {"Along", "纵向"}, {"From above", "自上"},
+    {"Journal", "笔迹"}, {"Hide", "隐藏"}, {"Show", "显示"}, {"Delete", "删除"}, {"Stop", "停止"},
+    {"Every stroke you paint is listed here, and can be hidden, changed or taken out later.", "每一笔都列在这里，日后可隐藏、更换或删除。"},
+    {"Painting again", "重新绘制"}, {"Exporting", "正在导出"}, {"Force", "力"}, {"Moment", "弯矩"}, {"Depth", "深度"},
+    {"Drop a model or a project anywhere on this window, or open one.", "把模型或项目拖到窗口里，或点打开。"},
+    {"Recent projects", "最近的项目"}, {"Samples", "样品"}, {"Bowl", "碗"}, {"Car", "汽车"}, {"Cylinder", "圆筒"}, {"Plate", "盘"},
+    {"Sheet", "纸"}, {"Sphere", "球"}, {"Thin plate", "薄板"}, {"Torus", "圆环"}, {"Vase", "瓶"},
+    {"Open model", "打开模型"}, {"Opening", "正在打开"}, {"Cancel", "取消"}, {"Size", "尺寸"}, {"Triangles", "三角形"},
+    {"Unit of the file", "文件单位"}, {"the format says so", "由格式规定"}, {"guessed from the size", "按尺寸推测"}, {"guessed", "推测"},
+    {"Texels per side", "每边纹素"}, {"one texel is about %.2f mm", "一个纹素约 %.2f mm"}, {"Painted on", "底材"},
+    {"Checked and repaired", "检查与修复"}, {"The mesh is sound; nothing had to be repaired.", "网格完好，无需修复。"},
+    {"This many texels need more memory than is free.", "内存不足以容纳这么多纹素。"}, {"Unwrap and paint", "展开并绘制"},
+    {"Unfinished work", "未完成的作品"}, {"Go on with it", "继续"}, {"Later", "以后"}, {"Discard", "丢弃"}, {"Model", "模型"}, {"Project", "项目"},
+    {"not named yet", "尚未命名"},
+    {"The program ended before this work was saved under a name. It is complete to the last finished stroke.",
+     "程序在作品命名保存之前结束了。作品完整保留到最后写完的一笔。"},
+    {"Export", "导出"}, {"For", "用于"}, {"Base colour", "颜色"}, {"Roughness", "粗糙度"}, {"Relief of the ink", "墨的起伏"},
+    {"Choose a file...", "选择文件…"}, {"Print proof", "打样"}, {"Web", "网页"},
+    {"Language", "语言"}, {"English", "English"}, {"Chinese", "中文"}, {"Colours", "配色"}, {"Dark", "深色"}, {"Light", "浅色"},
+    {"Size of text and buttons", "文字与按钮大小"}, {"Mouse and hand", "鼠标与手"}, {"As in Blender", "同 Blender"}, {"As in Maya", "同 Maya"},
+    {"Left-handed: tools on the right", "左手：工具放在右侧"}, {"Close", "关闭"},
+    {"Left button", "左键"}, {"Paint", "绘制"}, {"Turn the view", "转动视图"}, {"Move the view", "平移视图"}, {"Nearer and further", "远近"},
+    {"Middle, right, Alt + left", "中键、右键、Alt + 左键"}, {"Shift + middle", "Shift + 中键"}, {"Ctrl + middle, wheel", "Ctrl + 中键、滚轮"},
+    {"Alt + left", "Alt + 左键"}, {"Alt + middle", "Alt + 中键"}, {"Alt + right, wheel", "Alt + 右键、滚轮"}, {"Ctrl + wheel", "Ctrl + 滚轮"},
+    {"Roll the view", "倾转视图"}, {"Frame all, frame what is under the cursor", "显示全部、移到光标处"},
+    {"1 3 7  (Ctrl: from behind)", "1 3 7（Ctrl：反面）"}, {"Front, right, top", "前、右、上"}, {"Parallel or perspective", "平行或透视"},
+    {"Press less, press more", "轻一点、重一点"}, {"Arrow keys   \\", "方向键   \\"}, {"Lean the brush, hold it upright", "倾斜笔杆、扶正"},
+    {"Brush, line", "毛笔、直线"}, {"Undo, redo", "撤销、重做"}, {"Esc while painting", "绘制中按 Esc"}, {"Take the stroke in hand back", "收回这一笔"},
+    {"Open a model or project", "打开模型或项目"}, {"Save project as", "项目另存为"}, {"Export to", "导出到"}, {"Places", "位置"}, {"Home", "主目录"},
+    {"Here", "当前目录"}, {"Up", "上一级"}, {"file name", "文件名"}, {"Open", "打开"}, {"Save", "保存"}, {"Replace", "替换"}, {"Replace it?", "替换原文件？"},
+    {"There is no file of that name.", "没有这个文件。"}, {"Nothing can be written into this folder.", "这个文件夹不能写入。"},
+    {"Nothing here that can be opened.", "这里没有可打开的文件。"}, {"Not kept on disk", "未存到磁盘"},
+    {"Left: paint    Middle or right: turn    Shift+middle: move    Wheel: nearer    F1: all keys",
+     "左键：绘制    中键或右键：转动    Shift+中键：平移    滚轮：远近    F1：全部按键"},
+    {"Left: paint    Alt+left: turn    Alt+middle: move    Alt+right: nearer    F1: all keys",
+     "左键：绘制    Alt+左键：转动    Alt+中键：平移    Alt+右键：远近    F1：全部按键"},
+    {"wolf-small", "小狼毫"}, {"wolf-medium", "中狼毫"}, {"wolf-large", "大狼毫"}, {"goat-small", "小羊毫"}, {"goat-medium", "中羊毫"},
+    {"goat-large", "大羊毫"}, {"mixed-small", "小兼毫"}, {"mixed-medium", "中兼毫"}, {"mixed-large", "大兼毫"},
+    {"carbon", "松烟墨"}, {"cinnabar", "朱砂"}, {"cobalt", "青花"}, {"gamboge", "藤黄"}, {"indigo", "花青"}, {"iron-red", "铁红"},
+    {"lamp-black", "油烟墨"}, {"bone-black", "骨黑"}, {"shell-white", "蛤粉"}, {"titanium-white", "钛白"},
+    {"porcelain", "瓷"}, {"bisque", "素坯"}, {"clay", "泥"}, {"primed-metal", "底漆金属"}, {"rice-paper", "宣纸"},
+};
+
+}  // namespace
+
+const char* chinese_text(const char* english) {
+    for (const auto& [from, to] : kTexts)
+        if (std::strcmp(from, english) == 0) return to;
+    return nullptr;
+}
+
+std::string all_chinese_text() {
+    std::string all;
+    for (const auto& [from, to] : kTexts) all += to;
+    return all;
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,169 @@
+#include "app/texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/parallel.h"
+
+namespace tuft::app {
+namespace {
+
+using Rgba = std::array<std::uint8_t, 4>;
+
+// Averages are of light, not of its code values.
+struct SrgbTable {
+    std::array<float, 256> decode{};
+    std::array<std::uint8_t, 4096> encode{};
+    SrgbTable() {
+        for (std::size_t i = 0; i < decode.size(); ++i) decode[i] = ink::srgb_decode(static_cast<float>(i) / 255.0f);
+        for (std::size_t i = 0; i < encode.size(); ++i)
+            encode[i] = static_cast<std::uint8_t>(std::lround(255.0f * ink::srgb_encode(static_cast<float>(i) / 4095.0f)));
+    }
+};
+
+const SrgbTable& srgb() {
+    static const SrgbTable table;
+    return table;
+}
+
+Rgba mean(const Rgba& a, const Rgba& b, const Rgba& c, const Rgba& d) {
+    const SrgbTable& t = srgb();
+    Rgba out;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const float light = 0.25f * (t.decode[a[k]] + t.decode[b[k]] + t.decode[c[k]] + t.decode[d[k]]);
+        out[k] = t.encode[static_cast<std::size_t>(std::lround(4095.0f * light))];
+    }
+    out[3] = static_cast<std::uint8_t>((a[3] + b[3] + c[3] + d[3] + 2) / 4);
+    return out;
+}
+
+void halve(const Rgba* from, Rgba* to, std::size_t side, std::size_t first_row, std::size_t last_row) {
+    for (std::size_t y = first_row; y < last_row; ++y)
+        for (std::size_t x = 0; x < side; ++x) {
+            const Rgba* p = from + 4 * side * y + 2 * x;
+            to[side * y + x] = mean(p[0], p[1], p[2 * side], p[2 * side + 1]);
+        }
+}
+
+}  // namespace
+
+Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
+    const stroke::Model& model = painting.model();
+    report(progress, "picture of the ink", 0);
+    plan_ = ink::plan_gutter(*model.mesh, model.atlas, model.texels);
+    report(progress, "picture of the ink", 0.6);
+    colour_ = ink::compose_srgb8(painting.canvas(), model.texels, painting.substrate(),
+                                 {.gutter = model.atlas.gutter, .seams = &plan_});
+    padded_ = model.texels.tiles_per_side * atlas::kTile;
+    height_.assign(static_cast<std::size_t>(colour_.size) * colour_.size, 0);
+    refresh_heights(painting.canvas().touched_slots(), painting);
+    report(progress, "picture of the ink", 1);
+}
+
+void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
+    const atlas::TexelMap& map = painting.model().texels;
+    const std::size_t size = colour_.size;
+    for (const std::uint32_t slot : slots) {
+        const std::size_t tile = map.tile_of_slot[slot];
+        const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
+        const bool inked = painting.canvas().touched(slot);
+        const ink::TileLook look = inked ? ink::look_of_tile(painting.canvas(), slot, painting.substrate()) : ink::TileLook{};
+        for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
+            const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
+            if (x < size && y < size && map.tiles[slot].piece[t] != atlas::kNoPiece)
+                height_[y * size + x] = static_cast<std::uint8_t>(std::clamp(10.0f * look.height[t], 0.0f, 255.0f));
+        }
+    }
+    for (const std::uint32_t slot : slots)
+        for (std::uint32_t e = plan_.first_of_slot[slot]; e < plan_.first_of_slot[slot + 1]; ++e) {
+            const std::uint32_t entry = plan_.entries[e];
+            float sum = 0;
+            for (std::uint32_t k = plan_.gutter.start[entry]; k < plan_.gutter.start[entry + 1]; ++k) {
+                const atlas::GutterTap& tap = plan_.gutter.taps[k];
+                const std::size_t tile = map.tile_of_slot[tap.texel / atlas::kTileTexels], t = tap.texel % atlas::kTileTexels;
+                const std::size_t x = tile % map.tiles_per_side * atlas::kTile + t % atlas::kTile;
+                const std::size_t y = tile / map.tiles_per_side * atlas::kTile + t / atlas::kTile;
+                sum += tap.weight * static_cast<float>(height_[y * size + x]);
+            }
+            height_[plan_.gutter.texels[entry]] = static_cast<std::uint8_t>(std::clamp(sum, 0.0f, 255.0f));
+        }
+}
+
+render::TilePixels Texture::tile(std::uint32_t index) const {
+    render::TilePixels out;
+    out.tile = index;
+    const std::size_t per_side = padded_ / atlas::kTile, size = colour_.size;
+    const std::size_t x0 = index % per_side * atlas::kTile, y0 = index / per_side * atlas::kTile;
+    for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
+        const std::size_t x = std::min(size - 1, x0 + t % atlas::kTile), y = std::min(size - 1, y0 + t / atlas::kTile);
+        const std::uint8_t* rgb = &colour_.texels[3 * (y * size + x)];
+        out.rgba[t] = {rgb[0], rgb[1], rgb[2], height_[y * size + x]};
+    }
+    for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
+        const std::size_t side = static_cast<std::size_t>(atlas::kTile) >> level;
+        halve(&out.rgba[static_cast<std::size_t>(render::TilePixels::kStart[level - 1])],
+              &out.rgba[static_cast<std::size_t>(render::TilePixels::kStart[level])], side, 0, side);
+    }
+    return out;
+}
+
+render::MapPixels Texture::pixels() const {
+    render::MapPixels map;
+    map.size = padded_;
+    const std::size_t size = colour_.size, padded = padded_;
+    map.levels[0].resize(padded * padded);
+    parallel_for(padded, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y)
+            for (std::size_t x = 0; x < padded; ++x) {
+                const std::size_t at = std::min(size - 1, y) * size + std::min(size - 1, x);
+                map.levels[0][y * padded + x] = {colour_.texels[3 * at], colour_.texels[3 * at + 1],
+                                                 colour_.texels[3 * at + 2], height_[at]};
+            }
+    });
+    for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
+        const std::size_t side = padded >> level;
+        map.levels[level].resize(side * side);
+        parallel_for(side, 64, [&](std::size_t begin, std::size_t end) {
+            halve(map.levels[level - 1].data(), map.levels[level].data(), side, begin, end);
+        });
+    }
+    return map;
+}
+
+std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
+    std::vector<render::TilePixels> tiles;
+    if (slots.empty()) return tiles;
+    const stroke::Model& model = painting.model();
+    ink::refresh_srgb8(colour_, slots, painting.canvas(), model.texels, painting.substrate(),
+                       {.gutter = model.atlas.gutter, .seams = &plan_});
+    refresh_heights(slots, painting);
+    std::set<std::uint32_t> changed;
+    for (const std::uint32_t slot : slots) {
+        changed.insert(model.texels.tile_of_slot[slot]);
+        for (std::uint32_t e = plan_.first_of_slot[slot]; e < plan_.first_of_slot[slot + 1]; ++e) {
+            const std::uint32_t texel = plan_.gutter.texels[plan_.entries[e]];
+            changed.insert(texel / colour_.size / atlas::kTile * model.texels.tiles_per_side +
+                           texel % colour_.size / atlas::kTile);
+        }
+    }
+    for (const std::uint32_t index : changed) {
+        tiles.push_back(tile(index));
+        const std::uint32_t slot = model.texels.slot_of_tile[index];
+        if (slot == kNone) continue;
+        render::TilePixels& t = tiles.back();
+        t.lo = Vec3f(1e30f);
+        t.hi = Vec3f(-1e30f);
+        for (int k = 0; k < atlas::kTileTexels; ++k) {
+            if (model.texels.tiles[slot].piece[static_cast<std::size_t>(k)] == atlas::kNoPiece) continue;
+            t.lo = glm::min(t.lo, model.texels.position(slot, k));
+            t.hi = glm::max(t.hi, model.texels.position(slot, k));
+        }
+        const Vec3f margin(static_cast<float>(2 * model.texels.texel_size));
+        t.lo -= margin;
+        t.hi += margin;
+    }
+    return tiles;
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+struct ImFont;
+
+namespace tuft::app {
+
+enum class Language { english, chinese };
+enum class Theme { dark, light };
+
+struct UiSettings {
+    Language language = Language::english;
+    Theme theme = Theme::dark;
+    float scale = 1;              ///< of all sizes
+    bool left_handed = false;     ///< tools on the right
+};
+
+/// Widgets in the house's look, with translated texts and hints. They are named by their
+/// English text; where each was drawn is kept, so that a script can find it.
+class Ui {
+  public:
+    /// Makes fonts and colours. Returns what could not be had, "" if nothing.
+    std::string prepare(const UiSettings& settings);
+    const UiSettings& settings() const { return settings_; }
+
+    /// The text in the chosen language.
+    const char* tr(const char* english) const;
+    /// Pixels of a length given for a scale of 1.
+    float px(float length) const { return length * settings_.scale; }
+
+    void begin_frame();
+    bool button(const char* label, const char* hint = nullptr, float width = 0, bool enabled = true);
+    bool primary_button(const char* label, float width = 0, bool enabled = true);
+    bool toggle(const char* label, bool& value, const char* hint = nullptr);
+    bool choice(const char* label, bool chosen, const char* hint = nullptr, float width = 0);
+    bool slider(const char* label, double& value, double lo, double hi, const char* format, const char* hint = nullptr,
+                double unit = 1);
+    bool combo(const char* label, std::string& value, const std::vector<std::string>& names, float width = 0);
+    bool menu_item(const char* label, const char* shortcut = nullptr, bool chosen = false, bool enabled = true);
+    bool begin_menu(const char* label);
+    void heading(const char* text);
+    void hint(const char* text);
+    void wrapped(const std::string& text);
+    /// Small grey text.
+    void note(const std::string& text);
+
+    /// Remembers where the last item is, under a name.
+    void mark(const std::string& name);
+    struct Place {
+        double x = 0, y = 0;      ///< pixels, centre
+    };
+    /// Where the widget of that name was in the last frame; nullptr: it was not drawn.
+    const Place* find(const std::string& name) const;
+    std::vector<std::string> names() const;
+
+    ImFont* large = nullptr;
+    unsigned accent = 0, faint = 0, strong = 0;  ///< ImU32 colours of the theme
+
+  private:
+    std::string id(const char* label) const;
+    void style();
+
+    UiSettings settings_;
+    std::map<std::string, Place> places_;
+};
+
+/// Chinese for an English text of the interface, nullptr when there is none.
+const char* chinese_text(const char* english);
+/// All Chinese texts in a row, for the font.
+std::string all_chinese_text();
+
+}  // namespace tuft::app

@@ -1,0 +1,103 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/panels.h"
+
+namespace tuft::app {
+namespace {
+
+ImVec2 on_screen(const Session& s, const render::GlCamera& c, const Vec3& p) {
+    const Vec3 at = render::picture_point(c, p);
+    return {static_cast<float>(at.x + s.area.x), static_cast<float>(at.y + s.area.y)};
+}
+
+// Outline of the hair that presses on the surface, laid onto it.
+void contact_outline(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    const mesh::SurfaceQuery& query = *s.painter->model().query;
+    for (const brush::Branch& branch : s.tuft.branches) {
+        std::vector<ImVec2> left, right;
+        for (const brush::Section& section : branch.sections) {
+            if (section.pressure <= 0) continue;
+            const Vec3 across = std::abs(section.a) > std::abs(section.b) ? section.a * section.e : section.b * section.m;
+            for (const double side : {1.0, -1.0}) {
+                const auto on = query.closest_point(section.centre + side * across, 0.02);
+                if (on) (side > 0 ? left : right).push_back(on_screen(s, c, on->position));
+            }
+        }
+        if (left.size() < 2) continue;
+        left.insert(left.end(), right.rbegin(), right.rend());
+        draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(255, 176, 32, 200), ImDrawFlags_Closed, s.ui.px(1.5f));
+    }
+}
+
+// Ring on the surface below a hovering tuft, as wide as its belly.
+void hover_ring(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    const brush::Section &tip = s.tuft.branches.front().sections.front(), &root = s.tuft.branches.front().sections.back();
+    const Vec3 axis = glm::normalize(tip.centre - root.centre);
+    const auto hit = s.painter->model().query->ray(root.centre, axis, 0, 0.2);
+    if (!hit) return;
+    const Frame f = make_frame(hit->position, hit->normal);
+    const double radius = 0.5 * std::max(root.a, root.b);
+    std::vector<ImVec2> ring;
+    for (int i = 0; i < 40; ++i) {
+        const double a = 2 * std::numbers::pi * i / 40;
+        ring.push_back(on_screen(s, c, f.origin + radius * (std::cos(a) * f.t + std::sin(a) * f.b)));
+    }
+    draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(255, 255, 255, 190), ImDrawFlags_Closed, s.ui.px(3));
+    draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(30, 30, 30, 220), ImDrawFlags_Closed, s.ui.px(1.3f));
+}
+
+void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    const float size = s.ui.px(26);
+    const ImVec2 origin(static_cast<float>(s.area.x + s.area.width) - s.ui.px(44), static_cast<float>(s.area.y) + s.ui.px(44));
+    struct Arm {
+        Vec3 direction;
+        unsigned colour;
+        const char* name;
+    };
+    Arm arms[] = {{{1, 0, 0}, IM_COL32(226, 92, 84, 255), "X"}, {{0, 1, 0}, IM_COL32(118, 178, 72, 255), "Y"},
+                  {{0, 0, 1}, IM_COL32(86, 140, 226, 255), "Z"}};
+    std::sort(std::begin(arms), std::end(arms), [&](const Arm& a, const Arm& b) {
+        return glm::dot(a.direction, c.forward) > glm::dot(b.direction, c.forward);
+    });
+    for (const Arm& arm : arms) {
+        const ImVec2 end(origin.x + size * static_cast<float>(glm::dot(arm.direction, c.right)),
+                         origin.y - size * static_cast<float>(glm::dot(arm.direction, c.up)));
+        draw->AddLine(origin, end, arm.colour, s.ui.px(2));
+        draw->AddCircleFilled(end, s.ui.px(8), arm.colour);
+        const ImVec2 text = ImGui::CalcTextSize(arm.name);
+        draw->AddText(ImGui::GetFont(), ImGui::GetFontSize() * 0.8f, ImVec2(end.x - 0.4f * text.x, end.y - 0.4f * text.y), IM_COL32(20, 20, 20, 255), arm.name);
+    }
+}
+
+// A bar of a round length for the scale at the model's middle.
+void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    const double pixel = render::metres_per_pixel(c, s.view.orbit.target);
+    const double want = 110.0 * static_cast<double>(s.ui.settings().scale) * pixel * 1e3;  // mm
+    const double power = std::pow(10, std::floor(std::log10(want)));
+    const double length = want / power >= 5 ? 5 * power : want / power >= 2 ? 2 * power : power;
+    const auto width = static_cast<float>(length * 1e-3 / pixel);
+    const float right = static_cast<float>(s.area.x + s.area.width) - s.ui.px(20), y = static_cast<float>(s.area.y + s.area.height) - s.ui.px(20);
+    draw->AddLine(ImVec2(right - width, y), ImVec2(right, y), IM_COL32(235, 235, 235, 230), s.ui.px(2));
+    for (const float x : {right - width, right}) draw->AddLine(ImVec2(x, y - s.ui.px(4)), ImVec2(x, y + s.ui.px(4)), IM_COL32(235, 235, 235, 230), s.ui.px(2));
+    char text[32];
+    std::snprintf(text, sizeof text, length >= 1000 ? "%.0f m" : "%g mm", length >= 1000 ? length / 1000 : length);
+    draw->AddText(ImVec2(right - width, y - s.ui.px(24)), IM_COL32(235, 235, 235, 230), text);
+}
+
+}  // namespace
+
+void view_marks(const Session& s, const render::GlCamera& c) {
+    ImDrawList* draw = ImGui::GetBackgroundDrawList();
+    draw->PushClipRect(ImVec2(static_cast<float>(s.area.x), static_cast<float>(s.area.y)),
+                       ImVec2(static_cast<float>(s.area.x + s.area.width), static_cast<float>(s.area.y + s.area.height)), true);
+    if (!s.tuft.branches.empty()) s.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
+    axis_cross(s, c, draw);
+    scale_bar(s, c, draw);
+    draw->PopClipRect();
+}
+
+}  // namespace tuft::app

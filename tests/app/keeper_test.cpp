@@ -1,0 +1,78 @@
+#include "app/keeper.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "models.h"
+
+namespace tuft::app {
+namespace {
+
+class KeeperTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::signal(SIGXFSZ, SIG_IGN);
+        folder_ = std::filesystem::path(testing::TempDir()) / ("tuft_keeper_" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    void paint(stroke::Painting& painting, Keeper& keeper, double y) {
+        keeper.prepare(painting, "wolf-small", "carbon");
+        stroke::Stroke stroke;
+        stroke.trace.flat = false;
+        stroke.trace.brush = "wolf-small";
+        stroke.trace.ink = "carbon";
+        painting.begin(std::move(stroke));
+        painting.extend(test::poses_above(painting.model(), painting.brush("wolf-small"), 0.02, y));
+        painting.end();
+        keeper.add(painting.journal().strokes().back());
+    }
+    std::filesystem::path folder_;
+};
+
+TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
+    const stroke::Model model = test::shipped_model("sheet.ply", 256);
+    stroke::Painting painting(model);
+    Keeper keeper;
+    const auto path = folder_ / "work.tuft";
+    ASSERT_EQ(keeper.start(path, "sheet.ply", "mm", painting), "");
+    paint(painting, keeper, 0);
+    EXPECT_EQ(keeper.trouble(), "");
+
+    // No file may grow any more, as on a full disk.
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    rlimit full = before;
+    full.rlim_cur = std::filesystem::file_size(path);
+    setrlimit(RLIMIT_FSIZE, &full);
+    for (int i = 1; i <= 6; ++i) paint(painting, keeper, 0.002 * i);
+    const std::string trouble = keeper.trouble();
+    const std::size_t waiting = keeper.waiting();
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_NE(trouble, "");
+    EXPECT_GE(waiting, 1u);
+
+    paint(painting, keeper, 0.02);
+    EXPECT_EQ(keeper.trouble(), "");
+    EXPECT_EQ(keeper.waiting(), 0u);
+    EXPECT_EQ(io::Project::open(path).strokes().size(), painting.journal().strokes().size());
+}
+
+TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
+    const stroke::Model model = test::shipped_model("sheet.ply", 256);
+    stroke::Painting painting(model);
+    Keeper keeper;
+    const auto path = folder_ / "work.tuft";
+    ASSERT_EQ(keeper.start(path, "sheet.ply", "mm", painting), "");
+    EXPECT_NE(keeper.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", "mm", painting), "");
+    EXPECT_EQ(keeper.path(), path);
+    paint(painting, keeper, 0);
+    EXPECT_EQ(keeper.trouble(), "");
+    EXPECT_EQ(io::Project::open(path).strokes().size(), 1u);
+}
+
+}  // namespace
+}  // namespace tuft::app

@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "atlas/texel_map.h"
+#include "io/project.h"
+#include "io/read_model.h"
+
+/// The real program, played by scripts without a display.
+namespace tuft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Ran {
+    int status = -1;
+    std::string out, err;
+};
+
+class StudioProgram : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::path(testing::TempDir()) / ("tuft_studio_" + std::to_string(getpid()) + "_" +
+                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        const Ran probe = studio("quit\n");
+        if (probe.err.find("no OpenGL") != std::string::npos) GTEST_SKIP() << probe.err;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+    static std::string read(const fs::path& file) {
+        std::ifstream in(file, std::ios::binary);
+        std::ostringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
+
+    // Arguments for exec: a shell that sets the surroundings and becomes the program.
+    std::string command(const std::string& script, const std::string& options) {
+        std::ofstream(path("script.txt")) << script;
+        return "cd '" + folder_.string() + "'; export TUFT_DATA='" TUFT_SOURCE "' XDG_STATE_HOME='" + path("state") +
+               "'; unset DISPLAY; exec '" TUFT_STUDIO_PROGRAM "' " + options + " --script '" + path("script.txt") + "' >'" + path(".out") +
+               "' 2>'" + path(".err") + "'";
+    }
+    Ran studio(const std::string& script, const std::string& options = "--headless --size 1000x600") {
+        const int raw = std::system(("bash -c \"" + command(script, options) + "\"").c_str());
+        return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")), read(path(".err"))};
+    }
+    nlohmann::json tuft(const std::string& arguments) {
+        const std::string line = "TUFT_DATA='" TUFT_SOURCE "' '" TUFT_PROGRAM "' " + arguments + " --json >'" + path("tuft.json") + "' 2>/dev/null";
+        EXPECT_EQ(std::system(line.c_str()), 0) << arguments;
+        return nlohmann::json::parse(read(path("tuft.json")));
+    }
+    // Hash of the texels as the studio left them in a project.
+    static std::string stored_hash(const std::string& project) {
+        const io::Project p = io::Project::open(project);
+        const io::ProjectModel model = p.model();
+        const auto saved = p.load_canvas(atlas::build_texel_map(model.mesh, model.atlas).n_slots());
+        if (!saved) return "";
+        char text[20];
+        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(saved->canvas.hash()));
+        return text;
+    }
+
+    fs::path folder_;
+};
+
+const std::string kBowl = "open " TUFT_SOURCE "/models/bowl.ply\nwait-ready\nexpect model\n";
+const std::string kTwoStrokes =
+    "stroke 46%,58% 50%,61% 54%,58%\nset brush goat-medium\nset ink cinnabar\nstroke 44%,57%,0.2 47%,60%,0.6 51%,58%,0.1\nwait-ready\nexpect strokes 2\n";
+
+TEST_F(StudioProgram, PaintsToTheBitWhatAReplayPaints) {
+    const Ran ran = studio(kBowl + kTwoStrokes +
+                           "stroke 50%,63% 52%,58%\nwait-ready\nexpect strokes 3\nundo\nwait-ready\nexpect strokes 2\nredo\nwait-ready\n"
+                           "expect strokes 3\nundo\nundo\nredo\nwait-ready\nexpect strokes 2\nsave work.tuft\nexport work.glb\nwait-ready\n"
+                           "expect kept\nexpect message Exported\nscreenshot work.png\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const nlohmann::json replayed = tuft("replay '" + path("work.tuft") + "'");
+    EXPECT_EQ(replayed["strokes"], 2);
+    EXPECT_EQ(replayed["canvas_hash"], stored_hash(path("work.tuft")));
+    EXPECT_NE(replayed["canvas_hash"], "0000000000000000");
+    EXPECT_EQ(io::read_model(path("work.glb")).n_polygons(), io::Project::open(path("work.tuft")).model().mesh.n_triangles());
+    EXPECT_GT(fs::file_size(path("work.png")), 10'000u);
+}
+
+TEST_F(StudioProgram, SymmetricCopiesAreStrokesOfTheirOwnAndUndoneTogether) {
+    const Ran ran = studio(kBowl + "set radial 3\nset mirror x\nstroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 6\n"
+                                   "undo\nwait-ready\nexpect strokes 0\nredo\nwait-ready\nexpect strokes 6\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
+}
+
+TEST_F(StudioProgram, AJournalThatWasChangedReplaysToTheSameTexels) {
+    const Ran ran = studio(kBowl + kTwoStrokes +
+                           "stroke 50%,63% 52%,58%\nwait-ready\nclick \"stroke 2\"\nclick Hide\nwait-ready\nclick Show\nwait-ready\n"
+                           "click \"Change ink\"\nwait 0.3\nclick indigo\nwait-ready\nclick \"stroke 2\"\nclick \"stroke 1\"\nclick Delete\nwait-ready\n"
+                           "expect strokes 2\nexpect kept\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = io::Project::open(path("work.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 2u);
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
+}
+
+TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
+    const std::string script = kBowl + kTwoStrokes + "screenshot ready.png\nmove 47%,58%\npress\nmove 50%,59%\nwait 100\n";
+    const std::string line = command(script, "--headless --size 1000x600");
+    const pid_t child = fork();
+    if (child == 0) {
+        execl("/bin/bash", "bash", "-c", line.c_str(), nullptr);
+        _exit(127);
+    }
+    for (int i = 0; i < 600 && !fs::exists(path("ready.png")); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    ASSERT_TRUE(fs::exists(path("ready.png"))) << read(path(".err"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    const Ran again = studio("wait 0.2\nexpect label \"Go on with it\"\nclick \"Go on with it\"\nwait 0.2\nwait-ready\nexpect strokes 2\n"
+                             "stroke 50%,63% 52%,58%\nwait-ready\nexpect strokes 3\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
+    // Saved under a name: nothing is offered any more.
+    const Ran third = studio("wait 0.2\nexpect label \"Go on with it\"\n");
+    EXPECT_EQ(third.status, 1);
+}
+
+TEST_F(StudioProgram, RandomEventsNeitherCrashItNorLoseAStroke) {
+    const Ran ran = studio(kBowl + "random 1000 11\nwait-ready\nexpect model\nexpect kept\nreport\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = nlohmann::json::parse(ran.out)["strokes"].get<std::size_t>();
+    ASSERT_GT(strokes, 0u);
+    for (const auto& entry : fs::directory_iterator(path("state") + "/tuft/sessions"))
+        if (entry.path().extension() == ".tuft") {
+            EXPECT_EQ(io::Project::open(entry.path()).strokes().size(), strokes);
+        }
+}
+
+TEST_F(StudioProgram, BadFilesAndFoldersAreAMessageAndWorkGoesOn) {
+    std::ofstream(path("bad.ply")) << "ply\nformat ascii 1.0\nelement vertex 5\nend_header\n";
+    std::ofstream(path("bad.tuft")) << "not a project";
+    const Ran ran = studio("open bad.ply\nwait-ready\nexpect no-model\nexpect message bad.ply\nopen missing.obj\nwait-ready\nexpect message missing.obj\n"
+                           "open bad.tuft\nwait-ready\nexpect message bad.tuft\n" +
+                           kBowl + "open bad.ply\nwait-ready\nexpect model\nsave /no/such/folder/x.tuft\nwait-ready\nexpect message /no/such\n"
+                                   "stroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 1\nexpect kept\nexport out.xyz\nwait-ready\nexpect message out.xyz\n");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
+TEST_F(StudioProgram, WrongUseIsOneLineAndStatusTwo) {
+    for (const std::string options : {"--frobnicate", "--size banana", "a.ply b.ply"}) {
+        const Ran ran = studio("quit\n", options);
+        EXPECT_EQ(ran.status, 2) << options;
+        EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    }
+    const Ran ran = studio("expect model\n");
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_NE(ran.err.find("script.txt:1: no model is open"), std::string::npos) << ran.err;
+}
+
+}  // namespace
+}  // namespace tuft::app

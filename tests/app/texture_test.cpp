@@ -1,0 +1,43 @@
+#include "app/texture.h"
+
+#include <gtest/gtest.h>
+
+#include "models.h"
+
+namespace tuft::app {
+namespace {
+
+TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
+    // 520 is no multiple of the tile: the last row and column are padded.
+    const stroke::Model model = test::shipped_model("bowl.ply", 520);
+    stroke::Painting painting(model);
+    Texture texture(painting);
+    render::MapPixels map = texture.pixels();
+    const std::size_t per_side = map.size / 16;
+    for (int i = 0; i < 3; ++i) {
+        stroke::Stroke stroke;
+        stroke.trace.flat = false;
+        stroke.trace.brush = "wolf-medium";
+        stroke.trace.ink = i == 1 ? "cinnabar" : "carbon";
+        painting.begin(std::move(stroke));
+        painting.extend(test::poses_above(model, painting.brush("wolf-medium"), 0.1, 0.01 * i));
+        painting.end();
+        if (i == 2) painting.undo();
+        const auto slots = painting.take_dirty();
+        for (const render::TilePixels& tile : texture.refresh(slots, painting)) {
+            const std::size_t column = tile.tile % per_side, row = tile.tile / per_side;
+            for (std::size_t level = 0; level < render::kTextureLevels; ++level) {
+                const std::size_t side = 16u >> level, stride = map.size >> level;
+                for (std::size_t k = 0; k < side * side; ++k)
+                    map.levels[level][(row * side + k / side) * stride + column * side + k % side] =
+                        tile.rgba[static_cast<std::size_t>(render::TilePixels::kStart[level]) + k];
+            }
+        }
+    }
+    ASSERT_FALSE(painting.canvas().touched_slots().empty());
+    const render::MapPixels whole = Texture(painting).pixels();
+    for (std::size_t level = 0; level < render::kTextureLevels; ++level) EXPECT_EQ(map.levels[level], whole.levels[level]) << level;
+}
+
+}  // namespace
+}  // namespace tuft::app

@@ -1,0 +1,49 @@
+#include "stroke/symmetry.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace tuft::stroke {
+namespace {
+
+const brush::Pose kPose{.position = {0.03, -0.02, 0.05}, .rotation = glm::normalize(Quat(0.8, 0.2, -0.5, 0.1)), .time = 1.5};
+
+TEST(Symmetry, GroupsHaveTheirOrder) {
+    EXPECT_EQ(symmetry_copies({}).size(), 0u);
+    EXPECT_EQ(symmetry_copies({.mirror_x = true}).size(), 1u);
+    EXPECT_EQ(symmetry_copies({.mirror_x = true, .mirror_y = true, .mirror_z = true}).size(), 7u);
+    EXPECT_EQ(symmetry_copies({.radial = 5}).size(), 4u);
+    // The dihedral group of the hexagon has twelve elements; with the plane across the axis, 24.
+    EXPECT_EQ(symmetry_copies({.mirror_x = true, .radial = 6}).size(), 11u);
+    EXPECT_EQ(symmetry_copies({.mirror_x = true, .mirror_z = true, .radial = 6}).size(), 23u);
+    EXPECT_EQ(symmetry_copies({.mirror_x = true, .mirror_y = true, .radial = 4}).size(), 7u);
+}
+
+TEST(Symmetry, CopiesKeepDistancesAndTheHoldersAxisGoesAlong) {
+    const Vec3 centre{0.01, 0.02, 0.03};
+    for (const PoseMap& map : symmetry_copies({.mirror_x = true, .mirror_z = true, .radial = 3, .centre = centre})) {
+        const brush::Pose copy = map.pose(kPose);
+        EXPECT_NEAR(glm::distance(copy.position, centre), glm::distance(kPose.position, centre), 1e-15);
+        EXPECT_NEAR(glm::distance(copy.axis(), map.linear * kPose.axis()), 0, 1e-14);
+        EXPECT_NEAR(glm::length(copy.rotation), 1, 1e-15);
+        EXPECT_EQ(copy.time, kPose.time);
+    }
+}
+
+TEST(Symmetry, MirroringTwiceIsNothing) {
+    const PoseMap map = symmetry_copies({.mirror_y = true})[0];
+    const brush::Pose back = map.pose(map.pose(kPose));
+    EXPECT_NEAR(glm::distance(back.position, kPose.position), 0, 1e-16);
+    EXPECT_NEAR(std::abs(glm::dot(back.rotation, kPose.rotation)), 1, 1e-14);
+}
+
+TEST(Symmetry, TheTurnIsRoundTheAxis) {
+    const auto copies = symmetry_copies({.radial = 4, .axis = {0, 0, 1}});
+    const Vec3 p = copies[0].point({1, 0, 7});
+    EXPECT_NEAR(glm::distance(p, Vec3(0, 1, 7)), 0, 1e-15);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
