@@ -53,7 +53,7 @@ void Keeper::prepare(stroke::Painting& painting, const std::string& brush, const
         brushes_[brush] = toml;
         attempt([&] { if (project_) project_->put_brush({brush, toml}); });
     }
-    if (!inks_.contains(ink)) {
+    if (!ink.empty() && !inks_.contains(ink)) {
         const std::string toml = ink::ink_toml(painting.ink(ink));
         ink::Ink parsed = ink::parse_ink(toml, ink);
         parsed.name = ink;

@@ -62,6 +62,7 @@ Update Painter::take() {
     update_.done = out.done;
     update_.busy = out.busy;
     update_.fraction = out.fraction;
+    update_.fullness = out.fullness;
     update_.can_undo = out.can_undo;
     update_.can_redo = out.can_redo;
     update_.trouble = out.trouble;
@@ -100,6 +101,7 @@ void Painter::perform(Command& command) {
     stop_ = false;
     std::visit(Overloaded{[this](BeginStroke& c) { begin(c); }, [this](ExtendStroke& c) { extend(c); },
                           [this](EndStroke&) { end(); },
+                          [this](CareForBrush& c) { care(c); },
                           [this](CancelStroke&) {
                               work_.painting->cancel();
                               publish();
@@ -158,6 +160,8 @@ void Painter::publish(bool strokes_changed) {
     update_.done = asked_;
     update_.busy.clear();
     update_.fraction = 0;
+    const stroke::BrushInHand* held = work_.painting->held(current_.brush);
+    update_.fullness = held ? held->reservoir.fullness() : 1;
     update_.can_undo = painting.journal().can_undo();
     update_.can_redo = painting.journal().can_redo();
     update_.project = work_.keeper.path();
@@ -174,7 +178,23 @@ void Painter::begin(const BeginStroke& command) {
     stroke.trace.flat = false;
     stroke.trace.brush = command.brush;
     stroke.trace.ink = command.ink;
+    if (command.carry) stroke.settings.dip = "carry";
     work_.painting->begin(std::move(stroke));
+}
+
+void Painter::care(const CareForBrush& command) {
+    work_.keeper.prepare(*work_.painting, command.brush, command.ink);
+    stroke::Stroke entry;
+    entry.action = command.action;
+    entry.trace.flat = false;
+    entry.trace.brush = command.brush;
+    if (command.action == stroke::Action::dip) entry.trace.ink = command.ink;
+    entry.settings.dip = "carry";
+    work_.painting->paint(std::move(entry));
+    work_.keeper.add(work_.painting->journal().strokes().back());
+    groups_.push_back(1);
+    undone_groups_.clear();
+    publish(true);
 }
 
 void Painter::extend(const ExtendStroke& command) {
@@ -260,7 +280,7 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
     painting->use_substrate(old.substrate());
     for (const stroke::Stroke& s : strokes) {
         painting->use_brush(old.brush(s.trace.brush));
-        painting->use_ink(old.ink(s.trace.ink));
+        if (!s.trace.ink.empty()) painting->use_ink(old.ink(s.trace.ink));
     }
     painting->replay(std::move(strokes), progress("Painting again"));
     for (const std::uint32_t slot : old.canvas().touched_slots()) painting->canvas().mark_dirty(slot);
@@ -273,8 +293,9 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
 void Painter::export_model(const ExportModel& command) {
     const stroke::Model& model = *work_.model;
     progress("Exporting")("", 0);
-    io::ModelMaps maps = io::make_maps(work_.painting->canvas(), model.texels, work_.painting->substrate(),
-                                       {.gutter = model.atlas.gutter, .progress = progress("Exporting")});
+    ink::ComposeOptions compose = work_.painting->compose_options();
+    compose.progress = progress("Exporting");
+    io::ModelMaps maps = io::make_maps(work_.painting->canvas(), model.texels, work_.painting->substrate(), compose);
     if (!command.height) maps.height = {};
     if (!command.orm) maps.orm = {};
     io::export_model(command.path, *model.mesh, model.atlas, maps,
@@ -284,7 +305,7 @@ void Painter::export_model(const ExportModel& command) {
 }
 
 StrokeLine stroke_line(const stroke::Stroke& stroke) {
-    StrokeLine line{.id = stroke.id, .brush = stroke.trace.brush, .ink = stroke.trace.ink, .label = stroke.trace.label,
+    StrokeLine line{.id = stroke.id, .action = stroke.action, .brush = stroke.trace.brush, .ink = stroke.trace.ink, .label = stroke.trace.label,
                     .hidden = stroke.hidden};
     const auto& samples = stroke.trace.samples;
     if (samples.empty()) return line;

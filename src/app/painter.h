@@ -23,6 +23,12 @@ namespace tuft::app {
 struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
+    bool carry = false;           ///< goes on with the hair and ink of the stroke before
+};
+/// Dips, rinses or combs a brush.
+struct CareForBrush {
+    stroke::Action action = stroke::Action::dip;
+    std::string brush, ink;
 };
 struct ExtendStroke {
     std::vector<brush::Pose> poses;
@@ -46,12 +52,13 @@ struct EditStroke {
     std::optional<std::string> brush, ink;
     bool remove = false;
 };
-using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, UndoStroke, RedoStroke, SaveProject,
+using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, CareForBrush, UndoStroke, RedoStroke, SaveProject,
                              ExportModel, EditStroke>;
 
 /// A stroke for the list.
 struct StrokeLine {
     std::uint64_t id = 0;
+    stroke::Action action = stroke::Action::stroke;
     std::string brush, ink, label;
     bool hidden = false;
     double length = 0;            ///< metres of the hand's way
@@ -68,6 +75,7 @@ struct Update {
     std::size_t waiting = 0;      ///< commands not done yet
     std::string busy;             ///< long work being done, ""
     double fraction = 0;          ///< of it
+    double fullness = 1;          ///< ink in the brush last painted with, of its capacity
     bool can_undo = false, can_redo = false;
     std::string trouble;          ///< why work is not being kept, ""
     std::filesystem::path project;
@@ -108,6 +116,7 @@ class Painter {
     void begin(const BeginStroke& command);
     void extend(const ExtendStroke& command);
     void end();
+    void care(const CareForBrush& command);
     void undo();
     void redo();
     void edit(const EditStroke& command);

@@ -27,6 +27,7 @@ void edit_row(Session& s, const StrokeLine& line) {
     ImGui::SameLine();
     if (ui.button("Delete", "Takes the stroke away and paints the others again", half))
         s.painter->post(EditStroke{.id = line.id, .remove = true});
+    if (line.action != stroke::Action::stroke) return;
     std::string brush = line.brush, ink = line.ink;
     if (ui.combo("Change brush", brush, s.brushes)) s.painter->post(EditStroke{.id = line.id, .brush = brush});
     if (ui.combo("Change ink", ink, s.inks)) s.painter->post(EditStroke{.id = line.id, .ink = ink});
@@ -41,11 +42,13 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     s.ui.mark("stroke " + std::to_string(number));
     draw_way(line, ImVec2(at.x, at.y), size);
     char text[96];
-    std::snprintf(text, sizeof text, "%zu   %.0f mm", number, line.length * 1e3);
+    static const char* actions[] = {"", "Dip", "Rinse", "Comb"};
+    if (line.action != stroke::Action::stroke) std::snprintf(text, sizeof text, "%zu   %s", number, s.ui.tr(actions[static_cast<int>(line.action)]));
+    else std::snprintf(text, sizeof text, "%zu   %.0f mm", number, line.length * 1e3);
     const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);
-    const std::string what = std::string(s.ui.tr(line.brush.c_str())) + " \xc2\xb7 " + s.ui.tr(line.ink.c_str());
+    const std::string what = std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
     draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), s.ui.faint, what.c_str());
     if (ImGui::IsItemHovered() && !line.label.empty()) ImGui::SetTooltip("%s", line.label.c_str());
     if (chosen) edit_row(s, line);

@@ -103,6 +103,22 @@ void ink_palette(Session& s) {
     ImGui::TextUnformatted(s.ui.tr(s.ink.c_str()));
 }
 
+// What is done with a brush between strokes.
+void care_section(Session& s) {
+    Ui& ui = s.ui;
+    ui.toggle("Ink lasts from stroke to stroke", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
+    if (!s.carry) return;
+    const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
+    const auto act = [&](stroke::Action action) { s.painter->post(CareForBrush{action, s.brush, s.ink}); };
+    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", third)) act(stroke::Action::dip);
+    ImGui::SameLine();
+    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", third)) act(stroke::Action::rinse);
+    ImGui::SameLine();
+    if (ui.button("Comb", "Hair straight and together, the ink stays", third)) act(stroke::Action::reshape);
+    ImGui::ProgressBar(static_cast<float>(s.last.fullness), ImVec2(-1, ui.px(6)), "");
+    ui.hint("Ink left in the brush");
+}
+
 void hand_section(Session& s) {
     Ui& ui = s.ui;
     ui.heading("Hand");
@@ -180,6 +196,7 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     if (s.ui.choice("Line", s.tool == Tool::line, "Straight on the screen, from press to release (L)", half)) s.tool = Tool::line;
     brush_rack(s);
     ink_palette(s);
+    care_section(s);
     hand_section(s);
     symmetry_section(s);
     section_section(s);

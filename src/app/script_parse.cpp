@@ -21,7 +21,8 @@
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
 ///   set NAME VALUE          brush, ink, shading, light, parallel, azimuth, elevation, zoom,
-///                           pressure, string, radial, mirror, language, theme, scale, section
+///                           pressure, string, radial, mirror, carry, tool, language, theme, scale, section,
+///                           see-through
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL

@@ -68,6 +68,7 @@ struct Session {
     std::string brush = "wolf-medium", ink = "carbon";
     HandSettings hand;
     stroke::Symmetry symmetry;
+    bool carry = false;                    ///< ink lasts from stroke to stroke
     bool hand_down = false;
 
     std::vector<StrokeLine> strokes;

@@ -27,6 +27,7 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "elevation") s.view.orbit.elevation = number * kDegree;
     else if (name == "zoom") s.view.orbit.zoom(number, s.view.orbit.target);
     else if (name == "pressure") s.hand.pressure = std::clamp(number, 0.02, 1.0);
+    else if (name == "carry") s.carry = on;
     else if (name == "string") s.hand.string = std::max(0.0, number) * kMillimetre;
     else if (name == "radial") s.symmetry.radial = std::clamp(static_cast<int>(number), 1, 32);
     else if (name == "mirror") {

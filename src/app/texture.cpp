@@ -51,10 +51,9 @@ void halve(const Rgba* from, Rgba* to, std::size_t side, std::size_t first_row, 
 Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
     const stroke::Model& model = painting.model();
     report(progress, "picture of the ink", 0);
-    plan_ = ink::plan_gutter(*model.mesh, model.atlas, model.texels);
+    const ink::ComposeOptions options = painting.compose_options();
     report(progress, "picture of the ink", 0.6);
-    colour_ = ink::compose_srgb8(painting.canvas(), model.texels, painting.substrate(),
-                                 {.gutter = model.atlas.gutter, .seams = &plan_});
+    colour_ = ink::compose_srgb8(painting.canvas(), model.texels, painting.substrate(), options);
     padded_ = model.texels.tiles_per_side * atlas::kTile;
     height_.assign(static_cast<std::size_t>(colour_.size) * colour_.size, 0);
     refresh_heights(painting.canvas().touched_slots(), painting);
@@ -63,6 +62,7 @@ Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
 
 void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
     const atlas::TexelMap& map = painting.model().texels;
+    const ink::GutterPlan& plan = *painting.compose_options().seams;
     const std::size_t size = colour_.size;
     for (const std::uint32_t slot : slots) {
         const std::size_t tile = map.tile_of_slot[slot];
@@ -76,17 +76,17 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
         }
     }
     for (const std::uint32_t slot : slots)
-        for (std::uint32_t e = plan_.first_of_slot[slot]; e < plan_.first_of_slot[slot + 1]; ++e) {
-            const std::uint32_t entry = plan_.entries[e];
+        for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
+            const std::uint32_t entry = plan.entries[e];
             float sum = 0;
-            for (std::uint32_t k = plan_.gutter.start[entry]; k < plan_.gutter.start[entry + 1]; ++k) {
-                const atlas::GutterTap& tap = plan_.gutter.taps[k];
+            for (std::uint32_t k = plan.gutter.start[entry]; k < plan.gutter.start[entry + 1]; ++k) {
+                const atlas::GutterTap& tap = plan.gutter.taps[k];
                 const std::size_t tile = map.tile_of_slot[tap.texel / atlas::kTileTexels], t = tap.texel % atlas::kTileTexels;
                 const std::size_t x = tile % map.tiles_per_side * atlas::kTile + t % atlas::kTile;
                 const std::size_t y = tile / map.tiles_per_side * atlas::kTile + t / atlas::kTile;
                 sum += tap.weight * static_cast<float>(height_[y * size + x]);
             }
-            height_[plan_.gutter.texels[entry]] = static_cast<std::uint8_t>(std::clamp(sum, 0.0f, 255.0f));
+            height_[plan.gutter.texels[entry]] = static_cast<std::uint8_t>(std::clamp(sum, 0.0f, 255.0f));
         }
 }
 
@@ -136,13 +136,14 @@ std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> 
     if (slots.empty()) return tiles;
     const stroke::Model& model = painting.model();
     ink::refresh_srgb8(colour_, slots, painting.canvas(), model.texels, painting.substrate(),
-                       {.gutter = model.atlas.gutter, .seams = &plan_});
+                       painting.compose_options());
+    const ink::GutterPlan& plan = *painting.compose_options().seams;
     refresh_heights(slots, painting);
     std::set<std::uint32_t> changed;
     for (const std::uint32_t slot : slots) {
         changed.insert(model.texels.tile_of_slot[slot]);
-        for (std::uint32_t e = plan_.first_of_slot[slot]; e < plan_.first_of_slot[slot + 1]; ++e) {
-            const std::uint32_t texel = plan_.gutter.texels[plan_.entries[e]];
+        for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
+            const std::uint32_t texel = plan.gutter.texels[plan.entries[e]];
             changed.insert(texel / colour_.size / atlas::kTile * model.texels.tiles_per_side +
                            texel % colour_.size / atlas::kTile);
         }

@@ -27,7 +27,6 @@ class Texture {
     render::TilePixels tile(std::uint32_t index) const;
 
     std::uint32_t padded_ = 0;
-    ink::GutterPlan plan_;
     ink::AtlasMap<std::uint8_t> colour_;
     std::vector<std::uint8_t> height_;  ///< [size²]
 };
