@@ -106,7 +106,7 @@ void ink_palette(Session& s) {
 // What is done with a brush between strokes.
 void care_section(Session& s) {
     Ui& ui = s.ui;
-    ui.toggle("Ink lasts from stroke to stroke", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
+    ui.toggle("Carry ink over", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
     if (!s.carry) return;
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     const auto act = [&](stroke::Action action) { s.painter->post(CareForBrush{action, s.brush, s.ink}); };
