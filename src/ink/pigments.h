@@ -63,6 +63,19 @@ struct Substrate {
     float roughness = 0.5f;               ///< glTF perceptual roughness
     float metallic = 0;
     float capacity = 8;  ///< film units that stay on it, all inks together
+
+    /// Part of the light that meets an air boundary above the ink: 1 under a glaze or
+    /// varnish, 0 for a matte surface. See `Interface` (kubelka_munk.h).
+    float interface = 0;
+    float relief = 8e-6f;         ///< ζ: rms height of the surface's grain, metres
+    float relief_length = 60e-6f; ///< correlation length of the grain, metres
+    float absorbency = 0.2f;      ///< part of the water standing on it that it draws in, 1/s
+    float pores = 2;              ///< film units of water that it can hold inside
+    float diffusion = 1e-8f;      ///< D of the wet film, m²/s per film unit of water
+    float threshold = 0.1f;       ///< w_c: film units of water that do not move
+    float edge = 0.5f;            ///< 0–1: how firmly the rim of a wet spot stays where it is,
+                                  ///< which makes its edge darken as it dries
+    float evaporation = 1.0f / 60;  ///< film units of water a second at full wetness
 };
 
 /// The preset `name` from data_folder()/models/inks, or the file when `name` ends in
