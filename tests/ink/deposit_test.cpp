@@ -8,7 +8,6 @@
 
 #include "core/random.h"
 #include "ink/composite.h"
-#include "ink/reservoir.h"
 
 namespace tuft::ink {
 namespace {
@@ -184,95 +183,6 @@ TEST(Deposit, BitsArePinnedForEveryInstructionSet) {
     }
     for (int p = 0; p < 2; ++p)
         for (int t = 0; t < kN; ++t) EXPECT_EQ((*canvas.plane(0, p))[t], w[p][t]) << t;
-}
-
-TEST(Reservoir, DippingFillsUpAndMixes) {
-    Canvas canvas(1);
-    const Mix black = mix_of(canvas, plain("black")),
-              thin = mix_of(canvas, plain("thin", {{"white", 0.5}}));
-    Reservoir tuft = make_reservoir(0.6);
-    EXPECT_NEAR(tuft.capacity, 0.06, 1e-15) << "1 mL is 0.1 film·m²";
-    EXPECT_NEAR(dip(tuft, black), 0.06, 1e-15);
-    take(tuft, 0.03);
-    EXPECT_NEAR(tuft.fullness(), 0.5, 1e-15);
-    EXPECT_NEAR(dip(tuft, thin), 0.03, 1e-15);
-    EXPECT_NEAR(tuft.mix()[0], 0.5, 1e-7);
-    EXPECT_NEAR(tuft.mix()[1], 0.25, 1e-7);
-    EXPECT_NEAR(tuft.water, 0.015, 1e-15);
-    EXPECT_NEAR(rinse(tuft), 0.06, 1e-15);
-    EXPECT_EQ(tuft.remaining(), 0);
-}
-
-TEST(Reservoir, ThePaperRecurrenceIsTheRateLawAtItsOwnSpacing) {
-    double z = 1, sum = 0;
-    const double eta = 0.004;
-    for (int i = 0; i < 1000; ++i) {
-        const double k = 0.2 + 0.6 * uniform(5, i);
-        const double q = paper_quantity(eta, k, z - sum);
-        EXPECT_NEAR(q, supply_quantity(eta, k, z - sum, 0.5e-3, 0.5e-3), eta * q)
-            << "1 − exp(−x) = x (1 − x/2 …) with x ≤ η";
-        sum += q;
-    }
-    double product = 1;
-    for (int i = 0; i < 1000; ++i) product *= 1 - eta * (0.2 + 0.6 * uniform(5, i));
-    EXPECT_NEAR(z - sum, product, 1e-13) << "remaining Z Π(1 − η k)";
-    // Any sampling of one path gives the same.
-    const double once = supply_quantity(eta, 0.5, 1, 20e-3, 0.5e-3);
-    double left = 1;
-    for (int i = 0; i < 400; ++i) left -= supply_quantity(eta, 0.5, left, 0.05e-3, 0.5e-3);
-    EXPECT_NEAR(1 - left, once, 1e-13);
-}
-
-TEST(Reservoir, ALoadedBrushWritesBlackAndAnEmptyOnePale) {
-    const Ink ink = load_ink("carbon");
-    const Substrate substrate = load_substrate("porcelain");
-    Canvas canvas(1);
-    Reservoir tuft = make_reservoir(0.5);
-    dip(tuft, mix_of(canvas, ink));
-    for (const double fullness : {1.0, 0.6, 0.4}) {
-        take(tuft, tuft.remaining() - fullness * tuft.capacity);
-        for (const double width : {0.3e-3, 2e-3, 6e-3, 10e-3}) {
-            const DepositParams p = stamp_deposit(
-                tuft, ink, {.moment_factor = 0.5, .width = width, .area = width * width},
-                substrate);
-            EXPECT_GE(p.target, 0.9 * ink.film) << fullness << " " << width;
-        }
-    }
-    take(tuft, tuft.remaining() - 0.01 * tuft.capacity);
-    const StampContact wide{.moment_factor = 0.5, .width = 8e-3, .area = 6e-5};
-    const StampContact hair{.moment_factor = 0.5, .width = 0.3e-3, .area = 1e-7};
-    EXPECT_LE(stamp_deposit(tuft, ink, wide, substrate).target, 0.3 * ink.film);
-    EXPECT_GE(stamp_deposit(tuft, ink, hair, substrate).target, 0.8 * ink.film);
-    rinse(tuft);
-    EXPECT_EQ(stamp_deposit(tuft, ink, wide, substrate).target, 0);
-}
-
-TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
-    const Ink ink = load_ink("carbon");
-    const Substrate substrate = load_substrate("porcelain");
-    constexpr std::uint32_t kSlots = 63;
-    Canvas canvas(kSlots);
-    const Mix mix = mix_of(canvas, ink);
-    Reservoir tuft = make_reservoir(0.0005);
-    const double start = dip(tuft, mix);
-    const Texels area = random_texels(8, 2e-6, 4e-6);  // coarse: much surface, little ink
-    for (int i = 0; i < 1500; ++i) {
-        const StampContact contact{.moment_factor = 0.5, .width = 5e-3, .area = 4 * kN * 4e-6};
-        const DepositParams params = stamp_deposit(tuft, ink, contact, substrate);
-        double given = 0;
-        for (std::uint32_t slot = 0; slot < 4; ++slot)
-            given += deposit(canvas, (i / 25 + slot) % kSlots, random_texels(i, 0, 1), area, 1e-4,
-                             params);
-        take(tuft, given);
-    }
-    double on_texels = 0;
-    for (std::uint32_t slot = 0; slot < kSlots; ++slot)
-        for (int t = 0; t < kN && canvas.touched(slot); ++t)
-            on_texels +=
-                static_cast<double>(area[t]) * static_cast<double>((*canvas.plane(slot, 0))[t]);
-    EXPECT_GT(on_texels, 0.9 * start) << "the test wants a brush that runs dry";
-    EXPECT_GE(tuft.remaining(), 0);
-    EXPECT_NEAR(on_texels + tuft.remaining(), start, 1e-6 * start);
 }
 
 }  // namespace

@@ -97,15 +97,15 @@ TEST(Carry, AnotherInkIsDippedIntoUnlessItWasToldBefore) {
     painting.paint(carried(0, "carbon"));
     painting.paint(carried(1, "cinnabar"));
     EXPECT_EQ(painting.held(kBrush)->dipped, "cinnabar");
-    EXPECT_EQ(painting.held(kBrush)->reservoir.pigment[0], 0) << "washed before";
+    EXPECT_EQ(painting.held(kBrush)->reservoir.pigment(0), 0) << "washed before";
     // Told: a dip on top of what is left, which the next stroke keeps whichever of the two it names.
     painting.paint(action(Action::dip, "carbon"));
-    const double mixed = painting.held(kBrush)->reservoir.pigment[0];
+    const double mixed = painting.held(kBrush)->reservoir.pigment(0);
     EXPECT_GT(mixed, 0);
     painting.paint(carried(2, "cinnabar"));
-    EXPECT_GT(painting.held(kBrush)->reservoir.pigment[0], 0);
-    EXPECT_LT(painting.held(kBrush)->reservoir.pigment[0], mixed);
-    EXPECT_GT(painting.held(kBrush)->reservoir.pigment[1], 0);
+    EXPECT_GT(painting.held(kBrush)->reservoir.pigment(0), 0);
+    EXPECT_LT(painting.held(kBrush)->reservoir.pigment(0), mixed);
+    EXPECT_GT(painting.held(kBrush)->reservoir.pigment(1), 0);
 }
 
 // Strokes and actions of two brushes.
