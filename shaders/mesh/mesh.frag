@@ -12,6 +12,7 @@ uniform float u_roughness;           // of the coat
 uniform int u_shading;               // 0 glaze, 1 clay, 2 flat colour, 3 height, 4 texel grid, 5 triangle colours
 uniform float u_atlas_size;          // texels per side
 uniform float u_relief;              // exaggeration of the ink's height
+uniform float u_height_range;        // micrometres at the ramp's end
 uniform vec4 u_section;              // plane: what lies on its positive side is cut away; zero: none
 out vec4 f_colour;
 
@@ -47,7 +48,10 @@ void main() {
         return;
     }
     if (u_shading == 3) {
-        f_colour = vec4(ramp(texel.a * 2.0) * facing, 1.0);
+        // Bare parts are grey; a film shows from a twentieth of a micrometre on.
+        float height = texel.a * 25.5;
+        vec3 shown = mix(vec3(0.80), ramp(height / u_height_range), smoothstep(0.02, 0.15, height));
+        f_colour = vec4(shown * facing, 1.0);
         return;
     }
     vec3 base = texel.rgb;

@@ -2,6 +2,7 @@
 #include <imgui.h>
 
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -69,7 +70,7 @@ void loop(app::Display& display, const Options& options) {
     app::EventQueue events;
     std::string title;
     while (!display.closed() && !session.quit && !(script && script->finished())) {
-        display.poll(events, script || studio.busy() || !events.empty() ? 0 : session.pictures.busy() ? 0.1 : 0.5);
+        display.poll(events, !events.empty() ? 0 : script ? script->patience(studio) : studio.patience());
         const double now = display.now();
         if (script) script->before_frame(studio, events, now);
         studio.frame(events, display.width(), display.height(), display.framebuffer(), now);
@@ -108,6 +109,8 @@ int main(int argc, char** argv) {
         if (!std::strcmp(argv[i], "--help") || !std::strcmp(argv[i], "-h")) return std::fputs(kHelp, stdout), 0;
         if (!std::strcmp(argv[i], "--version")) return std::puts("tuft-studio " TUFT_VERSION), 0;
     }
+    // A limit on the size of files is a write that fails, with a message, not the end of the program.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return run(parse(argc, argv));
     } catch (const UsageError& error) {

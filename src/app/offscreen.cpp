@@ -40,7 +40,7 @@ class Offscreen : public Display {
         eglTerminate(display_);
     }
     void poll(EventQueue&, double wait) override {
-        if (wait > 0) std::this_thread::sleep_for(std::chrono::duration<double>(std::min(wait, 0.005)));
+        if (wait > 0) std::this_thread::sleep_for(std::chrono::duration<double>(std::min(wait, 0.02)));
     }
     void present() override { glFinish(); }
     bool closed() const override { return false; }

@@ -91,9 +91,10 @@ void open_dialog(Session& s) {
     const bool fits = memory < stroke::available_memory();
     if (!fits) ui.wrapped(ui.tr("This many texels need more memory than is free."));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    const float right = ImGui::GetContentRegionAvail().x - ui.px(2 * 120) - ImGui::GetStyle().ItemSpacing.x;
+    const float right = ImGui::GetContentRegionAvail().x - ui.button_width("Cancel", 120) - ui.button_width("Unwrap and paint", 120) -
+                        ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, right));
-    const bool cancelled = ui.button("Cancel", nullptr, 120) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    const bool cancelled = ui.button("Cancel", nullptr, 120);
     ImGui::SameLine();
     const bool accepted = ui.primary_button("Unwrap and paint", 120, fits);
     end_dialog();

@@ -13,21 +13,29 @@
 namespace tuft::app {
 namespace {
 
-constexpr float kRackHeight = 76;
+constexpr float kRackHeight = 54;
+
+// Sorts of hair as they look, sRGB; a brush of another sort is grey.
+unsigned hair_colour(const std::string& sort) {
+    if (sort == "goat") return IM_COL32(240, 236, 226, 255);
+    if (sort == "wolf") return IM_COL32(196, 128, 62, 255);
+    if (sort == "mixed") return IM_COL32(222, 184, 138, 255);
+    return IM_COL32(170, 172, 178, 255);
+}
 
 // The tuft's outline, ferrule above, tip below.
-void draw_tuft_icon(Session& s, const brush::Preset& preset, ImVec2 at, float width, float height, bool chosen) {
+void draw_tuft_icon(Session& s, const brush::Preset& preset, unsigned hair, ImVec2 at, float width, float height) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     constexpr double longest = 0.048;  // metres that fill the icon
-    const auto scale = static_cast<float>(height * 0.78f / longest);
-    const float x = at.x + 0.5f * width, top = at.y + 0.17f * height;
-    const unsigned hair = chosen ? s.ui.accent : s.ui.strong;
+    const auto scale = static_cast<float>(height * 0.74f / longest);
+    const float x = at.x + 0.5f * width, top = at.y + 0.19f * height;
     constexpr int n = 24;
     std::vector<ImVec2> outline;
     for (int side = 0; side < 2; ++side)
         for (int i = 0; i <= n; ++i) {
             const double u = static_cast<double>(side ? n - i : i) / n;
-            const auto r = static_cast<float>(brush::rest_radius(preset, u)) * scale * (side ? -1.0f : 1.0f);
+            // A little wider than to scale, so that small ones are seen.
+            const auto r = (static_cast<float>(brush::rest_radius(preset, u)) * 1.35f * scale + (u < 0.97 ? s.ui.px(0.8f) : 0)) * (side ? -1.0f : 1.0f);
             outline.emplace_back(x + r, top + static_cast<float>(u * preset.length) * scale);
         }
     // Smoothed edges of the pieces would show between them: the outline smooths the whole.
@@ -38,9 +46,9 @@ void draw_tuft_icon(Session& s, const brush::Preset& preset, ImVec2 at, float wi
         draw->AddQuadFilled(outline[i], outline[i + 1], outline[j - 1], outline[j], hair);
     }
     draw->Flags = flags;
-    draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), hair, ImDrawFlags_Closed, 1.0f);
-    const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * 1.15f;
-    draw->AddRectFilled(ImVec2(x - r, at.y + 0.03f * height), ImVec2(x + r, top), IM_COL32(150, 104, 58, 255), 1.5f);
+    draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed, 1.0f);
+    const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * 1.5f + s.ui.px(0.8f);
+    draw->AddRectFilled(ImVec2(x - r, at.y + 0.05f * height), ImVec2(x + r, top), IM_COL32(122, 78, 38, 255), 1.5f);
 }
 
 const brush::Preset& preset_of(const std::string& name) {
@@ -50,36 +58,51 @@ const brush::Preset& preset_of(const std::string& name) {
     return at->second;
 }
 
+void brush_cell(Session& s, const std::string& name, const std::string& sort, float width) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool chosen = name == s.brush;
+    const float height = s.ui.px(kRackHeight);
+    if (ImGui::InvisibleButton(name.c_str(), ImVec2(width, height))) s.brush = name;
+    s.ui.mark(name);
+    const bool over = ImGui::IsItemHovered();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImVec2 end(at.x + width, at.y + height);
+    draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : over ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), s.ui.px(4));
+    if (chosen) draw->AddRect(at, end, s.ui.accent, s.ui.px(4), 0, s.ui.px(2));
+    const brush::Preset& preset = preset_of(name);
+    draw_tuft_icon(s, preset, hair_colour(sort), at, width, height);
+    if (!over) return;
+    char text[256];
+    std::snprintf(text, sizeof text, "%s\n%.0f mm long, %.1f mm thick", s.ui.tr(name.c_str()), preset.length * 1e3, 2 * preset.radius * 1e3);
+    ImGui::SetTooltip("%s", text);
+}
+
+// A row for each sort of hair, small to large; sorts with a single brush share the last one.
 void brush_rack(Session& s) {
     s.ui.heading("Brush");
-    const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
-    std::vector<std::string> names = s.brushes;
-    std::stable_sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
-        const auto kind = [](const std::string& name) { return name.substr(0, name.find('-')); };
-        return kind(a) != kind(b) ? kind(a) < kind(b) : preset_of(a).length < preset_of(b).length;
-    });
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const std::string& name = names[i];
-        if (i % 3) ImGui::SameLine();
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        const bool chosen = name == s.brush;
-        const float height = s.ui.px(kRackHeight);
-        if (ImGui::InvisibleButton(name.c_str(), ImVec2(width, height))) s.brush = name;
-        s.ui.mark(name);
-        const bool over = ImGui::IsItemHovered();
-        if (chosen || over)
-            ImGui::GetWindowDrawList()->AddRectFilled(
-                at, ImVec2(at.x + width, at.y + height),
-                ImGui::GetColorU32(chosen ? ImGuiCol_FrameBgActive : ImGuiCol_FrameBg), s.ui.px(4));
-        const brush::Preset& preset = preset_of(name);
-        draw_tuft_icon(s, preset, at, width, height, chosen);
-        if (over) {
-            char text[256];
-            std::snprintf(text, sizeof text, "%s\n%.0f mm long, %.1f mm thick", s.ui.tr(name.c_str()), preset.length * 1e3,
-                          2 * preset.radius * 1e3);
-            ImGui::SetTooltip("%s", text);
+    std::map<std::string, std::vector<std::string>> sorts;
+    for (const std::string& name : s.brushes) sorts[name.substr(0, name.find('-'))].push_back(name);
+    std::vector<std::string> single;
+    for (const auto& [sort, names] : sorts)
+        if (names.size() == 1) single.push_back(names.front());
+    const float label = s.ui.px(58), gap = s.ui.px(5);
+    const float width = (ImGui::GetContentRegionAvail().x - label - 2 * gap) / 3;
+    const auto row = [&](const char* title, std::vector<std::string> names) {
+        std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) { return preset_of(a).length < preset_of(b).length; });
+        const float y = ImGui::GetCursorPosY();
+        ImGui::SetCursorPosY(y + 0.5f * (s.ui.px(kRackHeight) - ImGui::GetTextLineHeight()));
+        ImGui::TextDisabled("%s", s.ui.tr(title));
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (i % 3 == 0) ImGui::SetCursorPosY(y + static_cast<float>(i / 3) * (s.ui.px(kRackHeight) + gap));
+            else ImGui::SameLine(0, gap);
+            if (i % 3 == 0) ImGui::SetCursorPosX(ImGui::GetStyle().WindowPadding.x + label);
+            brush_cell(s, names[i], names[i].substr(0, names[i].find('-')), width);
         }
-    }
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + gap);
+    };
+    for (const auto& [sort, names] : sorts)
+        if (names.size() > 1) row(sort.c_str(), names);
+    if (!single.empty()) row("other", single);
     ImGui::TextUnformatted(s.ui.tr(s.brush.c_str()));
 }
 
@@ -123,9 +146,11 @@ void hand_section(Session& s) {
     Ui& ui = s.ui;
     ui.heading("Hand");
     ui.slider("Pressure", s.hand.pressure, 0.02, 1, "%.2f", "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
+    ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length", kMillimetre);
+    if (ui.button(s.more_hand ? "Less" : "More...", nullptr, 80)) s.more_hand = !s.more_hand;
+    if (!s.more_hand) return;
     ui.slider("Speed lightens", s.hand.speed_effect, 0, 1, "%.2f", "As a hand does. Only for a mouse; a pen says its own pressure");
     ui.slider("Rest deepens", s.hand.dwell_effect, 0, 1, "%.2f", "A mouse that stays where it is sinks in slowly");
-    ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length", kMillimetre);
     ui.slider("Pen softness", s.hand.pen_gamma, 0.4, 2.5, "%.2f", "Curve from the pen's force to the brush's depth");
     double right = s.hand.tilt.x, up = s.hand.tilt.y;
     ui.slider("Lean sideways", right, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", "Of the holder, seen on the screen. Arrow keys", kDegree);

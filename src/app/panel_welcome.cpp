@@ -57,6 +57,7 @@ fs::path cards(Session& s, const std::vector<fs::path>& files, float width, std:
 
 void welcome(Session& s) {
     Ui& ui = s.ui;
+    if (!s.opening.running() && !s.inspected) s.pictures.go_on();
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float top = ImGui::GetFrameHeight() + ui.px(6);
     ImGui::SetNextWindowPos(ImVec2(0, top));
@@ -87,8 +88,9 @@ void welcome(Session& s) {
         chosen = cards(s, s.recent, width, columns, columns);
     }
     ui.heading("Samples");
-    if (const fs::path sample = cards(s, s.samples, width, columns, 24); !sample.empty()) chosen = sample;
+    const fs::path sample = cards(s, s.samples, width, columns, 24);
     ImGui::End();
+    if (!sample.empty()) open_sample(s, sample);
     if (!chosen.empty()) open_path(s, chosen);
 }
 

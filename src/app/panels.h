@@ -25,6 +25,9 @@ void tuft_inset(Session& s);
 /// Marks on the model: where the tuft touches, planes of symmetry, the line being drawn.
 void view_marks(const Session& s, const render::GlCamera& camera);
 
+/// Micrometres at the end of the height view's colours: 1, 2 or 5 times a power of ten.
+double height_range(const Session& s);
+
 /// sRGB colour (ImU32) of a full film of this ink on porcelain.
 unsigned ink_colour(const std::string& ink);
 

@@ -55,9 +55,8 @@ Pictures::~Pictures() {
 unsigned Pictures::texture(const fs::path& file) {
     const std::lock_guard lock(mutex_);
     Picture& p = pictures_[file.string()];
-    if (!p.asked) {
+    if (!p.asked && !stop_) {
         p.asked = true;
-        stop_ = false;
         jobs_.push_back({.file = file.string()});
         wake_.notify_all();
     }

@@ -23,12 +23,14 @@ class Pictures {
     ~Pictures();
 
     /// Texture with the picture of this file, 0 while there is none. Asks for it at the
-    /// first call.
+    /// first call that is not made at rest.
     unsigned texture(const std::filesystem::path& file);
     /// Keeps a picture (RGB, row 0 at the top) as that of a file; it is made smaller.
     void keep(const std::filesystem::path& file, int width, int height, std::vector<std::uint8_t> rgb);
     /// Drops what has been asked for, so that the machine is free for other work.
     void rest();
+    /// Takes up work again; before it, nothing new is asked for.
+    void go_on() { stop_ = false; }
     bool busy() const;
     /// Frees the textures; needs the context.
     void release();

@@ -249,6 +249,7 @@ void Script::before_frame(Studio& studio, EventQueue& events, double now) {
     hand_out();
     while (next_ < commands_.size() && pending_.empty() && events.empty() && picture_.empty()) {
         const bool done = perform(studio, commands_[next_], now);
+        waiting_ = !done;
         if (!done) break;
         ++next_;
         waiting_since_ = -1;
@@ -260,6 +261,11 @@ void Script::before_frame(Studio& studio, EventQueue& events, double now) {
         // What was done is seen before the next command looks.
         break;
     }
+}
+
+double Script::patience(const Studio& studio) const {
+    if (!pending_.empty() || !picture_.empty()) return paced_ ? 0.001 : 0;
+    return waiting_ ? std::min(0.02, studio.patience()) : 0;
 }
 
 void Script::after_frame(int width, int height, double) {

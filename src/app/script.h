@@ -39,6 +39,8 @@ class Script {
     void before_frame(Studio& studio, EventQueue& events, double now);
     /// After a frame: pictures.
     void after_frame(int width, int height, double now);
+    /// Seconds that the next frame may wait: none while there is something to play.
+    double patience(const Studio& studio) const;
     bool finished() const { return next_ >= commands_.size() && pending_.empty() && picture_.empty(); }
 
   private:
@@ -63,6 +65,7 @@ class Script {
     Event cursor_;
     ScriptPoint last_place_;           ///< of the label a click waits for
     std::string picture_;
+    bool waiting_ = false;             ///< the last command waits for something
     std::size_t frames_ = 0, report_frames_ = 0;
     double report_start_ = 0;
 };

@@ -20,9 +20,9 @@
 ///   type TEXT
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
-///   set NAME VALUE          brush, ink, shading, light, parallel, azimuth, elevation, zoom,
+///   set NAME VALUE          texels (of the model asked about), brush, ink, shading, light, parallel, azimuth, elevation, zoom,
 ///                           pressure, string, radial, mirror, carry, tool, language, theme, scale, section,
-///                           see-through
+///                           see-through, draw-every (frames of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL

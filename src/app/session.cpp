@@ -12,10 +12,6 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
-bool is_sample(const Session& s, const fs::path& path) {
-    return std::find(s.samples.begin(), s.samples.end(), path) != s.samples.end();
-}
-
 std::unique_ptr<Painter> start_painter(Session& s, Painter::Work work) {
     const fs::path project = work.keeper.path();
     s.note.write(project, work.source);
@@ -33,12 +29,30 @@ void say(Session& s, std::string message) {
 void open_path(Session& s, const fs::path& path) {
     s.pictures.rest();
     s.inspected.reset();
+    s.is_sample = false;
     s.files.close();
     std::error_code ec;
     if (fs::is_regular_file(path, ec) && (path.extension() == ".tuft" || io::is_project(path)))
         s.opening.load(path, s.note.new_project(path.stem().string()));
     else
         s.opening.inspect(path);
+}
+
+void open_sample(Session& s, const fs::path& path) {
+    open_path(s, path);
+    s.is_sample = true;
+}
+
+bool close_dialog(Session& s) {
+    if (s.files.shown()) s.files.close();
+    else if (s.show_keys) s.show_keys = false;
+    else if (s.show_settings) s.show_settings = false;
+    else if (s.show_export) s.show_export = false;
+    else if (s.opening.running()) s.opening.cancel();
+    else if (s.inspected) s.inspected.reset();
+    else if (!s.lost.empty() && !s.painter) s.lost.erase(s.lost.begin());  // later
+    else return false;
+    return true;
 }
 
 void accept_inspected(Session& s) {
@@ -71,7 +85,7 @@ void poll_session(Session& s) {
         s.open_options.unit = s.inspected->summary.unit.unit;
         if (s.inspected->unit_fixed) s.open_options.unit = "m";
         s.open_options.atlas_size = 2048;
-        if (is_sample(s, s.inspected->path)) accept_inspected(s);
+        if (s.is_sample) accept_inspected(s);
     }
     if (result.work) {
         // Unnamed work that is left for other work is offered again at the next start.

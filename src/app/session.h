@@ -55,6 +55,7 @@ struct Session {
     std::unique_ptr<Painter> painter;
     std::optional<Inspected> inspected;    ///< waits for the person's yes
     OpenOptions open_options;
+    bool is_sample = false;                ///< what is being opened; nothing is asked then
     bool model_is_new = false;             ///< the scene must take it over
     SessionNote note;
     std::vector<LostWork> lost;
@@ -68,6 +69,8 @@ struct Session {
     std::string brush = "wolf-medium", ink = "carbon";
     HandSettings hand;
     stroke::Symmetry symmetry;
+    bool more_hand = false;                ///< all settings of the hand are shown
+    double highest = 0;                    ///< micrometres, of the ink seen so far
     bool carry = false;                    ///< ink lasts from stroke to stroke
     bool hand_down = false;
 
@@ -90,6 +93,10 @@ void say(Session& s, std::string message);
 
 /// Opens a model or a project; the work in hand is kept where it is.
 void open_path(Session& s, const std::filesystem::path& path);
+/// Opens a shipped model: its unit is known and it is sound, so nothing is asked.
+void open_sample(Session& s, const std::filesystem::path& path);
+/// Closes the dialog that lies on top, as its Cancel does; false when there is none.
+bool close_dialog(Session& s);
 /// Goes on from the dialog of a model that was looked at.
 void accept_inspected(Session& s);
 /// Takes over what threads have finished.

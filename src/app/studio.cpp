@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kTurnPause = 0.25;    // seconds without a turn of the wheel after which the view is still
 constexpr double kStillAfter = 0.4;    // seconds after the last event
+constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
 constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
 
 }  // namespace
@@ -50,9 +51,13 @@ void Studio::finish() {
     close_model(session_);
 }
 
-bool Studio::busy() const {
+double Studio::patience() const {
     const Session& s = session_;
-    return !settled(s) || s.model_is_new || !s.last.tiles.empty() || s.restyle || now_ - last_event_ < kStillAfter;
+    if (s.model_is_new || !s.last.tiles.empty() || s.restyle || hand_ || drag_ != Drag::none) return 0;
+    if (s.opening.running() || !s.last.busy.empty()) return kProgressEvery;
+    if (!settled(s)) return kInkEvery;
+    if (now_ - last_event_ < kStillAfter) return kStillEvery;
+    return s.pictures.busy() ? 0.1 : 0.5;
 }
 
 void Studio::layout(int width, int height) {
@@ -110,7 +115,10 @@ void Studio::take_model() {
         line_start_.reset();
         s.hand_down = false;
         scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
-        scene_->set_texture(s.painter->take_pixels());
+        const render::MapPixels pixels = s.painter->take_pixels();
+        scene_->set_texture(pixels);
+        s.highest = 0;
+        for (const auto& texel : pixels.levels[0]) s.highest = std::max(s.highest, 0.1 * texel[3]);
         view_->scene_changed();
         colours_shown_ = ModelView::glaze;
         const Orbit fresh;
@@ -124,6 +132,8 @@ void Studio::take_model() {
     if (s.last.done > shown_ && !s.last.tiles.empty()) delays_.push_back(now_ - s.last.done);
     shown_ = s.last.done;
     scene_->update_tiles(s.last.tiles);
+    for (const render::TilePixels& tile : s.last.tiles)
+        for (std::size_t k = 0; k < 256; ++k) s.highest = std::max(s.highest, 0.1 * tile.rgba[k][3]);
     for (const render::TilePixels& tile : s.last.tiles)
         if (tile.lo.x <= tile.hi.x) view_->texture_changed(tile.lo, tile.hi);
     s.last.tiles.clear();
@@ -185,7 +195,7 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
     const render::GlSolid solid = solid_of(s.tuft);
     render::GlView::Frame f{.camera = camera(), .solid = &solid, .opacity = s.view.see_through ? 0.25f : s.pressed ? 0.92f : 0.72f};
     f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)], .roughness = s.painter->roughness(),
-                      .section = section_plane(s)};
+                      .height_range = static_cast<float>(height_range(s)), .section = section_plane(s)};
     f.look.light = render::make_light(s.view.rig, f.camera);
     f.look.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);
     f.look.high = dark ? Vec3f(0.40f, 0.405f, 0.415f) : Vec3f(0.80f, 0.805f, 0.815f);
@@ -226,6 +236,7 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     for (const Event& event : events) handle(event);
     if (s.painter) update_tuft(now);
     panels(height);
+    if (++frames_ % draw_every_ != 0) return ImGui::EndFrame();
     draw_scene(framebuffer, height);
     keep_picture();
     ImGui::Render();

@@ -24,8 +24,9 @@ class Studio {
     Session& session() { return session_; }
     /// One turn: takes events, draws everything. `now` in seconds on the events' clock.
     void frame(EventQueue& events, int width, int height, unsigned framebuffer, double now);
-    /// Whether the picture changes without events.
-    bool busy() const;
+    /// Seconds that the next frame may wait for an event: none while the picture moves, a while
+    /// during work that only shows its progress, long when nothing happens.
+    double patience() const;
     /// Ends the stroke in hand and keeps everything.
     void finish();
     /// Changes a setting by its name in scripts. Throws `Error` for a name or value that is unknown.
@@ -67,7 +68,7 @@ class Studio {
     std::string preview_brush_;
     ModelView colours_shown_ = ModelView::glaze;
     double now_ = 0, last_event_ = 0, last_turn_ = -1, picture_due_ = 0;
-    std::size_t strokes_seen_ = 0;
+    std::size_t strokes_seen_ = 0, frames_ = 0, draw_every_ = 1;
     std::vector<double> delays_;
     double shown_ = 0;
 };

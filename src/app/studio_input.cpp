@@ -135,7 +135,7 @@ void Studio::draw_line(const Event& end) {
 
 void Studio::key(const Event& e) {
     Session& s = session_;
-    if (ImGui::GetIO().WantTextInput) return;
+    if (ImGui::GetIO().WantTextInput && e.key != GLFW_KEY_ESCAPE) return;
     const bool shift = e.modifiers & kShift, control = e.modifiers & kControl;
     if (e.key == GLFW_KEY_ESCAPE && hand_) {
         hand_.reset();
@@ -144,6 +144,7 @@ void Studio::key(const Event& e) {
         return;
     }
     if (hand_) return;
+    if (e.key == GLFW_KEY_ESCAPE && close_dialog(s)) return;
     if (control && e.key == GLFW_KEY_O) return s.files.show(FileDialog::Purpose::open, {});
     if (control && e.key == GLFW_KEY_Q) s.quit = true;
     if (e.key == GLFW_KEY_F1) s.show_keys = !s.show_keys;

@@ -26,6 +26,7 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "azimuth") s.view.orbit.azimuth = number * kDegree;
     else if (name == "elevation") s.view.orbit.elevation = number * kDegree;
     else if (name == "zoom") s.view.orbit.zoom(number, s.view.orbit.target);
+    else if (name == "texels") s.open_options.atlas_size = static_cast<std::uint32_t>(std::clamp(number, 64.0, 16384.0));
     else if (name == "pressure") s.hand.pressure = std::clamp(number, 0.02, 1.0);
     else if (name == "carry") s.carry = on;
     else if (name == "string") s.hand.string = std::max(0.0, number) * kMillimetre;
@@ -38,7 +39,8 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "section") {
         s.view.section = number > 0;
         s.view.section_at = std::clamp(number, 0.02, 1.0);
-    } else if (name == "see-through") s.view.see_through = on;
+    } else if (name == "draw-every") draw_every_ = static_cast<std::size_t>(std::clamp(number, 1.0, 1000.0));
+    else if (name == "see-through") s.view.see_through = on;
     else if (name == "language") s.wanted.language = one_of({"english", "chinese"}) ? Language::chinese : Language::english, s.restyle = true;
     else if (name == "theme") s.wanted.theme = one_of({"dark", "light"}) ? Theme::light : Theme::dark, s.restyle = true;
     else if (name == "scale") s.wanted.scale = static_cast<float>(std::clamp(number, 0.75, 3.0)), s.restyle = true;

@@ -59,6 +59,7 @@ constexpr std::pair<const char*, const char*> kTexts[] = {
      "左键：绘制    中键或右键：转动    Shift+中键：平移    滚轮：远近    F1：全部按键"},
     {"Left: paint    Alt+left: turn    Alt+middle: move    Alt+right: nearer    F1: all keys",
      "左键：绘制    Alt+左键：转动    Alt+中键：平移    Alt+右键：远近    F1：全部按键"},
+    {"goat", "羊毫"}, {"mixed", "兼毫"}, {"wolf", "狼毫"}, {"other", "其他"}, {"More...", "更多…"}, {"Less", "收起"},
     {"wolf-small", "小狼毫"}, {"wolf-medium", "中狼毫"}, {"wolf-large", "大狼毫"}, {"goat-small", "小羊毫"}, {"goat-medium", "中羊毫"},
     {"goat-large", "大羊毫"}, {"mixed-small", "小兼毫"}, {"mixed-medium", "中兼毫"}, {"mixed-large", "大兼毫"},
     {"carbon", "松烟墨"}, {"cinnabar", "朱砂"}, {"cobalt", "青花"}, {"gamboge", "藤黄"}, {"indigo", "花青"}, {"iron-red", "铁红"},

@@ -63,10 +63,13 @@ std::string Ui::prepare(const UiSettings& settings) {
         builder.AddText(all_chinese_text().c_str());
         if (settings.language == Language::chinese) builder.AddRanges(io.Fonts->GetGlyphRangesChineseSimplifiedCommon());
         builder.BuildRanges(&ranges);
+        // A square character needs more room than a Latin letter of the same size to be read.
+        const float square = std::round(1.14f * size);
         ImFontConfig config;
         config.MergeMode = true;
+        config.GlyphOffset.y = std::round(0.4f * (square - size));
         config.FontNo = chinese.ends_with("NotoSansCJK-Regular.ttc") ? 2 : 0;  // the simplified face of the collection
-        io.Fonts->AddFontFromFileTTF(chinese.c_str(), size, &config, ranges.Data);
+        io.Fonts->AddFontFromFileTTF(chinese.c_str(), square, &config, ranges.Data);
     } else if (settings.language == Language::chinese) {
         missing = "No Chinese font was found on this system; the interface stays in English.";
         settings_.language = Language::english;
@@ -157,9 +160,13 @@ void Ui::hint(const char* text) {
     ImGui::EndTooltip();
 }
 
+float Ui::button_width(const char* label, float least) const {
+    return std::max(px(least), ImGui::CalcTextSize(tr(label)).x + 2 * ImGui::GetStyle().FramePadding.x);
+}
+
 bool Ui::button(const char* label, const char* text, float width, bool enabled) {
     ImGui::BeginDisabled(!enabled);
-    const bool pressed = ImGui::Button(id(label).c_str(), ImVec2(px(width), 0));
+    const bool pressed = ImGui::Button(id(label).c_str(), ImVec2(button_width(label, width), 0));
     ImGui::EndDisabled();
     mark(label);
     hint(text);

@@ -36,6 +36,8 @@ class Ui {
 
     void begin_frame();
     bool button(const char* label, const char* hint = nullptr, float width = 0, bool enabled = true);
+    /// Pixels of a button's width: at least `least` at a scale of 1, and as much as the text needs.
+    float button_width(const char* label, float least) const;
     bool primary_button(const char* label, float width = 0, bool enabled = true);
     bool toggle(const char* label, bool& value, const char* hint = nullptr);
     bool choice(const char* label, bool chosen, const char* hint = nullptr, float width = 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "app/panels.h"
 
@@ -88,7 +89,46 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     draw->AddText(ImVec2(right - width, y - s.ui.px(24)), IM_COL32(235, 235, 235, 230), text);
 }
 
+struct Stop {
+    unsigned colour;
+    float at;
+};
+
+// Colours from left to right with a text at each end, in the lower right above the scale.
+void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, const char* low, const char* high) {
+    const float width = s.ui.px(190), height = s.ui.px(10);
+    const ImVec2 at(static_cast<float>(s.area.x + s.area.width) - s.ui.px(20) - width, static_cast<float>(s.area.y + s.area.height) - s.ui.px(98));
+    draw->AddRectFilled(ImVec2(at.x - s.ui.px(10), at.y - s.ui.px(10)), ImVec2(at.x + width + s.ui.px(10), at.y + height + s.ui.px(28)),
+                        IM_COL32(24, 24, 26, 190), s.ui.px(5));
+    for (std::size_t i = 1; i < stops.size(); ++i)
+        draw->AddRectFilledMultiColor(ImVec2(at.x + stops[i - 1].at * width, at.y), ImVec2(at.x + stops[i].at * width, at.y + height),
+                                      stops[i - 1].colour, stops[i].colour, stops[i].colour, stops[i - 1].colour);
+    const unsigned text = IM_COL32(240, 240, 240, 255);
+    draw->AddText(ImVec2(at.x, at.y + height + s.ui.px(4)), text, low);
+    draw->AddText(ImVec2(at.x + width - ImGui::CalcTextSize(high).x, at.y + height + s.ui.px(4)), text, high);
+}
+
+void legends(const Session& s, ImDrawList* draw) {
+    if (s.view.shown == ModelView::height) {
+        // As `ramp` in mesh.frag.
+        static constexpr Stop stops[] = {{IM_COL32(33, 31, 77, 255), 0}, {IM_COL32(46, 94, 140, 255), 0.25f}, {IM_COL32(41, 153, 140, 255), 0.5f},
+                                         {IM_COL32(140, 201, 82, 255), 0.75f}, {IM_COL32(252, 232, 102, 255), 1}};
+        char high[32];
+        std::snprintf(high, sizeof high, "%g \xce\xbcm", height_range(s));
+        legend(s, draw, stops, "0", high);
+    } else if (s.view.shown == ModelView::stretch) {
+        // As `stretch_colours`.
+        static constexpr Stop stops[] = {{IM_COL32(36, 87, 214, 255), 0}, {IM_COL32(184, 184, 184, 255), 0.5f}, {IM_COL32(219, 51, 31, 255), 1}};
+        legend(s, draw, stops, s.ui.tr("coarser \xc3\x97 1.5"), s.ui.tr("finer \xc3\x97 1.5"));
+    }
+}
+
 }  // namespace
+
+double height_range(const Session& s) {
+    const double most = std::max(0.5, s.highest), power = std::pow(10, std::floor(std::log10(most)));
+    return most <= power ? power : most <= 2 * power ? 2 * power : most <= 5 * power ? 5 * power : 10 * power;
+}
 
 void view_marks(const Session& s, const render::GlCamera& c) {
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
@@ -97,6 +137,7 @@ void view_marks(const Session& s, const render::GlCamera& c) {
     if (!s.tuft.branches.empty()) s.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
     axis_cross(s, c, draw);
     scale_bar(s, c, draw);
+    legends(s, draw);
     draw->PopClipRect();
 }
 

@@ -276,6 +276,7 @@ void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOpti
     glUniform1i(at("u_shading"), static_cast<int>(options.shading));
     glUniform1f(at("u_roughness"), options.roughness);
     glUniform1f(at("u_atlas_size"), static_cast<float>(s.texture_size));
+    glUniform1f(at("u_height_range"), options.height_range);
     glUniform1f(at("u_relief"), light.relief);
     glUniform4fv(at("u_section"), 1, glm::value_ptr(options.section));
     glUniform1i(at("u_texture"), 0);

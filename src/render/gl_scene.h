@@ -45,6 +45,7 @@ struct MapPixels {
 struct DrawOptions {
     Shading shading = Shading::glaze;
     float roughness = 0.1f;         ///< of the coat
+    float height_range = 10;        ///< micrometres of ink that get the last colour of the ramp
     Vec4f section{0};               ///< plane, metres; cuts away dot((p, 1), section) > 0; zero: none
 
     bool operator==(const DrawOptions&) const = default;
