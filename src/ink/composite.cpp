@@ -1,8 +1,10 @@
 #include "ink/composite.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "ink/kubelka_munk.h"
 #include "ink/simd.h"
 
 namespace tuft::ink {
@@ -10,6 +12,8 @@ namespace {
 
 constexpr int kN = atlas::kTileTexels;
 using Texels = std::array<float, kN>;
+
+constexpr float kWetRoughness = 0.05f;  ///< glTF roughness of a film of water
 
 /// exp(-x) for x ≥ 0, 1.5e-7 relative: 2^-n by exponent bits, Taylor polynomial on the
 /// rest. Written out so that it vectorises and gives the same bits everywhere.
@@ -32,8 +36,9 @@ TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, fl
     for (int t = 0; t < kN; ++t) sum[t] += factor * w[t];
 }
 
-/// `layer` and `over` of kubelka_munk.h for K X and S X per texel; `k` becomes R.
-TUFT_CLONES void film_over(float* __restrict k, const float* __restrict s, float r_substrate) {
+/// `layer` and `over` of kubelka_munk.h for K X and S X per texel, put over R in `r`.
+TUFT_CLONES void film_over(float* __restrict r, const float* __restrict k,
+                           const float* __restrict s) {
     for (int t = 0; t < kN; ++t) {
         const float y2 = k[t] * (k[t] + 2 * s[t]);
         const float y = std::sqrt(y2);
@@ -45,47 +50,148 @@ TUFT_CLONES void film_over(float* __restrict k, const float* __restrict s, float
         const float inverse = 1 / (1 + (k[t] + s[t]) * u);
         const float r0 = s[t] * u * inverse;
         const float transmitted = 2 * e / (1 + e2) * inverse;
-        const float open = 1 - r0 * r_substrate;
-        k[t] = r0 + transmitted * transmitted * r_substrate / (open > 1e-7f ? open : 1e-7f);
+        const float open = 1 - r0 * r[t];
+        r[t] = r0 + transmitted * transmitted * r[t] / (open > 1e-7f ? open : 1e-7f);
     }
 }
 
-/// The dry film covers the substrate's microfacets within a fraction of a film unit.
+/// to += (from − to) · part, part in [0, 1].
+TUFT_CLONES void blend(float* __restrict to, const float* __restrict from,
+                       const float* __restrict part) {
+    for (int t = 0; t < kN; ++t) to[t] += (from[t] - to[t]) * part[t];
+}
+
+/// The dry film covers what is below it, microfacets included, within a fraction of a unit.
 TUFT_CLONES void blend_roughness(float* __restrict roughness, const float* __restrict weighted,
-                                 const float* __restrict film, float substrate) {
+                                 const float* __restrict film, const float* __restrict part) {
     for (int t = 0; t < kN; ++t) {
-        const float covered = 1 - exp_minus(4 * film[t]);
+        const float covered = (1 - exp_minus(4 * film[t])) * part[t];
         const float mean = weighted[t] / (film[t] > 1e-12f ? film[t] : 1e-12f);
-        roughness[t] = substrate + (mean - substrate) * covered;
+        roughness[t] += (mean - roughness[t]) * covered;
     }
+}
+
+/// Part of the surface that a film of water covers.
+TUFT_CLONES void wet_part(float* __restrict wet, const float* __restrict water, float per_film) {
+    for (int t = 0; t < kN; ++t) wet[t] = 1 - exp_minus((water[t] > 0 ? water[t] : 0) * per_film);
+}
+
+/// `saunderson` without k1, k2 = 0.6 times the part of the surface with an interface.
+TUFT_CLONES void under_interface(float* __restrict r, const float* __restrict wet, float dry,
+                                 float k2) {
+    for (int t = 0; t < kN; ++t) {
+        const float k = k2 * (dry + (1 - dry) * wet[t]);
+        r[t] = (1 - k) * r[t] / (1 - k * r[t]);
+    }
+}
+
+/// Roughness under the substrate's glaze and under water.
+TUFT_CLONES void gloss(float* __restrict roughness, const float* __restrict wet, float glaze,
+                       float substrate) {
+    for (int t = 0; t < kN; ++t) {
+        const float dry = roughness[t] + (substrate - roughness[t]) * glaze;
+        roughness[t] = dry + (kWetRoughness - dry) * wet[t];
+    }
+}
+
+/// Into the gamut of sRGB along the line to the grey of the same luminance.
+TUFT_CLONES void into_gamut(float* __restrict red, float* __restrict green,
+                            float* __restrict blue) {
+    for (int t = 0; t < kN; ++t) {
+        const float y = 0.212639f * red[t] + 0.715169f * green[t] + 0.072192f * blue[t];
+        const float grey = y > 0 ? (y < 1 ? y : 1) : 0;
+        float low = red[t] < green[t] ? red[t] : green[t];
+        low = low < blue[t] ? low : blue[t];
+        float high = red[t] > green[t] ? red[t] : green[t];
+        high = high > blue[t] ? high : blue[t];
+        const float for_low = low < 0 ? grey / (grey - low) : 1;
+        const float for_high = high > 1 ? (1 - grey) / (high - grey) : 1;
+        const float part = for_low < for_high ? for_low : for_high;
+        red[t] = grey + (red[t] - grey) * part;
+        green[t] = grey + (green[t] - grey) * part;
+        blue[t] = grey + (blue[t] - grey) * part;
+    }
+}
+
+bool empty(const TileFilm& film) {
+    return film.opacity <= 0 || std::all_of(film.pigments.begin(), film.pigments.end(),
+                                            [](const Plane* w) { return !w; });
+}
+
+/// Lays one film over the reflectances `r` of what is below it.
+void lay_film(std::array<Texels, kBands>& r, TileLook& look, const TileFilm& film,
+              std::span<const Pigment> pigments) {
+    alignas(64) Texels k, s, part, thickness{}, rough{}, height{};
+    part.fill(film.opacity);
+    if (film.mask)
+        for (int t = 0; t < kN; ++t) part[t] *= (*film.mask)[t];
+    const bool whole = !film.mask && film.opacity >= 1;
+    for (int b = 0; b < kBands; ++b) {
+        k.fill(0);
+        s.fill(0);
+        for (std::size_t p = 0; p < pigments.size(); ++p) {
+            if (!film.pigments[p]) continue;
+            add_scaled(k.data(), film.pigments[p]->data(), pigments[p].k[b]);
+            add_scaled(s.data(), film.pigments[p]->data(), pigments[p].s[b]);
+        }
+        if (whole) {
+            film_over(r[b].data(), k.data(), s.data());
+        } else {
+            alignas(64) Texels covered = r[b];
+            film_over(covered.data(), k.data(), s.data());
+            blend(r[b].data(), covered.data(), part.data());
+        }
+    }
+    for (std::size_t p = 0; p < pigments.size(); ++p) {
+        if (!film.pigments[p]) continue;
+        const float* w = film.pigments[p]->data();
+        add_scaled(height.data(), w, pigments[p].height * 1e6f);
+        add_scaled(rough.data(), w, pigments[p].roughness);
+        add_scaled(thickness.data(), w, 1.0f);
+    }
+    for (int t = 0; t < kN; ++t) look.height[t] += height[t] * part[t];
+    blend_roughness(look.roughness.data(), rough.data(), thickness.data(), part.data());
 }
 
 }  // namespace
 
-static_assert(kBands == 3, "with more bands, look_of_tile has to go from spectrum to RGB");
+TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
+                       std::span<const Pigment> pigments, const Substrate& substrate) {
+    constexpr Interface kInterface{};
+    const auto k2 = static_cast<float>(kInterface.k2);
+    TileLook look;
+    look.height.fill(0);
+    look.roughness.fill(substrate.roughness);
+    alignas(64) std::array<Texels, kBands> r;
+    const Bands bare = bands_of_rgb(substrate.reflectance);
+    for (int b = 0; b < kBands; ++b)
+        r[b].fill(static_cast<float>(saunderson_inverse(
+            static_cast<double>(bare[b]),
+            {.k1 = 0, .k2 = static_cast<double>(k2 * substrate.interface)}, false)));
+    for (const TileFilm& film : films)
+        if (!empty(film)) lay_film(r, look, film, pigments);
+    alignas(64) Texels wet{};
+    if (water) {
+        const float grain = std::max(2 * substrate.relief, 1e-7f);
+        wet_part(wet.data(), water->data(), static_cast<float>(kFilmUnit) / grain);
+    }
+    for (int c = 0; c < 3; ++c) look.colour[c].fill(0);
+    for (int b = 0; b < kBands; ++b) {
+        if (water || substrate.interface > 0)
+            under_interface(r[b].data(), wet.data(), substrate.interface, k2);
+        for (int c = 0; c < 3; ++c)
+            add_scaled(look.colour[c].data(), r[b].data(), band_weights()[c][b]);
+    }
+    into_gamut(look.colour[0].data(), look.colour[1].data(), look.colour[2].data());
+    gloss(look.roughness.data(), wet.data(), substrate.interface, substrate.roughness);
+    return look;
+}
 
 TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate) {
-    TileLook look;
-    alignas(64) std::array<Texels, kBands> s{};
-    alignas(64) Texels film{}, rough{};
-    for (Texels& k : look.colour) k.fill(0);
-    look.height.fill(0);
-    const std::vector<Pigment>& pigments = canvas.pigments();
-    for (int p = 0; p < static_cast<int>(pigments.size()); ++p) {
-        const Plane* w = canvas.plane(slot, p);
-        if (!w) continue;
-        for (int b = 0; b < kBands; ++b) {
-            add_scaled(look.colour[b].data(), w->data(), pigments[p].k[b]);
-            add_scaled(s[b].data(), w->data(), pigments[p].s[b]);
-        }
-        add_scaled(look.height.data(), w->data(), pigments[p].height * 1e6f);
-        add_scaled(rough.data(), w->data(), pigments[p].roughness);
-        add_scaled(film.data(), w->data(), 1.0f);
-    }
-    for (int b = 0; b < kBands; ++b)
-        film_over(look.colour[b].data(), s[b].data(), substrate.reflectance[b]);
-    blend_roughness(look.roughness.data(), rough.data(), film.data(), substrate.roughness);
-    return look;
+    TileFilm film;
+    for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+        film.pigments[p] = canvas.plane(slot, p);
+    return look_of_films(std::span(&film, 1), nullptr, canvas.pigments(), substrate);
 }
 
 }  // namespace tuft::ink

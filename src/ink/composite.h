@@ -14,14 +14,40 @@ namespace tuft::ink {
 
 /// Colour and surface of one tile, planar, texel t = row * 16 + column.
 struct alignas(64) TileLook {
-    std::array<std::array<float, atlas::kTileTexels>, kBands> colour;  ///< linear reflectance
+    std::array<std::array<float, atlas::kTileTexels>, 3> colour;  ///< linear sRGB, in [0, 1]
     std::array<float, atlas::kTileTexels> height;     ///< micrometres above the substrate
     std::array<float, atlas::kTileTexels> roughness;  ///< glTF perceptual roughness
 };
 
-/// Kubelka–Munk colour of the mixed film over the substrate, K = Σ w_p K_p and
-/// S = Σ w_p S_p, and the dry film's height and roughness. Agrees with `layer` and
-/// `over` (kubelka_munk.h) to 2e-6; same bits on every instruction set. 1–2 µs.
+/// One film on a tile: what was laid down before it dried, or one user layer.
+struct TileFilm {
+    std::array<const Plane*, kMaxPigments> pigments{};  ///< amounts, film units; null: none
+    const Plane* mask = nullptr;                        ///< 0–1 per texel; null: 1 everywhere
+    float opacity = 1;                                  ///< of the whole film, 0–1
+};
+
+/// Colour, height and roughness of a stack of films, the lowest first. In each band
+///
+///     R ← R + o (R0 + T² R / (1 − R0 R) − R)      for each film, o = opacity · mask,
+///
+/// with R0 and T of the mixed film, K = Σ w_p K_p and S = Σ w_p S_p (`layer`, `over` of
+/// kubelka_munk.h), beginning with the substrate. Where the top is glossy, the air boundary
+/// sends light back into the films (Saunderson):
+///
+///     R' = (1 − k) R / (1 − k R),   k = 0.6 g,   g = i + (1 − i)(1 − exp(−w h / 2ζ)),
+///
+/// i the substrate's `interface`, w its `water` on top in film units h, ζ the relief. The
+/// reflection at the outside of the boundary (k1) is left to who lights the picture: glTF
+/// reflects those 4 % itself. The substrate's reflectance is taken to lie below the boundary
+/// such that the bare dry surface has the colour it was given.
+///
+/// `water` may be null: dry. Roughness goes from the substrate's to the films' own, back to
+/// the substrate's under its glaze, and to that of a wet surface. Agrees with the scalar
+/// formulas to 2e-6; same bits on every instruction set. About 0.3 µs per film and band.
+TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
+                       std::span<const Pigment> pigments, const Substrate& substrate);
+
+/// The look of what the canvas holds in a slot.
 TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate);
 
 /// A map over the whole atlas, rows from v = 0 upwards, channels interleaved.

@@ -46,16 +46,15 @@ class Reader {
         return in_range(*node, key, lo, hi);
     }
 
-    Bands bands(std::string_view key, double lo, double hi) const {
+    Rgb rgb(std::string_view key, double lo, double hi) const {
         const toml::node* node = table_.get(key);
         if (!node) fail(line(), "'" + std::string(key) + "' is missing");
         const toml::array* array = node->as_array();
-        if (!array || array->size() != kBands)
-            fail(node->source().begin.line, "'" + std::string(key) + "' must be " +
-                                                std::to_string(kBands) +
-                                                " numbers (red, green, blue)");
-        Bands result;
-        for (int b = 0; b < kBands; ++b)
+        if (!array || array->size() != 3)
+            fail(node->source().begin.line,
+                 "'" + std::string(key) + "' must be 3 numbers (red, green, blue)");
+        Rgb result;
+        for (std::size_t b = 0; b < 3; ++b)
             result[b] = static_cast<float>(in_range(*array->get(b), key, lo, hi));
         return result;
     }
@@ -136,8 +135,8 @@ Pigment read_pigment(const Reader& in) {
     Pigment p;
     p.name = in.text("name", std::nullopt);
     if (p.name.empty()) in.fail(in.line(), "a pigment's 'name' must not be empty");
-    p.k = in.bands("K", 0, 1e3);
-    p.s = in.bands("S", 0, 1e3);
+    p.k = in.rgb("K", 0, 1e3);
+    p.s = in.rgb("S", 0, 1e3);
     p.height = static_cast<float>(in.number("height_um", 0, 10, 2.5) * 1e-6);
     p.roughness = static_cast<float>(in.number("roughness", 0, 1, 0.5));
     p.source = in.text("source", "");
@@ -167,9 +166,9 @@ std::string shortest_float(float v) {
     return buffer;
 }
 
-std::string bands_text(const Bands& bands) {
+std::string rgb_text(const Rgb& bands) {
     std::string out = "[";
-    for (int b = 0; b < kBands; ++b) out += (b ? ", " : "") + shortest_float(bands[b]);
+    for (int b = 0; b < 3; ++b) out += (b ? ", " : "") + shortest_float(bands[b]);
     return out + "]";
 }
 
@@ -223,8 +222,8 @@ std::string ink_toml(const Ink& ink) {
     for (const InkPart& part : ink.parts) {
         const Pigment& p = part.pigment;
         out << "\n[[pigment]]\nname = " << quoted(p.name)
-            << "\nfraction = " << shortest(part.fraction) << "\nK = " << bands_text(p.k)
-            << "\nS = " << bands_text(p.s) << "\nheight_um = " << shortest(p.height * 1e6)
+            << "\nfraction = " << shortest(part.fraction) << "\nK = " << rgb_text(p.k)
+            << "\nS = " << rgb_text(p.s) << "\nheight_um = " << shortest(p.height * 1e6)
             << "\nroughness = " << shortest_float(p.roughness) << "\nsource = " << quoted(p.source)
             << "\n";
     }
@@ -245,7 +244,7 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     };
     s.name = in.text("name", "");
     s.title = in.text("title", s.name);
-    s.reflectance = in.bands("reflectance", 0, 1);
+    s.reflectance = in.rgb("reflectance", 0, 1);
     s.roughness = static_cast<float>(in.number("roughness", 0, 1, 0.5));
     s.metallic = static_cast<float>(in.number("metallic", 0, 1, 0.0));
     s.capacity = static_cast<float>(in.number("capacity", 0.1, 1000, 8.0));
@@ -263,7 +262,7 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
 
 std::string substrate_toml(const Substrate& s) {
     return "name = " + quoted(s.name) + "\ntitle = " + quoted(s.title) +
-           "\nreflectance = " + bands_text(s.reflectance) +
+           "\nreflectance = " + rgb_text(s.reflectance) +
            "\nroughness = " + shortest_float(s.roughness) +
            "\nmetallic = " + shortest_float(s.metallic) +
            "\ncapacity = " + shortest_float(s.capacity) +

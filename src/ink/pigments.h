@@ -1,11 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "ink/spectrum.h"
 
 /// What inks are made of and what they are put on. Colour is computed from amounts,
 /// so presets hold optical coefficients, never colours.
@@ -13,9 +14,6 @@
 /// Film unit: 10 µm of wet ink on the surface, about 5 g/m² when dry. Amounts of ink
 /// in bulk are film·m²; one millilitre is 0.1 film·m².
 namespace tuft::ink {
-
-inline constexpr int kBands = 3;  ///< linear RGB, sRGB primaries
-using Bands = std::array<float, kBands>;
 
 inline constexpr double kFilmUnit = 1e-5;  ///< metres of wet ink
 /// film·m² in one m³ of ink.
@@ -59,7 +57,7 @@ struct Ink {
 /// What is painted on.
 struct Substrate {
     std::string name, title;
-    Bands reflectance{0.8f, 0.8f, 0.8f};  ///< linear, diffuse
+    Rgb reflectance{0.8f, 0.8f, 0.8f};  ///< linear, diffuse, of the bare surface as it is seen
     float roughness = 0.5f;               ///< glTF perceptual roughness
     float metallic = 0;
     float capacity = 8;  ///< film units that stay on it, all inks together
