@@ -229,7 +229,8 @@ void Painter::end() {
         ++made;
         publish(true);
     }
-    groups_.push_back(made);
+    if (current_.joined && !groups_.empty()) groups_.back() += made;
+    else groups_.push_back(made);
     undone_groups_.clear();
 }
 

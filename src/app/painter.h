@@ -24,6 +24,7 @@ struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
     bool carry = false;           ///< goes on with the hair and ink of the stroke before
+    bool joined = false;          ///< is undone together with the one before it
 };
 /// Dips, rinses or combs a brush.
 struct CareForBrush {

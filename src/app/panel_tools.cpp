@@ -184,6 +184,35 @@ void section_section(Session& s) {
     ui.slider("What stays", s.view.section_at, 0.02, 1, "%.2f");
 }
 
+void tool_buttons(Session& s) {
+    struct Entry {
+        Tool tool;
+        const char *name, *hint;
+    };
+    static constexpr Entry entries[] = {
+        {Tool::brush, "Brush", "Paint freely (B)"},
+        {Tool::line, "Line", "Straight as you see it, from press to release; Shift for steps of 15 degrees. Its ends can be moved afterwards (L)"},
+        {Tool::curve, "Curve", "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"}};
+    const float third = (ImGui::GetContentRegionAvail().x / s.ui.settings().scale - 16) / 3;
+    for (std::size_t i = 0; i < std::size(entries); ++i) {
+        if (i % 3) ImGui::SameLine();
+        if (s.ui.choice(entries[i].name, s.tool == entries[i].tool, entries[i].hint, third)) s.tool = entries[i].tool;
+    }
+}
+
+// How the hand goes along lines and curves.
+void curve_section(Session& s) {
+    if (s.tool != Tool::line && s.tool != Tool::curve) return;
+    Ui& ui = s.ui;
+    ui.heading("Along the line");
+    CurveSettings& c = s.curve_settings;
+    bool changed = ui.slider("Press down in", c.taper_in, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
+    changed |= ui.slider("Lift in", c.taper_out, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
+    changed |= ui.slider("Pace", c.speed, 0.01, 0.4, "%.0f mm/s", "Of the hand", kMillimetre);
+    if (changed) s.curve.changed = true;
+    if (s.tool == Tool::curve) ui.note(ui.tr("Click to set points, Enter to paint, Esc to drop them."));
+}
+
 }  // namespace
 
 unsigned ink_colour(const std::string& name) {
@@ -215,14 +244,12 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     ImGui::SetNextWindowSize(ImVec2(s.ui.px(kToolWidth), bottom - top));
     ImGui::Begin("###tools", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                                           ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
-    const float half = (kToolWidth - 24 - 8) / 2 - (ImGui::GetScrollMaxY() > 0 ? 6.0f : 0.0f);
-    if (s.ui.choice("Brush", s.tool == Tool::brush, "Paint freely (B)", half)) s.tool = Tool::brush;
-    ImGui::SameLine();
-    if (s.ui.choice("Line", s.tool == Tool::line, "Straight on the screen, from press to release (L)", half)) s.tool = Tool::line;
+    tool_buttons(s);
     brush_rack(s);
     ink_palette(s);
     care_section(s);
     hand_section(s);
+    curve_section(s);
     symmetry_section(s);
     section_section(s);
     ImGui::End();

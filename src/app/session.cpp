@@ -70,6 +70,7 @@ void close_model(Session& s) {
     s.strokes.clear();
     s.selected = 0;
     s.tuft = {};
+    s.curve = {};
     if (empty && is_unnamed(project)) {
         std::error_code ec;
         fs::remove(project, ec);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/curve.h"
 #include "app/file_dialog.h"
 #include "app/hand.h"
 #include "app/opening.h"
@@ -19,7 +20,7 @@
 namespace tuft::app {
 
 enum class ModelView { glaze, clay, flat, height, texels, charts, stretch };
-enum class Tool { brush, line };
+enum class Tool { brush, line, curve };
 enum class Keymap { blender, maya };
 
 /// How the model is looked at.
@@ -69,6 +70,8 @@ struct Session {
     std::string brush = "wolf-medium", ink = "carbon";
     HandSettings hand;
     stroke::Symmetry symmetry;
+    CurveInWork curve;
+    CurveSettings curve_settings;
     bool more_hand = false;                ///< all settings of the hand are shown
     double highest = 0;                    ///< micrometres, of the ink seen so far
     bool carry = false;                    ///< ink lasts from stroke to stroke

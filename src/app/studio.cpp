@@ -85,10 +85,6 @@ void Studio::panels(int height) {
         status_bar(s, bottom);
         tuft_inset(s);
         view_marks(s, camera());
-        if (line_start_) {
-            ImGui::GetBackgroundDrawList()->AddLine(ImVec2(static_cast<float>(line_start_->x), static_cast<float>(line_start_->y)),
-                                                    ImVec2(static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)), s.ui.accent, s.ui.px(2));
-        }
     } else {
         welcome(s);
     }
@@ -234,7 +230,10 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     layout(width, height);
     if (s.painter) take_model();
     for (const Event& event : events) handle(event);
-    if (s.painter) update_tuft(now);
+    if (s.painter) {
+        watch_curve();
+        update_tuft(now);
+    }
     panels(height);
     if (++frames_ % draw_every_ != 0) return ImGui::EndFrame();
     draw_scene(framebuffer, height);

@@ -47,7 +47,16 @@ class Studio {
     void release(const Event& event);
     void key(const Event& event);
     void post(std::vector<HandStep> steps, double time);
-    void draw_line(const Event& end);
+    int curve_point_at(const Event& event) const;
+    std::optional<CurvePoint> curve_point(const Event& event) const;
+    bool curve_editable() const;
+    void curve_press(const Event& event);
+    void curve_drag(const Event& event);
+    void curve_release(const Event& event);
+    void curve_wheel(const Event& event);
+    bool curve_key(const Event& event);
+    void paint_curve();
+    void watch_curve();
     void update_tuft(double now);
     void show_colours();
     void draw_scene(unsigned framebuffer, int height);
@@ -60,7 +69,9 @@ class Studio {
     std::unique_ptr<render::GlScene> scene_;
     std::unique_ptr<render::GlView> view_;
     std::optional<Hand> hand_;
-    std::optional<Event> line_start_;
+    std::optional<Event> line_start_;         ///< where a new control point was set
+    std::vector<stroke::Lead> lead_;
+    std::string lead_brush_;
     Event cursor_;
     bool cursor_inside_ = false;
     Drag drag_ = Drag::none;

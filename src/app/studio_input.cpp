@@ -13,7 +13,6 @@ namespace tuft::app {
 namespace {
 
 constexpr double kTurnPixels = 1.0;
-constexpr double kLineSpeed = 0.08;  // metres per second of the hand along a straight line
 
 }  // namespace
 
@@ -50,6 +49,7 @@ void Studio::handle(const Event& e) {
         case Event::Kind::hover_end: cursor_inside_ = false; return;
         case Event::Kind::scroll:
             if (!s.painter || ImGui::GetIO().WantCaptureMouse) return;
+            if (s.curve.over >= 0) return curve_wheel(e);
             last_turn_ = now_;
             if (e.modifiers & kControl) s.view.orbit.roll += 0.06 * e.steps;
             else {
@@ -66,17 +66,14 @@ void Studio::handle(const Event& e) {
 
 void Studio::press(const Event& e) {
     Session& s = session_;
-    if (!s.painter || ImGui::GetIO().WantCaptureMouse || dialog_open() || hand_ || line_start_) return;
+    if (!s.painter || ImGui::GetIO().WantCaptureMouse || dialog_open() || hand_ || s.curve.grabbed >= 0) return;
     const bool shift = e.modifiers & kShift, control = e.modifiers & kControl, alt = e.modifiers & kAlt;
     if (s.keymap == Keymap::maya && alt)
         drag_ = e.button == 0 ? Drag::turn : e.button == 2 ? Drag::pan : Drag::zoom;
     else if (e.button == 0 && alt) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     else if (e.button != 0 && s.keymap == Keymap::blender) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     if (drag_ != Drag::none || e.button != 0) return;
-    if (s.tool == Tool::line) {
-        line_start_ = e;
-        return;
-    }
+    if (s.tool == Tool::line || s.tool == Tool::curve) return curve_press(e);
     try {
         hand_.emplace(*s.painter->model().query, brush::load_preset(s.brush), s.hand);
     } catch (const Error& error) {
@@ -93,6 +90,7 @@ void Studio::move(const Event& e) {
         post(hand_->move(aim_of(e)), e.time);
         return;
     }
+    if (s.curve.grabbed >= 0) return curve_drag(e);
     const double dx = kTurnPixels * (e.x - cursor_.x), dy = kTurnPixels * (e.y - cursor_.y);
     if (drag_ == Drag::turn) s.view.orbit.turn(dx, dy);
     else if (drag_ == Drag::pan) s.view.orbit.pan(dx, dy, s.area.height);
@@ -107,30 +105,8 @@ void Studio::release(const Event& e) {
         hand_.reset();
         s.hand_down = false;
     }
-    if (line_start_ && e.button == 0) draw_line(e);
+    if (e.button == 0 && s.curve.grabbed >= 0) curve_release(e);
     drag_ = Drag::none;
-}
-
-// A straight stroke on the screen, drawn at an even pace once its end is known.
-void Studio::draw_line(const Event& end) {
-    Session& s = session_;
-    const Event start = *line_start_;
-    line_start_.reset();
-    const double pixels = std::hypot(end.x - start.x, end.y - start.y);
-    if (pixels < 3) return;
-    Hand hand(*s.painter->model().query, brush::load_preset(s.brush), s.hand);
-    const double seconds = std::max(0.3, pixels * render::metres_per_pixel(camera(), s.view.orbit.target) / kLineSpeed);
-    const int n = std::clamp(static_cast<int>(seconds * 250), 32, 4000);
-    for (int i = 0; i <= n; ++i) {
-        Event at = start;
-        const double part = static_cast<double>(i) / n;
-        at.x += part * (end.x - start.x);
-        at.y += part * (end.y - start.y);
-        at.time = seconds * part;
-        at.pressure = -1;
-        post(hand.move(aim_of(at)), end.time);
-    }
-    post(hand.lift(), end.time);
 }
 
 void Studio::key(const Event& e) {
@@ -149,6 +125,7 @@ void Studio::key(const Event& e) {
     if (control && e.key == GLFW_KEY_Q) s.quit = true;
     if (e.key == GLFW_KEY_F1) s.show_keys = !s.show_keys;
     if (!s.painter || dialog_open()) return;
+    if (curve_key(e)) return;
     const auto tilt = [&](double x, double y) {
         s.hand.tilt = glm::clamp(s.hand.tilt + Vec2(x, y) * 0.0872664626, -1.0471975512, 1.0471975512);
     };
@@ -188,6 +165,7 @@ void Studio::key(const Event& e) {
         case GLFW_KEY_BACKSLASH: s.hand.tilt = Vec2(0); break;
         case GLFW_KEY_B: s.tool = Tool::brush; break;
         case GLFW_KEY_L: s.tool = Tool::line; break;
+        case GLFW_KEY_C: s.tool = Tool::curve; break;
         case GLFW_KEY_X: s.view.see_through = !s.view.see_through; break;
         default: break;
     }

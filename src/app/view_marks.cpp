@@ -89,6 +89,24 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     draw->AddText(ImVec2(right - width, y - s.ui.px(24)), IM_COL32(235, 235, 235, 230), text);
 }
 
+// Control points and the curve through them, as it lies on the model.
+void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    const auto& points = s.curve.points;
+    if (points.empty()) return;
+    const std::vector<CurvePlace> places = lay_curve(*s.painter->model().query, points, 32);
+    for (const auto& [colour, width] : {std::pair{IM_COL32(20, 20, 24, 170), 4.0f}, std::pair{IM_COL32(255, 196, 64, 255), 1.8f}})
+        for (std::size_t i = 1; i < places.size(); ++i)
+            if (places[i].on && places[i - 1].on)
+                draw->AddLine(on_screen(s, c, places[i - 1].position), on_screen(s, c, places[i].position), colour, s.ui.px(width));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool held = static_cast<int>(i) == s.curve.grabbed || static_cast<int>(i) == s.curve.over;
+        const ImVec2 at = on_screen(s, c, points[i].position);
+        const float radius = s.ui.px(3.5f + 2.5f * static_cast<float>(points[i].pressure));
+        draw->AddCircleFilled(at, radius, held ? IM_COL32(255, 224, 130, 255) : IM_COL32(255, 255, 255, 255), 24);
+        draw->AddCircle(at, radius, IM_COL32(30, 30, 34, 255), 24, s.ui.px(1.6f));
+    }
+}
+
 struct Stop {
     unsigned colour;
     float at;
@@ -135,6 +153,7 @@ void view_marks(const Session& s, const render::GlCamera& c) {
     draw->PushClipRect(ImVec2(static_cast<float>(s.area.x), static_cast<float>(s.area.y)),
                        ImVec2(static_cast<float>(s.area.x + s.area.width), static_cast<float>(s.area.y + s.area.height)), true);
     if (!s.tuft.branches.empty()) s.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
+    curve_marks(s, c, draw);
     axis_cross(s, c, draw);
     scale_bar(s, c, draw);
     legends(s, draw);

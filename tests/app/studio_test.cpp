@@ -112,6 +112,20 @@ TEST_F(StudioProgram, AJournalThatWasChangedReplaysToTheSameTexels) {
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
 }
 
+TEST_F(StudioProgram, ALineFollowsItsControlPointsAndIsUndoneAsOne) {
+    const Ran ran = studio(kBowl + "set tool line\nstroke 44%,58% 58%,58%\nwait-ready\nwait 0.1\nexpect strokes 1\n"
+                                   "move 58%,58%\npress\nmove 57%,61%\nmove 56%,62%\nrelease\nwait-ready\nwait 0.1\nexpect strokes 1\n"
+                                   "key c\nmove 45%,57%\npress\nrelease\nmove 50%,61%\npress\nrelease\nmove 54%,57%\npress\nrelease\n"
+                                   "key enter\nwait-ready\nwait 0.1\nexpect strokes 2\nundo\nwait-ready\nexpect strokes 1\nsave after.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    // Drawn level; its right end was pulled down then.
+    const auto strokes = io::Project::open(path("after.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 1u);
+    const auto& samples = strokes[0].trace.samples;
+    EXPECT_LT(samples.back().position.z, samples.front().position.z - 3e-3);
+    EXPECT_EQ(tuft("replay '" + path("after.tuft") + "'")["canvas_hash"], stored_hash(path("after.tuft")));
+}
+
 TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
     const std::string script = kBowl + kTwoStrokes + "screenshot ready.png\nmove 47%,58%\npress\nmove 50%,59%\nwait 100\n";
     const std::string line = command(script, "--headless --size 860x520");

@@ -1,0 +1,107 @@
+#include "app/curve.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "app/texture.h"
+#include "models.h"
+
+namespace tuft::app {
+namespace {
+
+TEST(Curve, TwoPointsOnASheetAreJoinedByAStraightLine) {
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(TUFT_SOURCE "/models/sheet.ply")).mesh;
+    const mesh::SurfaceQuery query(mesh);
+    const Vec3 c(mesh.bounds.centre().x, mesh.bounds.centre().y, mesh.bounds.hi.z);
+    const std::vector<CurvePoint> points{{.position = c - Vec3(0.04, 0, 0)}, {.position = c + Vec3(0.04, 0.02, 0)}};
+    const auto places = lay_curve(query, points, 10);
+    ASSERT_EQ(places.size(), 11u);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Vec3 want = glm::mix(points[0].position, points[1].position, static_cast<double>(i) / 10);
+        EXPECT_NEAR(glm::distance(places[i].position, want), 0, 1e-7);  // Embree works in single precision
+    }
+    // The length of a straight line is that of its ends.
+    EXPECT_NEAR(places.back().along, std::hypot(0.08, 0.02), 1e-6);
+}
+
+TEST(Curve, GoesThroughItsPointsOnTheSideThatIsSeen) {
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(TUFT_SOURCE "/models/bowl.ply")).mesh;
+    const mesh::SurfaceQuery query(mesh);
+    const Vec3 middle = mesh.bounds.centre();
+    std::vector<CurvePoint> points;
+    for (const double angle : {0.0, 0.5, 0.9, 1.6}) {
+        const Vec3 out(std::cos(angle), std::sin(angle), 0);
+        const auto hit = query.ray(middle + 0.5 * out + Vec3(0, 0, 0.01 * std::sin(3 * angle)), -out);
+        ASSERT_TRUE(hit);
+        points.push_back({.position = hit->position, .outward = out});
+    }
+    const auto places = lay_curve(query, points, 16);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        EXPECT_NEAR(glm::distance(places[16 * i].position, points[i].position), 0, 1e-6);
+    for (const CurvePlace& place : places) {
+        ASSERT_TRUE(place.on);
+        // The inside of the thin wall faces the other way.
+        EXPECT_GT(glm::dot(place.normal, glm::normalize(place.position - Vec3(middle.x, middle.y, place.position.z))), 0);
+    }
+}
+
+TEST(Curve, BreaksWhereThereIsNoModel) {
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(TUFT_SOURCE "/models/torus.ply")).mesh;
+    const mesh::SurfaceQuery query(mesh);
+    const Box& b = mesh.bounds;
+    std::vector<CurvePoint> points;
+    for (const double x : {b.lo.x, b.hi.x}) {
+        const auto hit = query.ray(Vec3(0.9 * x + 0.1 * b.centre().x, b.centre().y, b.hi.z + 0.1), Vec3(0, 0, -1));
+        ASSERT_TRUE(hit);
+        points.push_back({.position = hit->position});
+    }
+    const brush::Preset preset = brush::load_preset("wolf-small");
+    EXPECT_EQ(curve_poses(query, points, {.hold = stroke::hold_options(preset)}).size(), 2u);  // over the hole
+}
+
+TEST(Curve, ItsInkLiesOnIt) {
+    const stroke::Model model = test::shipped_model("sheet.ply", 1024);
+    const Vec3 c(model.mesh->bounds.centre().x, model.mesh->bounds.centre().y, model.mesh->bounds.hi.z);
+    constexpr double radius = 0.03;
+    std::vector<CurvePoint> points;
+    for (int i = 0; i <= 8; ++i) {
+        const double a = std::numbers::pi * i / 8;
+        points.push_back({.position = c + radius * Vec3(std::cos(a), std::sin(a), 0)});
+    }
+    stroke::Painting painting(model);
+    const brush::Preset preset = painting.brush("wolf-medium");
+    CurveHand hand{.hold = stroke::hold_options(preset), .pressure = 0.4};
+    hand.hold.lead = stroke::drag_lead(preset);
+    const auto strokes = curve_poses(*model.query, points, hand);
+    ASSERT_EQ(strokes.size(), 1u);
+    stroke::Stroke stroke;
+    stroke.trace.flat = false;
+    stroke.trace.brush = "wolf-medium";
+    stroke.trace.ink = "carbon";
+    painting.begin(std::move(stroke));
+    painting.extend(strokes[0]);
+    painting.end();
+    const render::MapPixels map = Texture(painting).pixels();
+    double sum = 0, off = 0, wide = 0;
+    for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            const std::uint32_t tile = model.texels.tile_of_slot[slot];
+            if (model.texels.tiles[slot].piece[static_cast<std::size_t>(t)] == atlas::kNoPiece) continue;
+            const std::size_t x = tile % model.texels.tiles_per_side * atlas::kTile + static_cast<std::size_t>(t) % atlas::kTile,
+                              y = tile / model.texels.tiles_per_side * atlas::kTile + static_cast<std::size_t>(t) / atlas::kTile;
+            const double ink = map.levels[0][y * map.size + x][3];
+            const Vec3 p = Vec3(model.texels.position(slot, t)) - c;
+            if (ink == 0) continue;
+            sum += ink;
+            off += ink * (std::hypot(p.x, p.y) - radius);
+            wide += ink * std::abs(std::hypot(p.x, p.y) - radius);
+        }
+    ASSERT_GT(sum, 0);
+    // The middle of the ink is nearer to the circle than half of what its line spreads.
+    EXPECT_LT(std::abs(off / sum), 0.5 * wide / sum) << 1e3 * off / sum << " mm of " << 1e3 * wide / sum;
+}
+
+}  // namespace
+}  // namespace tuft::app
