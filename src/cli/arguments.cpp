@@ -109,6 +109,10 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->check(CLI::IsMember({"exact", "vertices"}));
     p->add_option("--dip", paint.dip, "dip a fresh brush for each stroke, or carry hair and ink on until told")
         ->check(CLI::IsMember({"each", "carry"}));
+    p->add_option("--dry", paint.dry,
+                  "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
+        ->check(CLI::Range(0.0, 86400.0))
+        ->type_name("SECONDS");
     p->add_option("--pressure", paint.pressure,
                   "pressure for flat strokes that have none: none, speed, dwell or speed+dwell")
         ->check(CLI::IsMember({"none", "speed", "dwell", "speed+dwell"}));

@@ -109,7 +109,7 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
                 trace.brush = a.brush.empty() ? "wolf-medium" : a.brush;
             if (trace.ink.empty() || !a.ink.empty()) trace.ink = a.ink.empty() ? "carbon" : a.ink;
             for (const stroke::Care& care : std::exchange(trace.before, {})) {
-                stroke::Stroke entry{.settings = settings, .action = care.action};
+                stroke::Stroke entry{.settings = settings, .action = care.action, .seconds = care.seconds};
                 entry.trace.flat = false;
                 entry.trace.brush = trace.brush;
                 entry.trace.ink = care.ink.empty() ? trace.ink : care.ink;
@@ -119,6 +119,13 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
             if (trace.flat && !trace.pressed) s.settings.pressure = a.pressure;
             s.trace = std::move(trace);
             strokes.push_back(std::move(s));
+        }
+        if (a.dry >= 0 && !strokes.empty()) {
+            stroke::Stroke entry{.settings = settings, .action = stroke::Action::dry, .seconds = a.dry};
+            entry.trace.flat = false;
+            entry.trace.brush = strokes.back().trace.brush;
+            entry.trace.ink = strokes.back().trace.ink;
+            strokes.push_back(std::move(entry));
         }
         report(console.progress(), "strokes", 1);
     }

@@ -17,23 +17,44 @@ namespace tuft::ink {
 
 inline constexpr int kMaxPigments = 8;
 
-/// Amounts of one pigment on one tile, film units, texel t = row * 16 + column.
+/// The films of a texel from the substrate upwards: pigment soaked into the substrate, dry
+/// films, and on top the open film that strokes paint into. An open film that is wet flows;
+/// when its water is gone it is closed: it becomes the texel's next dry film (drying.h).
+inline constexpr int kDryFilms = 8;
+inline constexpr int kFilms = kDryFilms + 2;
+inline constexpr int kSoakedFilm = 0, kFirstDryFilm = 1, kOpenFilm = kFilms - 1;
+
+/// Where liquid is: in the open film, or in the pores of the substrate.
+enum class Liquid : std::uint8_t { film, pores };
+
+/// Amounts of one pigment (or of liquid) on one tile, film units, texel t = row * 16 + column.
 struct alignas(64) Plane : std::array<float, atlas::kTileTexels> {};
 
-/// What one tile held: for undo and for files. Planes follow each other in the order
-/// of the set bits of `planes`.
+/// Planes of a film below the open one in a snapshot, or of the liquid (`film` = kFilms,
+/// bit 0 the open film's, bit 1 the pores').
+struct FilmPlanes {
+    std::uint8_t film = 0;
+    std::uint8_t planes = 0;  ///< bit p: pigment p has a plane here
+
+    bool operator==(const FilmPlanes&) const = default;
+};
+
+/// What one tile held: for undo and for files. Planes follow each other in the order of the
+/// set bits of `planes`, then of those of `under`, film by film.
 struct TileSnapshot {
     std::uint32_t slot = 0;
-    std::uint8_t planes = 0;     ///< bit p: pigment p has a plane here
+    std::uint8_t planes = 0;     ///< of the open film; bit p: pigment p has a plane here
     std::vector<float> amounts;  ///< [256 × number of set bits]
+    std::vector<FilmPlanes> under = {};  ///< ascending, no empty ones
 
     bool operator==(const TileSnapshot&) const = default;
 };
 
-/// Sparse store: for each slot of an `atlas::TexelMap` up to eight planes, made when
-/// first touched, so memory follows the painted area (1 KiB per tile and pigment).
-/// Different slots may be read and written by different threads at once; adding
-/// pigments, copying and the functions over all slots may not run beside them.
+/// Sparse store: for each slot of an `atlas::TexelMap` films of up to eight pigment planes
+/// each, and up to two planes of liquid, made when first touched, so memory follows the
+/// painted area (1 KiB per tile, film and pigment). Different slots may be read and written
+/// by different threads at once; adding pigments, copying and the functions over all slots
+/// may not run beside them.
 class Canvas {
   public:
     explicit Canvas(std::size_t n_slots = 0);
@@ -52,10 +73,31 @@ class Canvas {
     /// Gives plane `index` other optical properties: recolours without repainting.
     void set_pigment(int index, const Pigment& pigment);
 
-    /// The plane, or nullptr where nothing was ever put.
-    const Plane* plane(std::uint32_t slot, int pigment) const;
-    /// The plane, made and zeroed when needed; the slot becomes dirty.
-    Plane& touch(std::uint32_t slot, int pigment);
+    /// The plane of the open film, or nullptr where nothing was ever put.
+    const Plane* plane(std::uint32_t slot, int pigment) const {
+        return film_plane(slot, kOpenFilm, pigment);
+    }
+    /// The plane of the open film, made and zeroed when needed; the slot becomes dirty.
+    Plane& touch(std::uint32_t slot, int pigment) { return touch_film(slot, kOpenFilm, pigment); }
+
+    /// The same for any film.
+    const Plane* film_plane(std::uint32_t slot, int film, int pigment) const;
+    Plane& touch_film(std::uint32_t slot, int film, int pigment);
+    /// Whether the film has any plane.
+    bool has_film(std::uint32_t slot, int film) const;
+
+    /// The plane of liquid, film units, or nullptr where it is dry.
+    const Plane* liquid(std::uint32_t slot, Liquid where) const;
+    Plane& touch_liquid(std::uint32_t slot, Liquid where);
+    /// Puts another plane in place of a plane of liquid or of the open film, handing back the
+    /// old one; either may be null.
+    void swap_liquid(std::uint32_t slot, Liquid where, std::unique_ptr<Plane>& plane);
+    void swap_open(std::uint32_t slot, int pigment, std::unique_ptr<Plane>& plane);
+    /// Whether any slot has a plane of liquid.
+    bool wet() const { return n_liquid_ > 0; }
+    /// Slots with a plane of liquid, ascending.
+    std::vector<std::uint32_t> wet_slots() const;
+
     /// Whether the slot has any plane.
     bool touched(std::uint32_t slot) const { return slots_[slot] != nullptr; }
     /// Slots with a plane, ascending.
@@ -69,7 +111,7 @@ class Canvas {
     /// Puts a tile back as it was; the slot becomes dirty. Throws `Error` when the
     /// snapshot's size does not fit its planes, its slot or the pigments.
     void restore(const TileSnapshot& snapshot);
-    /// Removes all ink; pigments stay.
+    /// Removes all ink and liquid; pigments stay.
     void clear();
 
     /// Bytes held by planes and slot tables.
@@ -79,17 +121,29 @@ class Canvas {
     /// Same pigment names and same amounts to the bit, absent planes being zeros.
     bool same_contents(const Canvas& other) const;
 
-    /// Σ amount · area of one pigment, film·m², in double, in slot order.
+    /// Σ amount · area of one pigment in all films, film·m², in double, in slot order.
     double total(const atlas::TexelMap& map, int pigment) const;
+    /// The same of the liquid, in film and pores.
+    double total_liquid(const atlas::TexelMap& map) const;
 
   private:
+    using PlanePtr = std::unique_ptr<Plane>;
+    using Film = std::array<PlanePtr, kMaxPigments>;
     struct Tile {
-        std::array<std::unique_ptr<Plane>, kMaxPigments> planes;
+        Film open;
+        std::array<PlanePtr, 2> liquid;
+        std::vector<std::unique_ptr<Film>> under;  ///< [film] soaked and dry ones, as many as needed
     };
+    Tile& tile(std::uint32_t slot);
+    Plane& make(PlanePtr& plane);
+    /// Calls fn(film, index, plane) for the planes there are; film kFilms: liquid.
+    template <class Fn>
+    void each_plane(std::uint32_t slot, Fn&& fn) const;
+
     std::vector<Pigment> pigments_;
     std::vector<std::unique_ptr<Tile>> slots_;
     std::vector<std::uint8_t> dirty_;
-    std::atomic<std::size_t> n_planes_{0}, n_tiles_{0};
+    std::atomic<std::size_t> n_planes_{0}, n_films_{0}, n_tiles_{0}, n_liquid_{0};
 };
 
 }  // namespace tuft::ink

@@ -211,6 +211,15 @@ AtlasMap<T> compose(const Canvas& canvas, const atlas::TexelMap& map,
     return image;
 }
 
+/// Film units on a texel, all films and pigments together.
+float film_on(const Canvas& canvas, std::uint32_t slot, int texel) {
+    float sum = 0;
+    for (int film = kFirstDryFilm; film < kFilms; ++film)
+        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+            if (const Plane* w = canvas.film_plane(slot, film, p)) sum += (*w)[texel];
+    return sum;
+}
+
 TileOut<std::uint8_t, 3> srgb8_of(const TileLook& look) {
     TileOut<std::uint8_t, 3> out;
     for (int t = 0; t < kN; ++t)
@@ -277,10 +286,7 @@ AtlasMap<std::uint8_t> compose_orm8(const Canvas& canvas, const atlas::TexelMap&
             TileOut<std::uint8_t, 3> out;
             for (int t = 0; t < kN; ++t) {
                 // Ink hides the substrate's metal as it hides its microfacets.
-                float film = 0;
-                for (int p = 0;
-                     substrate.metallic > 0 && p < static_cast<int>(canvas.pigments().size()); ++p)
-                    if (const Plane* w = canvas.plane(slot, p)) film += (*w)[t];
+                const float film = substrate.metallic > 0 ? film_on(canvas, slot, t) : 0;
                 out[t] = {255, unit8(look.roughness[t]),
                           unit8(substrate.metallic * std::exp(-4 * film))};
             }

@@ -142,6 +142,7 @@ void lay_film(std::array<Texels, kBands>& r, TileLook& look, const TileFilm& fil
             blend(r[b].data(), covered.data(), part.data());
         }
     }
+    if (film.inside) return;
     for (std::size_t p = 0; p < pigments.size(); ++p) {
         if (!film.pigments[p]) continue;
         const float* w = film.pigments[p]->data();
@@ -188,10 +189,16 @@ TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
 }
 
 TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate) {
-    TileFilm film;
-    for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
-        film.pigments[p] = canvas.plane(slot, p);
-    return look_of_films(std::span(&film, 1), nullptr, canvas.pigments(), substrate);
+    std::array<TileFilm, kFilms> films;
+    std::size_t n = 0;
+    for (int film = 0; film < kFilms; ++film) {
+        if (!canvas.has_film(slot, film)) continue;
+        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+            films[n].pigments[p] = canvas.film_plane(slot, film, p);
+        films[n++].inside = film == kSoakedFilm;
+    }
+    return look_of_films(std::span(films.data(), n), canvas.liquid(slot, Liquid::film), canvas.pigments(),
+                         substrate);
 }
 
 }  // namespace tuft::ink

@@ -24,6 +24,7 @@ struct TileFilm {
     std::array<const Plane*, kMaxPigments> pigments{};  ///< amounts, film units; null: none
     const Plane* mask = nullptr;                        ///< 0–1 per texel; null: 1 everywhere
     float opacity = 1;                                  ///< of the whole film, 0–1
+    bool inside = false;  ///< soaked into the substrate: its surface stays as it is
 };
 
 /// Colour, height and roughness of a stack of films, the lowest first. In each band
@@ -47,7 +48,8 @@ struct TileFilm {
 TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
                        std::span<const Pigment> pigments, const Substrate& substrate);
 
-/// The look of what the canvas holds in a slot.
+/// The look of what the canvas holds in a slot: its films from the soaked one to the open one,
+/// and the liquid on top.
 TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate);
 
 /// A map over the whole atlas, rows from v = 0 upwards, channels interleaved.

@@ -327,7 +327,21 @@ class Reader {
     }
 
     static bool is_care(std::string_view type) {
-        return type == "dip" || type == "rinse" || type == "reshape";
+        return type == "dip" || type == "rinse" || type == "reshape" || type == "dry";
+    }
+
+    /// Seconds to dry for; nothing written: until all is dry.
+    double seconds_of(const xml_node& node, std::string_view text) const {
+        double x = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+        if (!text.empty() && (error != std::errc() || end != text.data() + text.size()))
+            fail(node, "'" + std::string(text) + "' is no number of seconds");
+        try {
+            stroke::check_seconds(x);
+        } catch (const Error& e) {
+            fail(node, e.what());
+        }
+        return x;
     }
 
     /// What is to be done with the brush before this trace, in the order written.
@@ -340,7 +354,10 @@ class Reader {
             type.remove_prefix(5);
             const std::string text = text_of(node);
             const stroke::Action action = stroke::action_of(std::string(type));
-            care.push_back({action, action == stroke::Action::dip ? std::string(trimmed(text)) : ""});
+            stroke::Care& one = care.emplace_back();
+            one.action = action;
+            if (action == stroke::Action::dip) one.ink = trimmed(text);
+            if (action == stroke::Action::dry) one.seconds = seconds_of(node, trimmed(text));
         }
         return care;
     }

@@ -45,7 +45,8 @@ struct InkmlOptions {
 ///     tuft:label    any text             tuft:laying  wrap | project
 ///
 /// and, on a `trace` only, what is done with the brush before it, in the order written:
-/// tuft:dip (an ink's name, or empty: the trace's own), tuft:rinse, tuft:reshape.
+/// tuft:dip (an ink's name, or empty: the trace's own), tuft:rinse, tuft:reshape, tuft:dry
+/// (seconds, or empty: until all is dry).
 ///
 /// Flat traces without P and F get pressure that swells in and tapers out over their length
 /// and falls with speed; P without a declared range is 0–1, or scaled by its largest value.

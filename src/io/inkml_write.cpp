@@ -101,7 +101,7 @@ void add_trace(std::string& out, const Trace& trace, Kind kind) {
     add_annotation(out, "      ", "label", trace.label);
     for (const stroke::Care& care : trace.before)
         out += fmt::format("      <annotation type=\"tuft:{}\">{}</annotation>\n", stroke::name_of(care.action),
-                           escaped(care.ink));
+                           care.seconds > 0 ? fmt::format("{}", care.seconds) : escaped(care.ink));
     if (trace.seed) add_annotation(out, "      ", "seed", std::to_string(trace.seed));
     const int decimals = trace.flat ? 3 : 7;
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {

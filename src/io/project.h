@@ -18,7 +18,8 @@
 /// its atlas, the presets used, the journal and a picture of the texels.
 namespace tuft::io {
 
-inline constexpr int kProjectFormat = 1;  ///< highest format version this program reads
+inline constexpr int kProjectFormat = 2;  ///< highest format version this program reads
+inline constexpr int kFirstFormat = 1;    ///< of projects without dry films, soaked ink and water
 
 /// A preset's name and TOML text.
 using PresetText = std::pair<std::string, std::string>;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kLongestString = 1.0;    // metres
 constexpr double kStrongestFilter = 100;
-constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape"};
+constexpr double kLongestWait = 86400;    // seconds
+constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry"};
 
 nlohmann::json json_of(const Settings& s) {
     return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
@@ -62,12 +63,18 @@ void check_settings(const Settings& s) {
     if (!(s.stabilise >= 0 && s.stabilise <= kLongestString)) throw Error("stabilise is out of range");
 }
 
+void check_seconds(double seconds) {
+    if (!(seconds >= 0 && seconds <= kLongestWait))
+        throw Error("ink dries for 0 to " + std::to_string(static_cast<int>(kLongestWait)) + " seconds");
+}
+
 std::string to_json(const Settings& s) { return json_of(s).dump(); }
 Settings settings_from_json(const std::string& json) { return settings_of(parsed(json)); }
 
 std::string entry_json(const Stroke& entry) {
     nlohmann::json j = json_of(entry.settings);
     if (entry.action != Action::stroke) j["action"] = name_of(entry.action);
+    if (entry.action == Action::dry) j["seconds"] = entry.seconds;
     return j.dump();
 }
 
@@ -79,14 +86,20 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     if (action == j.end()) return;
     if (!action->is_string()) throw Error("the action of a journal's entry cannot be read");
     entry.action = action_of(action->get<std::string>());
+    const auto seconds = j.find("seconds");
+    if (seconds == j.end()) return;
+    if (!seconds->is_number()) throw Error("the seconds of a journal's entry cannot be read");
+    entry.seconds = seconds->get<double>();
+    check_seconds(entry.seconds);
 }
 
 std::string name_of(Action action) { return kActions[static_cast<int>(action)]; }
 
 Action action_of(const std::string& name) {
-    for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape})
+    for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape,
+                           Action::dry})
         if (name == name_of(a)) return a;
-    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse and reshape");
+    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape and dry");
 }
 
 const Stroke& Journal::append(Stroke stroke) {

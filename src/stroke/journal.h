@@ -31,22 +31,25 @@ std::string to_json(const Settings& settings);
 Settings settings_from_json(const std::string& json);
 /// Throws `Error` for a word or a number that means nothing.
 void check_settings(const Settings& settings);
+/// Throws `Error` for a time that ink cannot dry for.
+void check_seconds(double seconds);
 
-/// An entry of the journal: a stroke, or an action of the brush between strokes. An action
-/// has no samples; it names a brush, and for a dip the ink.
+/// An entry of the journal: a stroke, or an action between strokes. An action has no samples;
+/// it names a brush, and for a dip the ink. Drying leaves the brush as it is.
 struct Stroke {
     std::uint64_t id = 0;     ///< unique in its journal, never used again
     Trace trace;              ///< with the names of its brush and ink filled in
     Settings settings;
     bool hidden = false;      ///< kept, but not painted
     Action action = Action::stroke;
+    double seconds = 0;       ///< of `Action::dry`; 0: until all is dry
 };
 
-/// The settings of an entry as above, with the entry's action as one more key.
+/// The settings of an entry as above, with the entry's action and seconds as further keys.
 std::string entry_json(const Stroke& entry);
 void read_entry_json(const std::string& json, Stroke& entry);
 
-/// "stroke", "dip", "rinse", "reshape"; and back, throwing `Error` for any other word.
+/// "stroke", "dip", "rinse", "reshape", "dry"; and back, throwing `Error` for any other word.
 std::string name_of(Action action);
 Action action_of(const std::string& name);
 

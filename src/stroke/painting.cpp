@@ -5,6 +5,7 @@
 
 #include "contact/contact.h"
 #include "footprint/outline.h"
+#include "ink/drying.h"
 #include "stroke/hand.h"
 #include "stroke/resample.h"
 #include "stroke/stamper.h"
@@ -149,6 +150,10 @@ void Painting::put_down(std::uint64_t id, const std::string& brush, BrushInHand 
         undo.bytes += sizeof(BrushInHand);
     }
     held_.insert_or_assign(brush, std::move(after));
+    keep_undo(std::move(undo));
+}
+
+void Painting::keep_undo(Undo undo) {
     for (const ink::TileSnapshot& tile : undo.before)
         undo.bytes += sizeof(ink::TileSnapshot) + tile.amounts.size() * sizeof(float);
     undo_bytes_ += undo.bytes;
@@ -160,6 +165,10 @@ void Painting::put_down(std::uint64_t id, const std::string& brush, BrushInHand 
 }
 
 void Painting::act(const Stroke& entry) {
+    if (entry.action == Action::dry) {
+        dry(entry);
+        return;
+    }
     BrushInHand brush = take_up(entry);
     switch (entry.action) {
         case Action::dip:
@@ -171,9 +180,18 @@ void Painting::act(const Stroke& entry) {
             brush::reset(brush.tuft);
             break;
         case Action::reshape: brush::reshape(brush.tuft); break;
+        case Action::dry:
         case Action::stroke: break;
     }
     put_down(entry.id, entry.trace.brush, std::move(brush), {});
+}
+
+// Undo takes back the tiles; no brush has a part in it.
+void Painting::dry(const Stroke& entry) {
+    std::vector<ink::TileSnapshot> before;
+    for (const std::uint32_t slot : canvas_.touched_slots()) before.push_back(canvas_.snapshot(slot));
+    ink::dry_all(canvas_, model_->texels);
+    keep_undo({.stroke_id = entry.id, .before = std::move(before)});
 }
 
 void Painting::begin(Stroke stroke) {
@@ -380,7 +398,7 @@ bool Painting::undo() {
     Undo& last = undo_.back();
     for (const ink::TileSnapshot& tile : last.before) canvas_.restore(tile);
     if (last.brush_before) held_.insert_or_assign(last.brush, std::move(*last.brush_before));
-    else held_.erase(last.brush);
+    else if (!last.brush.empty()) held_.erase(last.brush);
     undo_bytes_ -= last.bytes;
     undo_.pop_back();
     return true;

@@ -132,7 +132,7 @@ class Painting {
     struct Undo {
         std::uint64_t stroke_id = 0;
         std::vector<ink::TileSnapshot> before;
-        std::string brush;
+        std::string brush;                        ///< empty: none had a part in it
         std::optional<BrushInHand> brush_before;  ///< nothing: it was not held
         std::size_t bytes = 0;
     };
@@ -142,10 +142,12 @@ class Painting {
     void draw_poses();
     StrokeReport finish_hand();
     void act(const Stroke& entry);
+    void dry(const Stroke& entry);
     void settle(Stroke& entry) const;
     BrushInHand take_up(const Stroke& entry);
     void put_down(std::uint64_t id, const std::string& brush, BrushInHand after,
                   std::vector<ink::TileSnapshot> before);
+    void keep_undo(Undo undo);
     void repaint_all();
     std::vector<brush::Pose> poses_of(const Stroke& stroke);
 

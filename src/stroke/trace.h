@@ -41,12 +41,14 @@ enum class Action {
     dip,      ///< fills the tuft up with ink; what is in it stays and mixes
     rinse,    ///< washes it: no ink left, hair straight and together
     reshape,  ///< combs it: hair straight and together, ink stays
+    dry,      ///< waits while the ink on the model flows and dries
 };
 
 /// Something done with the brush between two strokes.
 struct Care {
     Action action = Action::dip;
     std::string ink;   ///< to dip into; empty: the ink of the stroke after it
+    double seconds = 0;  ///< to dry for; 0: until all is dry
 };
 
 /// One stroke from touch to lift.

@@ -82,6 +82,41 @@ TEST(Canvas, AForeignSnapshotIsRefused) {
     EXPECT_THROW(canvas.restore(tile), Error) << "a pigment the canvas does not have";
 }
 
+TEST(Canvas, FilmsAndLiquidComeBackFromASnapshot) {
+    Canvas canvas = painted();
+    for (int t = 0; t < atlas::kTileTexels; ++t) {
+        canvas.touch_film(3, kSoakedFilm, 1)[t] = static_cast<float>(uniform(3, t));
+        canvas.touch_film(3, kFirstDryFilm + 2, 0)[t] = static_cast<float>(uniform(4, t));
+        canvas.touch_liquid(3, Liquid::pores)[t] = static_cast<float>(uniform(5, t));
+    }
+    canvas.touch_liquid(8, Liquid::film)[0] = 1;
+    EXPECT_EQ(canvas.wet_slots(), (std::vector<std::uint32_t>{3, 8}));
+    const Canvas before = canvas;
+    const std::size_t bytes = canvas.memory_bytes();
+    EXPECT_EQ(before.memory_bytes(), bytes);
+    EXPECT_TRUE(before.same_contents(canvas));
+    const TileSnapshot tile = canvas.snapshot(3);
+    EXPECT_EQ(tile.under, (std::vector<FilmPlanes>{{kSoakedFilm, 2}, {kFirstDryFilm + 2, 1}, {kFilms, 2}}));
+    canvas.touch_film(3, kFirstDryFilm + 2, 0)[9] += 1;
+    EXPECT_NE(canvas.hash(), before.hash());
+    EXPECT_FALSE(canvas.same_contents(before));
+    canvas.restore(tile);
+    EXPECT_EQ(canvas.hash(), before.hash());
+    EXPECT_EQ(canvas.memory_bytes(), bytes);
+    canvas.restore(TileSnapshot{.slot = 3});
+    canvas.restore(TileSnapshot{.slot = 8});
+    EXPECT_FALSE(canvas.wet());
+    TileSnapshot bad = tile;
+    bad.under[1].film = kOpenFilm;
+    EXPECT_THROW(canvas.restore(bad), Error);
+    bad = tile;
+    bad.under[2].planes = 4;
+    EXPECT_THROW(canvas.restore(bad), Error) << "there are two liquids";
+    bad = tile;
+    std::swap(bad.under[0], bad.under[1]);
+    EXPECT_THROW(canvas.restore(bad), Error);
+}
+
 TEST(Canvas, HashAndComparisonSeeZerosAsNothing) {
     Canvas canvas = painted(), other = painted();
     other.touch(9, 0);

@@ -226,15 +226,19 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
     const std::string text =
         "<ink><traceGroup><annotation type=\"tuft:ink\">carbon</annotation>"
         "<trace><annotation type=\"tuft:rinse\"/><annotation type=\"tuft:dip\"> cinnabar </annotation>"
-        "<annotation type=\"tuft:reshape\"/>0 0, 1 1</trace>"
+        "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dry\"/>"
+        "<annotation type=\"tuft:dry\"> 2.5 </annotation>0 0, 1 1</trace>"
         "<trace><annotation type=\"tuft:dip\"/>0 0, 1 1</trace><trace>0 0, 1 1</trace></traceGroup></ink>";
     const auto traces = parse_inkml(text, "care.inkml");
     ASSERT_EQ(traces.size(), 3u);
-    ASSERT_EQ(traces[0].before.size(), 3u);
+    ASSERT_EQ(traces[0].before.size(), 5u);
     EXPECT_EQ(traces[0].before[0].action, stroke::Action::rinse);
     EXPECT_EQ(traces[0].before[1].action, stroke::Action::dip);
     EXPECT_EQ(traces[0].before[1].ink, "cinnabar");
     EXPECT_EQ(traces[0].before[2].action, stroke::Action::reshape);
+    EXPECT_EQ(traces[0].before[3].action, stroke::Action::dry);
+    EXPECT_EQ(traces[0].before[3].seconds, 0);
+    EXPECT_EQ(traces[0].before[4].seconds, 2.5);
     ASSERT_EQ(traces[1].before.size(), 1u);
     EXPECT_EQ(traces[1].before[0].ink, "");
     EXPECT_TRUE(traces[2].before.empty());
@@ -246,8 +250,13 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
         for (std::size_t k = 0; k < traces[i].before.size(); ++k) {
             EXPECT_EQ(back[i].before[k].action, traces[i].before[k].action);
             EXPECT_EQ(back[i].before[k].ink, traces[i].before[k].ink);
+            EXPECT_EQ(back[i].before[k].seconds, traces[i].before[k].seconds);
         }
     }
+    for (const char* bad : {"-1", "soon", "1e9", "nan"})
+        EXPECT_THROW(parse_inkml(std::string("<ink><trace><annotation type=\"tuft:dry\">") + bad +
+                                     "</annotation>0 0, 1 1</trace></ink>", "bad.inkml"),
+                     Error);
     // For a whole group it would say nothing about when.
     EXPECT_THROW(parse_inkml("<ink><traceGroup><annotation type=\"tuft:dip\"/><trace>0 0</trace></traceGroup></ink>",
                              "group.inkml"),

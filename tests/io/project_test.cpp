@@ -107,7 +107,7 @@ TEST(Project, ModelAndAtlasComeBackToTheBit) {
     const std::uint64_t hash = Project::create(folder / "a.tuft", model).model_hash();
     const Project project = Project::open(folder / "a.tuft");
     EXPECT_EQ(project.model_hash(), hash);
-    EXPECT_EQ(project.format(), kProjectFormat);
+    EXPECT_EQ(project.format(), kFirstFormat);
     EXPECT_EQ(project.written_by().substr(0, 5), "tuft ");
     const ProjectModel back = project.model();
     EXPECT_EQ(back.source, model.source);
@@ -158,6 +158,30 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
     EXPECT_EQ(project.n_strokes(), changed.size());
 }
 
+TEST(Project, FilmsAndLiquidComeBackWithTheTiles) {
+    const Folder folder("project_films");
+    ink::Canvas canvas(20);
+    canvas.add_pigment(ink::load_ink("carbon").parts[0].pigment);
+    canvas.add_pigment(ink::load_ink("cinnabar").parts[0].pigment);
+    for (int t = 0; t < atlas::kTileTexels; ++t) {
+        canvas.touch(4, 0)[t] = static_cast<float>(t);
+        canvas.touch_film(4, ink::kSoakedFilm, 1)[t] = 0.5f * static_cast<float>(t);
+        canvas.touch_film(9, ink::kFirstDryFilm, 0)[t] = 0.25f;
+        canvas.touch_liquid(9, ink::Liquid::film)[t] = 2;
+    }
+    Project project = Project::create(folder / "a.tuft", sample_model());
+    project.save_canvas(canvas, 3);
+    EXPECT_EQ(project.format(), kProjectFormat) << "older programs do not know films";
+    auto saved = project.load_canvas(20);
+    ASSERT_TRUE(saved);
+    EXPECT_TRUE(saved->canvas.same_contents(canvas));
+    canvas.restore({.slot = 9});
+    project.save_canvas(canvas, 4);  // in place of the tiles before
+    saved = Project::open(folder / "a.tuft").load_canvas(20);
+    ASSERT_TRUE(saved);
+    EXPECT_TRUE(saved->canvas.same_contents(canvas));
+}
+
 TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
     const Folder folder("project_actions");
     std::vector<stroke::Stroke> entries{sample_stroke(1)};
@@ -173,6 +197,8 @@ TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
         entry.settings.dip = "carry";
         entries.push_back(entry);
     }
+    entries[2].action = stroke::Action::dry;
+    entries[2].seconds = 1.0 / 3;
     {
         Project project = Project::create(folder / "a.tuft", sample_model());
         project.append(entries);
@@ -182,6 +208,7 @@ TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
         expect_equal(back[i], entries[i]);
         EXPECT_EQ(back[i].action, entries[i].action);
+        EXPECT_EQ(back[i].seconds, entries[i].seconds);
         EXPECT_EQ(back[i].settings, entries[i].settings);
     }
 }
@@ -308,7 +335,7 @@ TEST(Project, ForeignFilesAreNamedAsSuch) {
     EXPECT_NE(fault(folder / "o.tuft").find("not a tuft project"), std::string::npos);
     bytes[63] = 9;  // user_version
     write_file(folder / "n.tuft", bytes.data(), bytes.size());
-    EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to 1)"),
+    EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to 2)"),
               std::string::npos);
     EXPECT_THROW(Project::create(folder / "no/where/a.tuft", sample_model()), Error);
 }

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "ink/canvas.h"
+
+/// From the open film to dry ones.
+namespace tuft::ink {
+
+/// Closes the open film of the texels with `closing` [256] ≠ 0: its pigment amounts move as
+/// they are onto the texel's own next dry film, above all its others. What is seen of the
+/// texel stays the same, since the same films lie in the same order. A film of the same
+/// composition as the one under it joins it, which changes nothing either (a mixture layered
+/// on itself is itself, thicker). A texel whose dry films are used up makes room by merging
+/// its two lowest into one mixture, whose colour may change by what still shows of it through
+/// all the others. Liquid is not regarded. Slots may be closed by different threads.
+void close_films(Canvas& canvas, std::uint32_t slot,
+                 std::span<const std::uint8_t, atlas::kTileTexels> closing);
+
+/// Lets everything dry at once: liquid goes without moving anything, every open film is
+/// closed. Returns the liquid that went, film·m².
+double dry_all(Canvas& canvas, const atlas::TexelMap& map);
+
+}  // namespace tuft::ink
