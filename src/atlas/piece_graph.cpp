@@ -24,14 +24,17 @@ Frame frame_of(const Piece& piece) {
     return f;
 }
 
-Piece make_piece(const TexelMap& map, std::uint32_t slot, std::uint8_t index, std::uint32_t chart) {
-    const TexelTile& tile = map.tiles[slot];
+Vec3f position(const TexelShape& shape, int t) { return {shape.px[t], shape.py[t], shape.pz[t]}; }
+Vec3f normal(const TexelShape& shape, int t) { return {shape.nx[t], shape.ny[t], shape.nz[t]}; }
+
+Piece make_piece(const TexelTile& tile, const TexelShape& shape, std::uint32_t slot,
+                 std::uint8_t index, std::uint32_t chart) {
     Piece piece{.slot = slot, .chart = chart, .index = index};
     Vec3 mean{0};
     int n = 0, first = kTile, last = 0;
     for (int t = 0; t < kTileTexels; ++t) {
         if (tile.piece[t] != index) continue;
-        mean += Vec3(map.position(slot, t));
+        mean += Vec3(position(shape, t));
         first = std::min(first, t / kTile);
         last = std::max(last, t / kTile);
         ++n;
@@ -42,20 +45,20 @@ Piece make_piece(const TexelMap& map, std::uint32_t slot, std::uint8_t index, st
     double nearest = std::numeric_limits<double>::infinity();
     for (int t = 0; t < kTileTexels; ++t) {
         if (tile.piece[t] != index) continue;
-        const Vec3 d = Vec3(map.position(slot, t)) - mean;
+        const Vec3 d = Vec3(position(shape, t)) - mean;
         if (glm::dot(d, d) >= nearest) continue;
         nearest = glm::dot(d, d);
         piece.centre_texel = static_cast<std::uint8_t>(t);
     }
-    piece.centre = map.position(slot, piece.centre_texel);
+    piece.centre = position(shape, piece.centre_texel);
     const Frame frame =
-        make_frame(Vec3(piece.centre), glm::normalize(Vec3(map.normal(slot, piece.centre_texel))));
+        make_frame(Vec3(piece.centre), glm::normalize(Vec3(normal(shape, piece.centre_texel))));
     piece.normal = Vec3f(frame.n);
     piece.tangent = Vec3f(frame.t);
     for (int t = 0; t < kTileTexels; ++t) {
         if (tile.piece[t] != index) continue;
-        piece.radius = std::max(piece.radius, glm::length(map.position(slot, t) - piece.centre));
-        piece.cone_cos = std::min(piece.cone_cos, glm::dot(map.normal(slot, t), piece.normal));
+        piece.radius = std::max(piece.radius, glm::length(position(shape, t) - piece.centre));
+        piece.cone_cos = std::min(piece.cone_cos, glm::dot(normal(shape, t), piece.normal));
     }
     return piece;
 }
@@ -285,18 +288,28 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
     graph.pieces.resize(map.piece_chart.size());
     const std::size_t n_slots = map.n_slots();
     parallel_for(n_slots, 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t slot = begin; slot < end; ++slot) {
+        TexelShape room;
+        for (std::uint32_t slot = static_cast<std::uint32_t>(begin); slot < end; ++slot) {
+            const TexelShape& shape = shape_of(map, slot, room);
             for (std::uint32_t i = map.piece_start[slot]; i < map.piece_start[slot + 1]; ++i)
-                graph.pieces[i] = make_piece(map, static_cast<std::uint32_t>(slot),
+                graph.pieces[i] = make_piece(map.tiles[slot], shape, slot,
                                              static_cast<std::uint8_t>(i - map.piece_start[slot]),
                                              map.piece_chart[i]);
         }
     });
 
-    std::vector<std::vector<Meeting>> by_slot(n_slots);
-    parallel_for(n_slots, 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t slot = begin; slot < end; ++slot)
-            meet_inside_charts(map, graph.pieces, static_cast<std::uint32_t>(slot), by_slot[slot]);
+    constexpr std::size_t kSlots = 64;
+    std::vector<std::vector<Meeting>> by_slots((n_slots + kSlots - 1) / kSlots);
+    parallel_for(by_slots.size(), 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<Meeting> found;
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t last = std::min(n_slots, (k + 1) * kSlots);
+            for (std::size_t slot = k * kSlots; slot < last; ++slot) {
+                found.clear();
+                meet_inside_charts(map, graph.pieces, static_cast<std::uint32_t>(slot), found);
+                by_slots[k].insert(by_slots[k].end(), found.begin(), found.end());
+            }
+        }
     });
     report(progress, "piece graph", 0.5);
 
@@ -312,8 +325,16 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         }
     });
     std::vector<Meeting> all;
-    for (const auto& m : by_slot) all.insert(all.end(), m.begin(), m.end());
-    for (const auto& m : by_chunk) all.insert(all.end(), m.begin(), m.end());
+    std::size_t n_all = 0;
+    for (const auto* parts : {&by_slots, &by_chunk})
+        for (const auto& m : *parts) n_all += m.size();
+    all.reserve(n_all);
+    for (auto* parts : {&by_slots, &by_chunk}) {
+        for (auto& m : *parts) {
+            all.insert(all.end(), m.begin(), m.end());
+            std::vector<Meeting>().swap(m);
+        }
+    }
     store_edges(all, graph);
     report(progress, "piece graph", 1);
     return graph;

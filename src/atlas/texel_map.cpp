@@ -138,7 +138,8 @@ void draw_band(const Atlas& atlas, const Bands& bands, std::size_t band, Visit&&
 /// Surface point, normal and area of the texel centre (x, y); returns the length in
 /// metres of the longest side of the texel's image.
 float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle,
-                  std::int64_t column, std::int64_t row, TexelTile& tile, int texel) {
+                  std::int64_t column, std::int64_t row, TexelShape& shape, float& texel_area,
+                  int texel) {
     const SnappedTriangle s = snapped_triangle(atlas, triangle);
     const std::int64_t x = column * kSnap + kSnap / 2, y = row * kSnap + kSnap / 2;
     const double scale = 1.0 / static_cast<double>(s.area2);
@@ -162,28 +163,29 @@ float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint3
         n = length > 0 ? face : Vec3{0, 0, 1};
         if (!(length > 0)) length = 1;
     }
-    tile.px[texel] = static_cast<float>(p.x);
-    tile.py[texel] = static_cast<float>(p.y);
-    tile.pz[texel] = static_cast<float>(p.z);
-    tile.nx[texel] = static_cast<float>(n.x / length);
-    tile.ny[texel] = static_cast<float>(n.y / length);
-    tile.nz[texel] = static_cast<float>(n.z / length);
-    tile.area[texel] = static_cast<float>(area);
+    shape.px[texel] = static_cast<float>(p.x);
+    shape.py[texel] = static_cast<float>(p.y);
+    shape.pz[texel] = static_cast<float>(p.z);
+    shape.nx[texel] = static_cast<float>(n.x / length);
+    shape.ny[texel] = static_cast<float>(n.y / length);
+    shape.nz[texel] = static_cast<float>(n.z / length);
+    texel_area = static_cast<float>(area);
     return static_cast<float>(std::sqrt(glm::dot(du, du) + glm::dot(dv, dv)));
 }
 
-bool hang_together(const TexelTile& tile, int a, int b, float reach) {
-    const float dx = tile.px[a] - tile.px[b], dy = tile.py[a] - tile.py[b],
-                dz = tile.pz[a] - tile.pz[b];
+bool hang_together(const TexelShape& shape, int a, int b, float reach) {
+    const float dx = shape.px[a] - shape.px[b], dy = shape.py[a] - shape.py[b],
+                dz = shape.pz[a] - shape.pz[b];
     return dx * dx + dy * dy + dz * dz <= reach * reach;
 }
 
 /// Grows the piece `piece` from `seed` over unassigned texels of the same chart.
-void grow_piece(TexelTile& tile, const std::array<std::uint32_t, kTileTexels>& chart, float reach,
-                int seed, std::uint8_t piece, float min_cos) {
+void grow_piece(const TexelShape& shape, TexelTile& tile,
+                const std::array<std::uint32_t, kTileTexels>& chart, float reach, int seed,
+                std::uint8_t piece, float min_cos) {
     std::array<std::uint8_t, kTileTexels> open;
     int n_open = 0;
-    const float nx = tile.nx[seed], ny = tile.ny[seed], nz = tile.nz[seed];
+    const float nx = shape.nx[seed], ny = shape.ny[seed], nz = shape.nz[seed];
     tile.piece[seed] = piece;
     open[n_open++] = static_cast<std::uint8_t>(seed);
     while (n_open > 0) {
@@ -193,8 +195,8 @@ void grow_piece(TexelTile& tile, const std::array<std::uint32_t, kTileTexels>& c
             for (int bx = std::max(ax - 1, 0); bx <= std::min(ax + 1, kTile - 1); ++bx) {
                 const int b = by * kTile + bx;
                 if (tile.piece[b] != kNoPiece || chart[b] != chart[seed]) continue;
-                const float c = tile.nx[b] * nx + tile.ny[b] * ny + tile.nz[b] * nz;
-                if (c < min_cos || !hang_together(tile, a, b, reach)) continue;
+                const float c = shape.nx[b] * nx + shape.ny[b] * ny + shape.nz[b] * nz;
+                if (c < min_cos || !hang_together(shape, a, b, reach)) continue;
                 tile.piece[b] = piece;
                 open[n_open++] = static_cast<std::uint8_t>(b);
             }
@@ -205,7 +207,7 @@ void grow_piece(TexelTile& tile, const std::array<std::uint32_t, kTileTexels>& c
 /// Splits the tile's texels (those with a chart) into pieces; returns the chart of each.
 /// A tile so rough that it would need more than 254 is split by charts and gaps alone;
 /// texels beyond that (one-texel charts side by side) are given up.
-std::vector<std::uint32_t> split_into_pieces(TexelTile& tile,
+std::vector<std::uint32_t> split_into_pieces(const TexelShape& shape, TexelTile& tile,
                                              const std::array<std::uint32_t, kTileTexels>& chart,
                                              float reach) {
     for (const float min_cos : {kPieceCos, -2.0f}) {
@@ -216,7 +218,7 @@ std::vector<std::uint32_t> split_into_pieces(TexelTile& tile,
             if (chart[t] == kNone || tile.piece[t] != kNoPiece) continue;
             all = charts.size() < kNoPiece;
             if (!all) break;
-            grow_piece(tile, chart, reach, t, static_cast<std::uint8_t>(charts.size()), min_cos);
+            grow_piece(shape, tile, chart, reach, t, static_cast<std::uint8_t>(charts.size()), min_cos);
             charts.push_back(chart[t]);
         }
         if (all || min_cos < -1) return charts;
@@ -227,7 +229,8 @@ std::vector<std::uint32_t> split_into_pieces(TexelTile& tile,
 /// Fills one tile from the triangle of each of its texels; returns the charts of its pieces.
 std::vector<std::uint32_t> fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                                      std::uint32_t tile_index, std::uint32_t tiles_per_side,
-                                     const std::uint32_t* ids, TexelTile& tile, float& reach) {
+                                     const std::uint32_t* ids, TexelShape& shape, TexelTile& tile,
+                                     float& reach) {
     const std::int64_t x0 = std::int64_t{tile_index % tiles_per_side} * kTile;
     const std::int64_t y0 = std::int64_t{tile_index / tiles_per_side} * kTile;
     std::array<std::uint32_t, kTileTexels> chart;
@@ -240,12 +243,12 @@ std::vector<std::uint32_t> fill_tile(const mesh::TriangleMesh& mesh, const Atlas
         const std::uint32_t id = ids[static_cast<std::size_t>(t / kTile) * atlas.size + x];
         if (id == kNone) continue;
         chart[t] = atlas.triangle_chart[id];
-        side += shade_texel(mesh, atlas, id, x, y, tile, t);
+        side += shade_texel(mesh, atlas, id, x, y, shape, tile.area[t], t);
         ++n;
     }
     // Mean diagonal of a texel, with room for stretch that varies inside the tile.
     reach = n > 0 ? static_cast<float>(3 * side / n) : 0;
-    return split_into_pieces(tile, chart, reach);
+    return split_into_pieces(shape, tile, chart, reach);
 }
 
 double mean_texel_size(const TexelMap& map) {
@@ -272,7 +275,7 @@ void check_sizes(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
 }  // namespace
 
 TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                         const ProgressFn& progress) {
+                         const ProgressFn& progress, TexelStore store) {
     check_sizes(mesh, atlas);
     report(progress, "texel map", 0);
     TexelMap map;
@@ -301,11 +304,16 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
     report(progress, "texel map", 0.2);
 
     const std::size_t n_slots = map.tile_of_slot.size();
+    const bool packed = is_packed(store, atlas.size);
     map.tiles.resize(n_slots);
+    map.shapes.resize(packed ? 0 : n_slots);
+    map.packed.resize(packed ? n_slots : 0);
     map.reach.assign(n_slots, 0);
+    std::vector<std::vector<PackedBox>> boxes(packed ? n_slots : 0);
     std::vector<std::vector<std::uint32_t>> charts(n_slots);
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> ids;
+        TexelShape room{};
         for (std::size_t band = begin; band < end; ++band) {
             ids.assign(std::size_t{kTile} * atlas.size, kNone);
             draw_band(atlas, bands, band,
@@ -318,8 +326,12 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                 const std::uint32_t tile = static_cast<std::uint32_t>(band * side + tx);
                 const std::uint32_t slot = map.slot_of_tile[tile];
                 if (slot == kNone) continue;
-                charts[slot] = fill_tile(mesh, atlas, tile, side, ids.data(), map.tiles[slot],
-                                         map.reach[slot]);
+                TexelShape& shape = packed ? room : map.shapes[slot];
+                charts[slot] = fill_tile(mesh, atlas, tile, side, ids.data(), shape,
+                                         map.tiles[slot], map.reach[slot]);
+                if (!packed) continue;
+                boxes[slot].resize(charts[slot].size());
+                map.packed[slot] = pack_shape(shape, map.tiles[slot], boxes[slot]);
             }
         }
     });
@@ -329,6 +341,7 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         map.piece_chart.insert(map.piece_chart.end(), c.begin(), c.end());
         map.piece_start.push_back(static_cast<std::uint32_t>(map.piece_chart.size()));
     }
+    for (const auto& b : boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
     report(progress, "texel map", 1);
     return map;
 }

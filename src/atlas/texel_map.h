@@ -15,14 +15,42 @@ inline constexpr int kTile = 16;  ///< texels along the side of a tile
 inline constexpr int kTileTexels = kTile * kTile;
 inline constexpr std::uint8_t kNoPiece = 255;
 
-/// One occupied tile, structure of arrays, texel t = row * 16 + column.
+/// What ink asks of the texels of one occupied tile, texel t = row * 16 + column.
 /// Texels outside every chart have piece == kNoPiece and zero area.
 struct TexelTile {
-    alignas(64) std::array<float, kTileTexels> px, py, pz;  ///< metres, model frame
-    alignas(64) std::array<float, kTileTexels> nx, ny, nz;  ///< unit normal
-    alignas(64) std::array<float, kTileTexels> area;        ///< m² of surface the texel stands for
+    alignas(64) std::array<float, kTileTexels> area;  ///< m² of surface the texel stands for
     alignas(64)
         std::array<std::uint8_t, kTileTexels> piece;  ///< index of the texel's piece in this tile
+};
+
+/// Where the texels of one tile lie, structure of arrays. Texels outside every chart: anything.
+struct TexelShape {
+    alignas(64) std::array<float, kTileTexels> px, py, pz;  ///< metres, model frame
+    alignas(64) std::array<float, kTileTexels> nx, ny, nz;  ///< unit normal
+};
+
+/// How positions and normals are kept.
+enum class TexelStore : std::uint8_t {
+    automatic,  ///< packed for atlases beyond 4096² texels
+    floats,     ///< `TexelShape`: 29 bytes a texel with its area and piece
+    packed,     ///< `PackedShape`: 15 bytes, and 4e-4 texels less exact
+};
+
+/// What `automatic` means for an atlas of size × size texels.
+inline bool is_packed(TexelStore store, std::uint32_t size) {
+    return store == TexelStore::packed || (store == TexelStore::automatic && size > 4096);
+}
+
+/// The same in 16-bit numbers: position = lo + step (x, y, z) in the box of the texel's piece,
+/// normal by the octahedral map (Cigolle et al. 2014): (nu, nv) = 32767.5 (1 + (x, y)/(|x|+|y|+|z|)),
+/// the lower half folded over the diagonals; within 6.5e-5 rad.
+struct PackedShape {
+    alignas(64) std::array<std::uint16_t, kTileTexels> x, y, z, nu, nv;
+};
+
+struct PackedBox {
+    Vec3f lo{0};
+    float step = 0;  ///< metres
 };
 
 /// Occupied tiles ("slots") of an atlas in row-major tile order. Everything that is
@@ -34,21 +62,25 @@ struct TexelMap {
     std::vector<std::uint32_t> slot_of_tile;  ///< [tiles_per_side²] slot or kNone
     std::vector<std::uint32_t> tile_of_slot;  ///< [n_slots] tile index = ty * tiles_per_side + tx
     std::vector<TexelTile> tiles;             ///< [n_slots]
+    std::vector<TexelShape> shapes;           ///< [n_slots], or empty when packed
+    std::vector<PackedShape> packed;          ///< [n_slots], or empty
+    std::vector<PackedBox> boxes;             ///< [n_pieces] when packed
     std::vector<float> reach;                 ///< [n_slots] metres: neighbouring texels further
                                               ///< apart than this do not hang together
     std::vector<std::uint32_t> piece_start;   ///< [n_slots + 1] pieces, counted slot by slot
     std::vector<std::uint32_t> piece_chart;   ///< [n_pieces]
 
     std::size_t n_slots() const { return tiles.size(); }
-    Vec3f position(std::uint32_t slot, int texel) const {
-        const TexelTile& t = tiles[slot];
-        return {t.px[texel], t.py[texel], t.pz[texel]};
-    }
-    Vec3f normal(std::uint32_t slot, int texel) const {
-        const TexelTile& t = tiles[slot];
-        return {t.nx[texel], t.ny[texel], t.nz[texel]};
-    }
+    Vec3f position(std::uint32_t slot, int texel) const;
+    Vec3f normal(std::uint32_t slot, int texel) const;
 };
+
+/// Positions and normals of a tile: the map's own, or unpacked into `room`. About 0.1 µs
+/// when packed.
+const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& room);
+
+/// Packs a tile whose pieces are known; `boxes` [n_pieces of the tile] are made to fit.
+PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span<PackedBox> boxes);
 
 /// A texel of the map.
 struct TexelRef {
@@ -73,8 +105,9 @@ inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
 /// where triangles overlap to the one with the lowest index). Its piece is the set of
 /// texels of the same chart and tile that hang together with it and whose normals are
 /// within 35° of the first. The same bits for any number of threads; about 1 s at 4096²
-/// on two threads, memory for occupied tiles only.
+/// on two threads, memory for occupied tiles only. Tiles, pieces and areas do not depend on `store`.
 TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                         const ProgressFn& progress = {});
+                         const ProgressFn& progress = {},
+                         TexelStore store = TexelStore::automatic);
 
 }  // namespace tuft::atlas

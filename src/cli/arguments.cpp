@@ -35,6 +35,13 @@ void add_common(CLI::App* app, Common& c) {
     app->add_flag("--quiet", c.quiet, "no progress, no notes");
 }
 
+void add_store(CLI::App* app, Surface& s) {
+    app->add_option("--texel-store", s.texel_store,
+                    "how texels are kept in memory: float, packed (16 bits, half the memory), "
+                    "auto (packed beyond 4096)")
+        ->check(CLI::IsMember({"auto", "float", "packed"}));
+}
+
 void add_surface(CLI::App* app, Surface& s, bool with_unit = true) {
     if (with_unit)
         app->add_option("--unit", s.unit, "unit of the model file: um, mm, cm, m, in, ft")
@@ -47,6 +54,7 @@ void add_surface(CLI::App* app, Surface& s, bool with_unit = true) {
     auto* renew = app->add_flag("--new-uv", s.new_uv, "make a new atlas even if the file has UVs");
     auto* keep = app->add_flag("--keep-uv", s.keep_uv, "use the file's UVs or fail");
     renew->excludes(keep);
+    add_store(app, s);
 }
 
 void add_view(CLI::App* app, View& v) {
@@ -206,6 +214,11 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* n = app.add_subcommand("bench", "measure the speed on this machine");
     n->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones");
     n->add_flag("--quick", bench.quick, "smaller models, fewer repeats");
+    n->add_option("--atlas-size", bench.surface.atlas_size, "texels along the side of the atlas")
+        ->check(CLI::PositiveNumber);
+    n->add_option("--isa", bench.isa, "instruction set of the stamps: best, avx512, avx2, baseline")
+        ->check(CLI::IsMember({"best", "avx512", "avx2", "baseline"}));
+    add_store(n, bench.surface);
     add_common(n, bench.common);
 
     try {

@@ -16,6 +16,7 @@ struct Surface {
     std::uint32_t atlas_size = 0;   ///< texels per side; 0: from texel_size_mm or the default
     double texel_size_mm = 0;
     bool new_uv = false, keep_uv = false;
+    std::string texel_store = "auto";  ///< auto | float | packed
     std::string substrate = "porcelain";
 };
 
@@ -103,6 +104,8 @@ struct Habit {
 struct Bench {
     std::filesystem::path model;    ///< empty: models made by the benchmark
     bool quick = false;
+    Surface surface{.atlas_size = 0};  ///< size 0: 4096, or 2048 when quick
+    std::string isa = "best";          ///< best | avx512 | avx2 | baseline
     Common common;
 };
 

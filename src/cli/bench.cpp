@@ -2,6 +2,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -26,6 +27,18 @@ double cpu_seconds() {
     timespec t{};
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double wall_seconds() {
+    timespec t{};
+    ::clock_gettime(CLOCK_MONOTONIC, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+footprint::Isa isa_of(const std::string& name) {
+    if (name == "baseline") return footprint::Isa::baseline;
+    if (name == "avx2") return footprint::Isa::avx2;
+    return name == "avx512" ? footprint::Isa::avx512 : footprint::best_isa();
 }
 
 double quantile(std::vector<double> values, double q) {
@@ -81,14 +94,22 @@ footprint::Footprint disc(const stroke::Model& model, int texels, double angle) 
 }
 
 // Deposit alone: planning, evaluating and inking one stamp after the other along the equator.
-double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps) {
+double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps,
+                              footprint::Isa isa, std::span<const char* const> inks) {
     ink::Canvas canvas(model.texels.n_slots());
-    const ink::Ink ink = ink::load_ink("carbon");
-    const ink::DepositParams params{.mix = ink::mix_of(canvas, ink)};
-    const footprint::StampOptions options;
+    ink::DepositParams params;
+    for (const char* name : inks) {  // in equal parts
+        const ink::Ink ink = ink::load_ink(name);
+        const ink::Mix mix = ink::mix_of(canvas, ink);
+        const auto part = 1 / static_cast<float>(inks.size());
+        for (std::size_t p = 0; p < mix.size(); ++p) params.mix[p] += part * mix[p];
+        params.extinction += part * ink::extinction_of(ink);
+    }
+    const footprint::StampOptions options{.isa = isa};
     footprint::PlanScratch scratch;
     const footprint::Surface surface = model.surface();
     alignas(64) std::array<float, atlas::kTileTexels> exposure;
+    footprint::Unpacked unpacked;
     std::vector<footprint::Footprint> path;
     const double radius = 0.5 * model.mesh->bounds.size().x;
     for (int i = 0; i < stamps; ++i)
@@ -102,7 +123,7 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
             piecewise = footprint::choose_mode(jobs, piecewise, options);
             for (const footprint::TileJob& job : jobs.tiles) {
                 const atlas::TexelTile& tile = model.texels.tiles[job.slot];
-                if (footprint::evaluate_tile(tile, jobs, job, exposure))
+                if (footprint::evaluate_tile(model.texels, jobs, job, unpacked, exposure))
                     ink::deposit(canvas, job.slot, exposure, tile.area, model.atlas.texel_size, params);
             }
         }
@@ -115,8 +136,7 @@ double footprint_texels(int texels) { return pi / 4 * texels * texels; }
 
 // The whole path: a brush as thick as makes lines of about `texels` across, dragged along
 // the equator; hand samples at 1 kHz and a stamp per texel.
-double stamps_per_second(const stroke::Model& model, int texels) {
-    stroke::Painting painting(model);
+stroke::Stroke drag(const stroke::Model& model, stroke::Painting& painting, int texels) {
     brush::Preset preset = brush::load_preset("mixed-medium");
     const double scale = texels * model.atlas.texel_size / (2 * preset.radius);
     preset.name = "bench";
@@ -143,11 +163,35 @@ double stamps_per_second(const stroke::Model& model, int texels) {
         p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
         s.trace.samples.push_back(p);
     }
+    return s;
+}
+
+double stamps_per_second(const stroke::Model& model, int texels) {
+    stroke::Painting painting(model);
+    const stroke::Stroke s = drag(model, painting, texels);
     std::vector<double> runs;
     for (int repeat = 0; repeat < 5; ++repeat) {
         const double start = cpu_seconds();
         const stroke::StrokeReport report = painting.paint(s);
         runs.push_back(static_cast<double>(report.stamps) / (cpu_seconds() - start));
+    }
+    return quantile(runs, 0.5);
+}
+
+// From the sample at which the tuft first touches to ink on the texels, in a painting that has
+// just been opened: milliseconds of wall time for all that is computed between.
+double first_ink_milliseconds(const stroke::Model& model, int texels) {
+    std::vector<double> runs;
+    for (int repeat = 0; repeat < 5; ++repeat) {
+        stroke::Painting painting(model);
+        stroke::Stroke s = drag(model, painting, texels);
+        const std::vector<brush::Pose> poses = stroke::spatial_poses(s.trace);
+        s.trace.samples.clear();
+        const double start = wall_seconds();
+        painting.begin(s);
+        for (std::size_t i = 0; i < poses.size() && painting.take_dirty().empty(); ++i)
+            painting.extend(std::span(&poses[i], 1));
+        runs.push_back((wall_seconds() - start) * 1e3);
     }
     return quantile(runs, 0.5);
 }
@@ -182,21 +226,46 @@ std::string cpu_name() {
 struct Case {
     std::string name;
     stroke::Model model;
-    double atlas_seconds = 0;
+    double atlas_seconds = 0, map_seconds = 0, graph_seconds = 0;
 };
+
+/// Wall time of the two phases, from the progress that they report.
+ProgressFn timed(const ProgressFn& progress, double& map_seconds, double& graph_seconds) {
+    return [&map_seconds, &graph_seconds, progress](std::string_view phase, double fraction) {
+        double* const seconds = phase == "texel map"     ? &map_seconds
+                                : phase == "piece graph" ? &graph_seconds
+                                                         : nullptr;
+        if (seconds && fraction == 0) *seconds = -wall_seconds();
+        if (seconds && fraction == 1) *seconds += wall_seconds();
+        return !progress || progress(phase, fraction);
+    };
+}
+
+double resident_megabytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string key; status >> key; std::getline(status, key)) {
+        double kib = 0;
+        if (key == "VmRSS:" && status >> kib) return kib / 1024;
+    }
+    return 0;
+}
 
 }  // namespace
 
 int run(const Bench& a) {
     Console console(a.common.quiet);
     set_thread_count(1);
-    const std::uint32_t size = a.quick ? 2048 : 4096;
+    const std::uint32_t size = a.surface.atlas_size > 0 ? a.surface.atlas_size : a.quick ? 2048 : 4096;
+    const footprint::Isa isa = std::min(isa_of(a.isa), footprint::best_isa());
     std::vector<Case> cases;
     const auto add = [&](std::string name, mesh::PolygonSoup soup) {
-        stroke::ModelOptions options;
+        stroke::ModelOptions options = model_options(a.surface, console);
         options.unwrap.size = size;
-        options.progress = console.progress();
-        Case c{.name = std::move(name), .model = stroke::prepare_model(std::move(soup), options)};
+        Case c{.name = std::move(name)};
+        set_thread_count(0);  // as a user waits for it
+        options.progress = timed(console.progress(), c.map_seconds, c.graph_seconds);
+        c.model = stroke::prepare_model(std::move(soup), options);
+        set_thread_count(1);
         for (const auto& [phase, seconds] : c.model.atlas_report.seconds) c.atlas_seconds += seconds;
         cases.push_back(std::move(c));
     };
@@ -214,39 +283,58 @@ int run(const Bench& a) {
     j["rod_microseconds"] = {{"median", median}, {"p99", p99}, {"segments", 16}};
     for (Case& c : cases) {
         const std::string on = fmt::format("{} at {} x {}", c.name, size, size);
-        nlohmann::json m{{"triangles", c.model.mesh->n_triangles()}, {"atlas_size", size}};
+        nlohmann::json m{{"triangles", c.model.mesh->n_triangles()}, {"atlas_size", size},
+                         {"texel_store", c.model.texels.packed.empty() ? "float" : "packed"}};
+        static constexpr std::array kOneInk{"carbon"};
+        static constexpr std::array kPigments{"carbon", "gamboge", "cinnabar"};
         for (const int texels : {64, 128, 256}) {
             report(console.progress(), "measuring", texels / 256.0);
-            const double us = microseconds_per_stamp(c.model, texels, 160);
+            const double us = microseconds_per_stamp(c.model, texels, 160, isa, kOneInk);
             m["microseconds_per_stamp"][std::to_string(texels)] = us;
-            if (texels == 256) m["ns_per_texel"]["one_ink"] = us * 1e3 / footprint_texels(texels);
+            if (texels == 256) {
+                const double three = microseconds_per_stamp(c.model, texels, 160, isa, kPigments);
+                m["ns_per_texel"] = {{"one_ink", us * 1e3 / footprint_texels(texels)},
+                                     {"pigments", three * 1e3 / footprint_texels(texels)}};
+            }
             m["stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels);
         }
         m["atlas_seconds"] = c.atlas_seconds;
+        m["texel_map_seconds"] = c.map_seconds;
+        m["piece_graph_seconds"] = c.graph_seconds;
+        m["first_ink_ms"] = first_ink_milliseconds(c.model, 64);
         j["models"][c.name] = m;
         if (!j.contains("microseconds_per_stamp")) {
-            for (const char* key : {"microseconds_per_stamp", "stamps_per_second", "ns_per_texel", "atlas_seconds"})
+            for (const char* key : {"microseconds_per_stamp", "stamps_per_second", "ns_per_texel", "atlas_seconds",
+                                    "texel_map_seconds", "piece_graph_seconds", "first_ink_ms"})
                 j[key] = m[key];
             j["model"] = on;
         }
     }
     j["peak_mb"] = peak_megabytes();
+    j["resident_mb"] = resident_megabytes();
+    j["isa"] = isa == footprint::Isa::avx512 ? "avx512" : isa == footprint::Isa::avx2 ? "avx2" : "baseline";
     console.clear();
     if (a.common.json) {
         std::cout << j.dump(2) << '\n';
         return 0;
     }
-    fmt::print("{}, one thread, CPU time, medians\n", j["machine"].get<std::string>());
+    fmt::print("{}, one thread (preparing: all), {}, CPU time, medians\n", j["machine"].get<std::string>(),
+               j["isa"].get<std::string>());
     fmt::print("rod solve, 16 segments: median {:.1f} us, 99 % {:.1f} us\n", median, p99);
     for (const auto& [name, m] : j["models"].items()) {
-        fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s)\n", name, m["triangles"].get<std::size_t>(),
-                   size, size, m["atlas_seconds"].get<double>());
+        fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s, texel map {:.2f} s, piece graph {:.2f} s)\n",
+                   name, m["triangles"].get<std::size_t>(), size, size, m["atlas_seconds"].get<double>(),
+                   m["texel_map_seconds"].get<double>(), m["piece_graph_seconds"].get<double>());
+        fmt::print("  first ink {:.1f} ms after the first touch; {:.1f} ns a texel with one ink, {:.1f} with three pigments\n",
+                   m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
+                   m["ns_per_texel"]["pigments"].get<double>());
         for (const char* texels : {"64", "128", "256"})
             fmt::print("  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s\n", texels,
                        m["microseconds_per_stamp"][texels].get<double>(),
                        m["stamps_per_second"][texels].get<double>());
     }
-    fmt::print("peak memory {:.0f} MiB\n", j["peak_mb"].get<double>());
+    fmt::print("peak memory {:.0f} MiB, at the end {:.0f} MiB\n", j["peak_mb"].get<double>(),
+               j["resident_mb"].get<double>());
     return 0;
 }
 

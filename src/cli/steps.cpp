@@ -28,6 +28,9 @@ stroke::ModelOptions model_options(const Surface& s, Console& console) {
     options.unwrap.uvs = s.new_uv    ? atlas::UvPolicy::renew
                          : s.keep_uv ? atlas::UvPolicy::keep
                                      : atlas::UvPolicy::automatic;
+    options.texels = s.texel_store == "float"    ? atlas::TexelStore::floats
+                     : s.texel_store == "packed" ? atlas::TexelStore::packed
+                                                 : atlas::TexelStore::automatic;
     options.progress = console.progress();
     return options;
 }

@@ -99,6 +99,12 @@ struct PlanScratch {
     BlockTally tally;
 };
 
+/// Room to unpack a tile into; one per thread.
+struct Unpacked {
+    std::uint32_t slot = kNone;
+    atlas::TexelShape shape;
+};
+
 /// Finds the pieces that hang together with the contact point within the footprint and
 /// do not face away from it, and their places in its picture. Cost grows with the
 /// footprint's area in texels, not with the mesh. `recycled` lends the memory of an earlier
@@ -111,8 +117,9 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
 bool choose_mode(StampJobs& jobs, bool piecewise_before, const StampOptions& options);
 
 /// Part of the stamp's motion during which the tuft covers each texel, in [0, 1]; zero
-/// for texels outside. Returns false when all are zero.
-bool evaluate_tile(const atlas::TexelTile& tile, const StampJobs& jobs, const TileJob& job,
-                   std::span<float, atlas::kTileTexels> exposure);
+/// for texels outside. Returns false when all are zero. `unpacked` keeps the tile that was
+/// unpacked last: stamps on one tile come best one after the other.
+bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const TileJob& job,
+                   Unpacked& unpacked, std::span<float, atlas::kTileTexels> exposure);
 
 }  // namespace tuft::footprint

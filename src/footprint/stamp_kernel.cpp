@@ -20,6 +20,7 @@ namespace {
 
 using atlas::kTile;
 using atlas::kTileTexels;
+using atlas::TexelShape;
 using atlas::TexelTile;
 
 /// Neighbouring words of the picture, read at once from where they lie.
@@ -33,7 +34,7 @@ struct Rows {
 };
 
 /// Texel → picture, in cells, for the texels that are `mine`.
-[[gnu::always_inline]] inline void map_texels(const TexelTile& tile, const PieceFrame& f, Rows rows,
+[[gnu::always_inline]] inline void map_texels(const TexelShape& shape, const PieceFrame& f, Rows rows,
                                               bool plane, const std::int32_t* __restrict mine,
                                               float* __restrict fu, float* __restrict fv) {
     const float ox = f.origin[0], oy = f.origin[1], oz = f.origin[2];
@@ -45,8 +46,8 @@ struct Rows {
     constexpr float q4 = float(q[4]), q5 = float(q[5]), q6 = float(q[6]), q7 = float(q[7]);
     constexpr float least_cos = float(atlas::kLogMapMinCos);
     const float on_plane = plane ? 1.0f : 0.0f;
-    const float *px = tile.px.data(), *py = tile.py.data(), *pz = tile.pz.data();
-    const float *mx = tile.nx.data(), *my = tile.ny.data(), *mz = tile.nz.data();
+    const float *px = shape.px.data(), *py = shape.py.data(), *pz = shape.pz.data();
+    const float *mx = shape.nx.data(), *my = shape.ny.data(), *mz = shape.nz.data();
 #pragma omp simd
     for (int t = rows.begin; t < rows.end; ++t) {
         const float dx = px[t] - ox, dy = py[t] - oy, dz = pz[t] - oz;
@@ -130,8 +131,8 @@ struct Rows {
     }
 }
 
-[[gnu::always_inline]] inline bool evaluate(const TexelTile& tile, const StampJobs& jobs,
-                                            const TileJob& job, float* __restrict exposure) {
+[[gnu::always_inline]] inline bool evaluate(const TexelTile& tile, const TexelShape& shape,
+                                            const StampJobs& jobs, const TileJob& job, float* __restrict exposure) {
     alignas(64) float fu[kTileTexels], fv[kTileTexels], sum[kTileTexels] = {};
     alignas(64) std::int32_t mine[kTileTexels] = {}, full[kTileTexels] = {};
     const bool plane = jobs.mapping == Mapping::plane;
@@ -155,10 +156,10 @@ struct Rows {
                 const Rows rows = rows_of(own);
                 std::fill(mine + rows.begin, mine + rows.end, 0);
                 mark(tile, own.piece, rows, mine);
-                map_texels(tile, own, rows, plane, mine, fu, fv);
+                map_texels(shape, own, rows, plane, mine, fu, fv);
             }
         } else {
-            map_texels(tile, jobs.stamp_frame, all, plane, mine, fu, fv);
+            map_texels(shape, jobs.stamp_frame, all, plane, mine, fu, fv);
         }
         const Rows hit = rows_in_picture(jobs, all, fu, fv);
         for (const SubPose& pose : jobs.sub_poses) gather(jobs, pose, hit, fu, fv, sum);
@@ -177,23 +178,26 @@ struct Rows {
     return any != 0;
 }
 
-using Evaluate = bool (*)(const TexelTile&, const StampJobs&, const TileJob&, float* __restrict);
+using Evaluate = bool (*)(const TexelTile&, const TexelShape&, const StampJobs&, const TileJob&,
+                          float* __restrict);
 
-bool evaluate_baseline(const TexelTile& tile, const StampJobs& jobs, const TileJob& job,
-                       float* __restrict sum) {
-    return evaluate(tile, jobs, job, sum);
+bool evaluate_baseline(const TexelTile& tile, const TexelShape& shape, const StampJobs& jobs,
+                       const TileJob& job, float* __restrict sum) {
+    return evaluate(tile, shape, jobs, job, sum);
 }
 
 #ifdef TUFT_X86
 [[gnu::target("avx2,tune=haswell")]] bool evaluate_avx2(const TexelTile& tile,
+                                                        const TexelShape& shape,
                                                         const StampJobs& jobs, const TileJob& job,
                                                         float* __restrict sum) {
-    return evaluate(tile, jobs, job, sum);
+    return evaluate(tile, shape, jobs, job, sum);
 }
 
-[[gnu::target(TUFT_AVX512)]] bool evaluate_avx512(const TexelTile& tile, const StampJobs& jobs,
-                                                  const TileJob& job, float* __restrict sum) {
-    return evaluate(tile, jobs, job, sum);
+[[gnu::target(TUFT_AVX512)]] bool evaluate_avx512(const TexelTile& tile, const TexelShape& shape,
+                                                  const StampJobs& jobs, const TileJob& job,
+                                                  float* __restrict sum) {
+    return evaluate(tile, shape, jobs, job, sum);
 }
 #endif
 
@@ -223,13 +227,21 @@ Isa best_isa() {
 #endif
 }
 
-bool evaluate_tile(const TexelTile& tile, const StampJobs& jobs, const TileJob& job,
-                   std::span<float, kTileTexels> exposure) {
+bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const TileJob& job,
+                   Unpacked& unpacked, std::span<float, kTileTexels> exposure) {
     if (jobs.pairs.empty() || jobs.sub_poses.empty()) {
         std::fill(exposure.begin(), exposure.end(), 0.0f);
         return false;
     }
-    return kernel(std::min(jobs.isa, best_isa()))(tile, jobs, job, exposure.data());
+    const TexelShape* shape = texels.packed.empty() ? &texels.shapes[job.slot] : &unpacked.shape;
+    const auto frames = std::span(jobs.frames).subspan(job.first, job.count);
+    const bool known = std::all_of(frames.begin(), frames.end(), [](const PieceFrame& f) { return f.full; });
+    if (!texels.packed.empty() && !known && unpacked.slot != job.slot) {
+        atlas::shape_of(texels, job.slot, unpacked.shape);
+        unpacked.slot = job.slot;
+    }
+    return kernel(std::min(jobs.isa, best_isa()))(texels.tiles[job.slot], *shape, jobs, job,
+                                                  exposure.data());
 }
 
 }  // namespace tuft::footprint

@@ -1,5 +1,7 @@
 #include "stroke/model.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -8,15 +10,16 @@
 namespace tuft::stroke {
 namespace {
 
-// Bytes per texel of a full tile: the texel map's seven floats and a piece number, one
-// pigment plane and the copy kept for undo, and a share of the piece graph.
-constexpr double kBytesPerTexel = 29.0 + 4.0 + 4.0 + 1.0;
+// Bytes per texel of a full tile: area and piece number, one pigment plane and the copy kept
+// for undo, and a share of the piece graph; position and normal in floats or in 16 bits.
+constexpr double kBytesPerTexel = 5.0 + 4.0 + 4.0 + 1.0;
+constexpr double kFloatShape = 24.0, kPackedShape = 10.0;
 // Charts cover no more than this part of an atlas; the tiles they touch a little more.
 constexpr double kOccupied = 0.9;
 
-void check_memory(std::uint32_t size, std::size_t limit) {
+void check_memory(std::uint32_t size, atlas::TexelStore texels, std::size_t limit) {
     if (limit == 0) limit = available_memory();
-    const std::size_t needed = atlas_memory(size);
+    const std::size_t needed = atlas_memory(size, texels);
     if (needed > limit)
         throw Error("an atlas of " + std::to_string(size) + " x " + std::to_string(size) +
                     " texels needs " + std::to_string(needed >> 20) + " MiB, but only " +
@@ -24,32 +27,45 @@ void check_memory(std::uint32_t size, std::size_t limit) {
                     " MiB are free; choose a smaller --atlas-size or a larger --texel-size");
 }
 
-void finish(Model& model, const ProgressFn& progress) {
+/// Hands back to the system what the heap holds and nobody uses: 250 MB of a million triangles'
+/// charts would otherwise stay beside the texels.
+void release_free_memory() {
+#ifdef __GLIBC__
+    ::malloc_trim(0);
+#endif
+}
+
+void finish(Model& model, atlas::TexelStore texels, const ProgressFn& progress) {
+    release_free_memory();
     report(progress, "search tree", 0);
     model.query = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
     report(progress, "search tree", 1);
-    model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress);
+    model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress, texels);
     model.pieces = atlas::build_piece_graph(*model.mesh, model.atlas, model.texels, progress);
+    release_free_memory();
 }
 
 void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOptions& options) {
-    if (unwrap.size > 0) check_memory(unwrap.size, options.memory_limit);
+    if (unwrap.size > 0) check_memory(unwrap.size, options.texels, options.memory_limit);
     if (unwrap.size == 0 && unwrap.texel_size > 0) {
         // Before the charts are made: their area alone asks for this many texels.
         const double side = std::sqrt(mesh::surface_area(*model.mesh)) / unwrap.texel_size;
-        check_memory(static_cast<std::uint32_t>(std::min(side, 4e9)), options.memory_limit);
+        check_memory(static_cast<std::uint32_t>(std::min(side, 4e9)), options.texels,
+                     options.memory_limit);
     }
     atlas::Unwrapped unwrapped = atlas::unwrap(*model.mesh, unwrap);
     model.atlas = std::move(unwrapped.atlas);
     model.atlas_report = std::move(unwrapped.report);
-    check_memory(model.atlas.size, options.memory_limit);
-    finish(model, options.progress);
+    check_memory(model.atlas.size, options.texels, options.memory_limit);
+    finish(model, options.texels, options.progress);
 }
 
 }  // namespace
 
-std::size_t atlas_memory(std::uint32_t size) {
-    return static_cast<std::size_t>(static_cast<double>(size) * size * kOccupied * kBytesPerTexel);
+std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels) {
+    const double shape = atlas::is_packed(texels, size) ? kPackedShape : kFloatShape;
+    return static_cast<std::size_t>(static_cast<double>(size) * size * kOccupied *
+                                    (kBytesPerTexel + shape));
 }
 
 std::size_t available_memory() {
@@ -73,7 +89,7 @@ std::size_t available_memory() {
 
 Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options) {
     atlas::UnwrapOptions unwrap = options.unwrap;
-    if (unwrap.size > 0) check_memory(unwrap.size, options.memory_limit);
+    if (unwrap.size > 0) check_memory(unwrap.size, options.texels, options.memory_limit);
     mesh::RepairOptions repair = options.repair;
     repair.progress = unwrap.progress = options.progress;
 
@@ -81,6 +97,7 @@ Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options) {
     mesh::Surface surface = mesh::build_surface(std::move(soup), repair);
     model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(surface.mesh));
     model.repairs = std::move(surface.report);
+    release_free_memory();
     give_atlas(model, unwrap, options);
     return model;
 }
@@ -92,12 +109,13 @@ Model rescale_model(Model model, const ModelOptions& options) {
     return model;
 }
 
-Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress) {
+Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress,
+                    atlas::TexelStore texels) {
     Model model;
     model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(mesh));
     model.atlas = std::move(atlas);
-    check_memory(model.atlas.size, 0);
-    finish(model, progress);
+    check_memory(model.atlas.size, texels, 0);
+    finish(model, texels, progress);
     return model;
 }
 

@@ -28,6 +28,7 @@ struct Model {
 struct ModelOptions {
     mesh::RepairOptions repair;     ///< its `progress` is set from the one below
     atlas::UnwrapOptions unwrap;    ///< likewise
+    atlas::TexelStore texels = atlas::TexelStore::automatic;
     std::size_t memory_limit = 0;   ///< bytes; 0: what the machine has free
     ProgressFn progress;
 };
@@ -38,13 +39,15 @@ struct ModelOptions {
 Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options = {});
 
 /// The same from a mesh and an atlas that exist already, such as a project's.
-Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress = {});
+Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress = {},
+                    atlas::TexelStore texels = atlas::TexelStore::automatic);
 
 /// The same mesh with a new atlas, of another size or with new charts.
 Model rescale_model(Model model, const ModelOptions& options);
 
 /// Bytes that painting on an atlas of size × size texels takes at most.
-std::size_t atlas_memory(std::uint32_t size);
+std::size_t atlas_memory(std::uint32_t size,
+                         atlas::TexelStore texels = atlas::TexelStore::automatic);
 
 /// Bytes this process may still take: free memory of the machine or of its control group.
 std::size_t available_memory();

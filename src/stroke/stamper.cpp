@@ -51,14 +51,18 @@ double Stamper::flush() {
     std::vector<double> given(order.size(), 0.0);
     parallel_for(runs.size() - 1, 4, [&](std::size_t begin, std::size_t end) {
         alignas(64) std::array<float, atlas::kTileTexels> exposure;
+        footprint::Unpacked unpacked;
         for (std::size_t r = begin; r < end; ++r) {
+            const std::uint32_t slot = order[runs[r]].slot;
+            const atlas::TexelTile& tile = model_.texels.tiles[slot];
             for (std::uint32_t k = runs[r]; k < runs[r + 1]; ++k) {
                 const Job& job = order[k];
-                const atlas::TexelTile& tile = model_.texels.tiles[job.slot];
                 const footprint::StampJobs& plan = jobs_[job.stamp];
-                if (!footprint::evaluate_tile(tile, plan, plan.tiles[job.tile], exposure)) continue;
+                if (!footprint::evaluate_tile(model_.texels, plan, plan.tiles[job.tile], unpacked,
+                                              exposure))
+                    continue;
                 const Stamp& stamp = batch_[job.stamp];
-                given[k] = ink::deposit(canvas_, job.slot, exposure, tile.area, stamp.ds, stamp.ink);
+                given[k] = ink::deposit(canvas_, slot, exposure, tile.area, stamp.ds, stamp.ink);
             }
         }
     });

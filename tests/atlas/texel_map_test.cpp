@@ -25,6 +25,8 @@ using testing::Unwrapped;
 
 std::uint64_t hash_of(const TexelMap& m) {
     std::uint64_t h = hash_bytes(m.tiles.data(), m.tiles.size() * sizeof(TexelTile));
+    h = hash_bytes(m.shapes.data(), m.shapes.size() * sizeof(TexelShape), h);
+    h = hash_bytes(m.packed.data(), m.packed.size() * sizeof(PackedShape), h);
     h = hash_span(std::span<const std::uint32_t>(m.piece_chart), h);
     return hash_span(std::span<const float>(m.reach), h);
 }
@@ -60,14 +62,15 @@ TEST(TexelMap, PositionsAndAreasAreThoseOfTheSheet) {
     // Texel centres sample nine 60-texel squares at any phase: at most one row too many or few.
     EXPECT_NEAR(double(covered(map)), 9 * 3600, 9 * 61);
     const double texel = 0.1 / 180;
-    for (const TexelTile& tile : map.tiles) {
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        const TexelTile& tile = map.tiles[slot];
         for (int t = 0; t < kTileTexels; ++t) {
             if (tile.piece[t] == kNoPiece) {
                 EXPECT_EQ(tile.area[t], 0);
                 continue;
             }
-            EXPECT_NEAR(tile.pz[t], 0, 1e-9);
-            EXPECT_EQ(tile.nz[t], 1);
+            EXPECT_NEAR(map.position(slot, t).z, 0, 1e-9);
+            EXPECT_EQ(map.normal(slot, t).z, 1);
             // Snapping to 1/4096 texel over grid cells of 7.5 texels.
             EXPECT_NEAR(tile.area[t] / (texel * texel), 1, 1e-3);
         }
@@ -80,10 +83,10 @@ TEST(TexelMap, AreasAddUpToTheSphere) {
     const TexelMap map = build_texel_map(u.mesh, u.atlas);
     // Sum over centres of a smooth density: the error is the 3·128 border texels' halves, random.
     EXPECT_NEAR(total_area(map) / mesh::surface_area(u.mesh), 1, 3e-3);
-    for (const TexelTile& tile : map.tiles) {
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
         for (int t = 0; t < kTileTexels; ++t) {
-            if (tile.piece[t] == kNoPiece) continue;
-            const Vec3 p{tile.px[t], tile.py[t], tile.pz[t]}, n{tile.nx[t], tile.ny[t], tile.nz[t]};
+            if (map.tiles[slot].piece[t] == kNoPiece) continue;
+            const Vec3 p(map.position(slot, t)), n(map.normal(slot, t));
             // Facets 1/48 of 90° wide, √2 as long across: sag r (√2 π/192)²/2 = 2.7e-4 r, and up
             // to 1.2 times that where the faces of the cube are stretched.
             EXPECT_NEAR(glm::length(p), 0.02, 4e-4 * 0.02);
@@ -94,10 +97,11 @@ TEST(TexelMap, AreasAddUpToTheSphere) {
 
 TEST(TexelMap, SameBitsForAnyNumberOfThreads) {
     const Unwrapped u = testing::sphere(0.02, 100);
-    std::set<std::uint64_t> maps, graphs, links;
-    for (const int n : {1, 2, 8}) {
+    std::set<std::uint64_t> maps, packed, graphs, links;
+    for (const int n : {1, 2, 4, 8}) {
         set_thread_count(n);
         const TexelMap map = build_texel_map(u.mesh, u.atlas);
+        packed.insert(hash_of(build_texel_map(u.mesh, u.atlas, {}, TexelStore::packed)));
         const PieceGraph graph = build_piece_graph(u.mesh, u.atlas, map);
         maps.insert(hash_of(map));
         graphs.insert(hash_span(std::span<const PieceEdge>(graph.edges)));
@@ -111,8 +115,43 @@ TEST(TexelMap, SameBitsForAnyNumberOfThreads) {
     }
     set_thread_count(0);
     EXPECT_EQ(maps.size(), 1u);
+    EXPECT_EQ(packed.size(), 1u);
     EXPECT_EQ(graphs.size(), 1u);
     EXPECT_EQ(links.size(), 1u);
+}
+
+TEST(TexelMap, SixteenBitsKeepPlacesAndNormals) {
+    // Charts so small that most tiles hold pieces of several, far apart in space.
+    for (const double texels : {9.0, 160.0}) {
+        const Unwrapped u = testing::sphere(0.02, texels);
+        const TexelMap exact = build_texel_map(u.mesh, u.atlas, {}, TexelStore::floats);
+        const TexelMap small = build_texel_map(u.mesh, u.atlas, {}, TexelStore::packed);
+        ASSERT_EQ(exact.n_slots(), small.n_slots());
+        EXPECT_EQ(exact.piece_start, small.piece_start);
+        EXPECT_TRUE(small.shapes.empty());
+        double worst_place = 0, worst_normal = 0;
+        TexelShape room;
+        for (std::uint32_t slot = 0; slot < exact.n_slots(); ++slot) {
+            EXPECT_EQ(exact.tiles[slot].piece, small.tiles[slot].piece);
+            EXPECT_EQ(exact.tiles[slot].area, small.tiles[slot].area);
+            const TexelShape& shape = shape_of(small, slot, room);
+            for (int t = 0; t < kTileTexels; ++t) {
+                if (exact.tiles[slot].piece[t] == kNoPiece) continue;
+                const Vec3f p = small.position(slot, t), n = small.normal(slot, t);
+                // One texel at a time or the whole tile, the same bits.
+                EXPECT_EQ(p, Vec3f(shape.px[t], shape.py[t], shape.pz[t]));
+                EXPECT_EQ(n, Vec3f(shape.nx[t], shape.ny[t], shape.nz[t]));
+                EXPECT_NEAR(glm::length(n), 1, 2e-7);
+                worst_place = std::max(worst_place, double(glm::length(p - exact.position(slot, t))));
+                worst_normal = std::max(worst_normal, double(glm::length(n - exact.normal(slot, t))));
+            }
+        }
+        // Half a step of a box of 16 √2 texels (stretched by up to 1.3) on each of three axes.
+        EXPECT_LT(worst_place, 0.5 * std::sqrt(3.0) * 16 * std::sqrt(2.0) * 1.3 / 65535 * exact.texel_size);
+        // Half a step of 2/65535 in u and in v moves the octahedron's point by √6 times that, and
+        // in the middle of a face it is √3 times nearer than the sphere; float rounding.
+        EXPECT_LT(worst_normal, std::sqrt(18.0) / 65535 + 2e-7);
+    }
 }
 
 TEST(TexelMap, RefusesAnAtlasOfAnotherMeshAndSurvivesBadCoordinates) {

@@ -280,7 +280,7 @@ TEST(Composite, GuttersContinueOverSeams) {
     const Substrate paper = load_substrate("rice-paper");
     AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, paper, options);
     for (std::uint32_t slot = 0; slot < map.n_slots(); slot += 2)
-        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = 2 * map.tiles[slot].px[t] / 0.02f;
+        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = 2 * map.position(slot, t).x / 0.02f;
     AtlasMap<float> linear = compose_linear(canvas, map, paper, options);
     const std::vector<float> composed = linear.texels;
     atlas::fill_gutter(seams.gutter, map, 3, linear.texels);

@@ -129,7 +129,7 @@ double middle_width(const Painting& painting, const Frame& frame) {
         if (!plane) continue;
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const atlas::TexelTile& tile = map.tiles[slot];
-            const Vec3 p = frame.to_local({tile.px[t], tile.py[t], tile.pz[t]});
+            const Vec3 p = frame.to_local(Vec3(map.position(slot, t)));
             if (std::abs(p.x) < 2e-3 && tile.area[t] > 0)
                 covered += std::min(1.0f, (*plane)[t] / 1.0f) * tile.area[t];
         }
