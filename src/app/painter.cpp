@@ -101,7 +101,7 @@ void Painter::perform(Command& command) {
     stop_ = false;
     std::visit(Overloaded{[this](BeginStroke& c) { begin(c); }, [this](ExtendStroke& c) { extend(c); },
                           [this](EndStroke&) { end(); },
-                          [this](CareForBrush& c) { care(c); },
+                          [this](CareForBrush& c) { care(c); }, [this](PaintTraces& c) { paint_traces(c); },
                           [this](CancelStroke&) {
                               work_.painting->cancel();
                               publish();
@@ -194,6 +194,31 @@ void Painter::care(const CareForBrush& command) {
     work_.keeper.add(work_.painting->journal().strokes().back());
     groups_.push_back(1);
     undone_groups_.clear();
+    publish(true);
+}
+
+void Painter::paint_traces(PaintTraces& command) {
+    std::vector<stroke::Trace> all = command.traces;
+    for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry)) {
+        if (glm::determinant(map.linear) < 0) continue;
+        for (stroke::Trace trace : command.traces) {
+            stroke::Placement& p = trace.placement;
+            p = {map.point(p.origin), map.linear * p.right, map.linear * p.down, p.laying};
+            all.push_back(std::move(trace));
+        }
+    }
+    undone_groups_.clear();
+    groups_.push_back(0);
+    const ProgressFn shown = progress("Laying it down");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
+        work_.keeper.prepare(*work_.painting, all[i].brush, all[i].ink);
+        work_.painting->paint({.trace = std::move(all[i])});
+        work_.keeper.add(work_.painting->journal().strokes().back());
+        ++groups_.back();
+        publish(true);
+    }
+    if (groups_.back() == 0) groups_.pop_back();
     publish(true);
 }
 

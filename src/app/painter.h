@@ -36,6 +36,11 @@ struct ExtendStroke {
     double asked = 0;             ///< seconds on the window's clock, comes back in `Update::done`
 };
 struct EndStroke {};
+/// Paints traces that lie on the model already; undone together.
+struct PaintTraces {
+    std::vector<stroke::Trace> traces;
+    stroke::Symmetry symmetry;    ///< its turns; writing is not mirrored
+};
 struct CancelStroke {};
 struct UndoStroke {};
 struct RedoStroke {};
@@ -53,7 +58,7 @@ struct EditStroke {
     std::optional<std::string> brush, ink;
     bool remove = false;
 };
-using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, CareForBrush, UndoStroke, RedoStroke, SaveProject,
+using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
                              ExportModel, EditStroke>;
 
 /// A stroke for the list.
@@ -117,6 +122,7 @@ class Painter {
     void begin(const BeginStroke& command);
     void extend(const ExtendStroke& command);
     void end();
+    void paint_traces(PaintTraces& command);
     void care(const CareForBrush& command);
     void undo();
     void redo();

@@ -221,7 +221,7 @@ void keys_dialog(Session& s) {
         {"5", "Parallel or perspective"},
         {"[  ]", "Press less, press more"},
         {"Arrow keys   \\", "Lean the brush, hold it upright"},
-        {"B   L   C", "Brush, line, curve"},
+        {"B   L   C   T", "Brush, line, curve, place writing"},
         {"Enter   Backspace   Esc", "Curve: paint it, remove a point, drop it"},
         {"X", "See through the brush"},
         {"Ctrl + Z,  Ctrl + Shift + Z", "Undo, redo"},

@@ -6,6 +6,7 @@
 
 #include "app/panels.h"
 #include "brush/tuft.h"
+#include "core/files.h"
 #include "core/units.h"
 #include "ink/composite.h"
 #include "ink/kubelka_munk.h"
@@ -192,12 +193,34 @@ void tool_buttons(Session& s) {
     static constexpr Entry entries[] = {
         {Tool::brush, "Brush", "Paint freely (B)"},
         {Tool::line, "Line", "Straight as you see it, from press to release; Shift for steps of 15 degrees. Its ends can be moved afterwards (L)"},
-        {Tool::curve, "Curve", "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"}};
-    const float third = (ImGui::GetContentRegionAvail().x / s.ui.settings().scale - 16) / 3;
+        {Tool::curve, "Curve", "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"},
+        {Tool::writing, "Place", "Lays writing or a drawing from a file where you click (T)"}};
+    const float quarter = (ImGui::GetContentRegionAvail().x / s.ui.settings().scale - 15) / 4;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(2), s.ui.px(5)));
     for (std::size_t i = 0; i < std::size(entries); ++i) {
-        if (i % 3) ImGui::SameLine();
-        if (s.ui.choice(entries[i].name, s.tool == entries[i].tool, entries[i].hint, third)) s.tool = entries[i].tool;
+        if (i % 4) ImGui::SameLine(0, s.ui.px(5));
+        if (s.ui.choice(entries[i].name, s.tool == entries[i].tool, entries[i].hint, quarter)) s.tool = entries[i].tool;
     }
+    ImGui::PopStyleVar();
+}
+
+void writing_section(Session& s) {
+    if (s.tool != Tool::writing) return;
+    Ui& ui = s.ui;
+    ui.heading("Place");
+    if (ui.button("Writing or drawing...", "InkML or SVG", 0)) s.files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
+    if (s.writing.empty()) return;
+    Writing& w = s.writing;
+    ImGui::TextUnformatted(w.file.filename().c_str());
+    double width = w.width * w.scale;
+    if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", "Wheel over the model", kMillimetre)) w.scale = width / w.width;
+    ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
+    bool along = w.laying == stroke::Laying::wrap;
+    if (ui.toggle("Bend it round the surface", along, "Lengths stay as written; else it is projected straight through the picture plane"))
+        w.laying = along ? stroke::Laying::wrap : stroke::Laying::project;
+    const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
+    if (names) ui.toggle("Brush and ink of the file", w.own_ink);
+    ui.note(ui.tr("Wheel: size    Shift + wheel: turn    Click: lay it down"));
 }
 
 // How the hand goes along lines and curves.
@@ -245,11 +268,12 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     ImGui::Begin("###tools", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                                           ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
     tool_buttons(s);
+    curve_section(s);
+    writing_section(s);
     brush_rack(s);
     ink_palette(s);
     care_section(s);
     hand_section(s);
-    curve_section(s);
     symmetry_section(s);
     section_section(s);
     ImGui::End();

@@ -21,7 +21,7 @@
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
 ///   set NAME VALUE          texels (of the model asked about), brush, ink, shading, light, parallel, azimuth, elevation, zoom,
-///                           pressure, string, radial, mirror, carry, tool, language, theme, scale, section,
+///                           pressure, writing-width (mm), string, radial, mirror, carry, tool, language, theme, scale, section,
 ///                           see-through, draw-every (frames of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png

@@ -15,12 +15,13 @@
 #include "app/state_folder.h"
 #include "app/ui.h"
 #include "app/viewport.h"
+#include "app/writing.h"
 #include "render/gl_scene.h"
 
 namespace tuft::app {
 
 enum class ModelView { glaze, clay, flat, height, texels, charts, stretch };
-enum class Tool { brush, line, curve };
+enum class Tool { brush, line, curve, writing };
 enum class Keymap { blender, maya };
 
 /// How the model is looked at.
@@ -71,6 +72,8 @@ struct Session {
     HandSettings hand;
     stroke::Symmetry symmetry;
     CurveInWork curve;
+    Writing writing;
+    std::vector<std::vector<GhostPoint>> ghost;  ///< where the writing would lie now
     CurveSettings curve_settings;
     bool more_hand = false;                ///< all settings of the hand are shown
     double highest = 0;                    ///< micrometres, of the ink seen so far
@@ -100,6 +103,8 @@ void open_path(Session& s, const std::filesystem::path& path);
 void open_sample(Session& s, const std::filesystem::path& path);
 /// Closes the dialog that lies on top, as its Cancel does; false when there is none.
 bool close_dialog(Session& s);
+/// Takes writing into the hand to be placed.
+void open_writing(Session& s, const std::filesystem::path& path);
 /// Goes on from the dialog of a model that was looked at.
 void accept_inspected(Session& s);
 /// Takes over what threads have finished.

@@ -98,6 +98,7 @@ void Studio::panels(int height) {
     if (const auto path = s.files.draw(s.ui)) {
         if (s.files.purpose() == FileDialog::Purpose::open) open_path(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::save) save_as(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::writing) open_writing(s, *path);
         else if (s.painter)
             s.painter->post(ExportModel{*path, s.export_choice.relief, s.export_choice.roughness});
     }
@@ -156,7 +157,7 @@ void Studio::update_tuft(double now) {
     s.pressed = s.last.tuft && !s.last.tuft->branches.empty();
     if (s.pressed) {
         s.tuft = *s.last.tuft;
-    } else if (cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
+    } else if (s.tool != Tool::writing && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
         if (!preview_ || preview_brush_ != s.brush) {
             preview_ = brush::make_tuft(brush::load_preset(s.brush));
             preview_brush_ = s.brush;
@@ -232,6 +233,7 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     for (const Event& event : events) handle(event);
     if (s.painter) {
         watch_curve();
+        watch_writing();
         update_tuft(now);
     }
     panels(height);

@@ -57,6 +57,10 @@ class Studio {
     bool curve_key(const Event& event);
     void paint_curve();
     void watch_curve();
+    std::optional<stroke::Placement> writing_placement() const;
+    void watch_writing();
+    void writing_wheel(const Event& event);
+    void lay_writing();
     void update_tuft(double now);
     void show_colours();
     void draw_scene(unsigned framebuffer, int height);
@@ -70,6 +74,8 @@ class Studio {
     std::unique_ptr<render::GlView> view_;
     std::optional<Hand> hand_;
     std::optional<Event> line_start_;         ///< where a new control point was set
+    stroke::Placement ghost_placement_;
+    double ghost_scale_ = 0;
     std::vector<stroke::Lead> lead_;
     std::string lead_brush_;
     Event cursor_;

@@ -50,6 +50,7 @@ void Studio::handle(const Event& e) {
         case Event::Kind::scroll:
             if (!s.painter || ImGui::GetIO().WantCaptureMouse) return;
             if (s.curve.over >= 0) return curve_wheel(e);
+            if (s.tool == Tool::writing && !s.writing.empty() && !(e.modifiers & (kAlt | kControl))) return writing_wheel(e);
             last_turn_ = now_;
             if (e.modifiers & kControl) s.view.orbit.roll += 0.06 * e.steps;
             else {
@@ -73,6 +74,7 @@ void Studio::press(const Event& e) {
     else if (e.button == 0 && alt) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     else if (e.button != 0 && s.keymap == Keymap::blender) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     if (drag_ != Drag::none || e.button != 0) return;
+    if (s.tool == Tool::writing) return lay_writing();
     if (s.tool == Tool::line || s.tool == Tool::curve) return curve_press(e);
     try {
         hand_.emplace(*s.painter->model().query, brush::load_preset(s.brush), s.hand);
@@ -166,6 +168,7 @@ void Studio::key(const Event& e) {
         case GLFW_KEY_B: s.tool = Tool::brush; break;
         case GLFW_KEY_L: s.tool = Tool::line; break;
         case GLFW_KEY_C: s.tool = Tool::curve; break;
+        case GLFW_KEY_T: s.tool = Tool::writing; break;
         case GLFW_KEY_X: s.view.see_through = !s.view.see_through; break;
         default: break;
     }

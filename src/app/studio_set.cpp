@@ -26,6 +26,7 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "azimuth") s.view.orbit.azimuth = number * kDegree;
     else if (name == "elevation") s.view.orbit.elevation = number * kDegree;
     else if (name == "zoom") s.view.orbit.zoom(number, s.view.orbit.target);
+    else if (name == "writing-width") s.writing.scale = number * kMillimetre / std::max(1e-6, s.writing.width);
     else if (name == "texels") s.open_options.atlas_size = static_cast<std::uint32_t>(std::clamp(number, 64.0, 16384.0));
     else if (name == "pressure") s.hand.pressure = std::clamp(number, 0.02, 1.0);
     else if (name == "carry") s.carry = on;
@@ -35,7 +36,7 @@ void Studio::set(const std::string& name, const std::string& value) {
         s.symmetry.mirror_x = value.find('x') != std::string::npos;
         s.symmetry.mirror_y = value.find('y') != std::string::npos;
         s.symmetry.mirror_z = value.find('z') != std::string::npos;
-    } else if (name == "tool") s.tool = static_cast<Tool>(one_of({"brush", "line", "curve"}));
+    } else if (name == "tool") s.tool = static_cast<Tool>(one_of({"brush", "line", "curve", "writing"}));
     else if (name == "section") {
         s.view.section = number > 0;
         s.view.section_at = std::clamp(number, 0.02, 1.0);

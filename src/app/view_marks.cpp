@@ -107,6 +107,19 @@ void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
     }
 }
 
+// Where the writing would lie; what is turned away is faint.
+void ghost_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    if (s.tool != Tool::writing) return;
+    const float width = s.ui.px(1.6f);
+    for (const auto& line : s.ghost)
+        for (std::size_t i = 1; i < line.size(); ++i) {
+            const Vec3 to_eye = c.parallel_height > 0 ? -c.forward : c.eye - line[i].position;
+            const bool seen = glm::dot(line[i].normal, to_eye) > 0;
+            draw->AddLine(on_screen(s, c, line[i - 1].position), on_screen(s, c, line[i].position),
+                          seen ? IM_COL32(255, 150, 30, 230) : IM_COL32(255, 150, 30, 50), width);
+        }
+}
+
 struct Stop {
     unsigned colour;
     float at;
@@ -154,6 +167,7 @@ void view_marks(const Session& s, const render::GlCamera& c) {
                        ImVec2(static_cast<float>(s.area.x + s.area.width), static_cast<float>(s.area.y + s.area.height)), true);
     if (!s.tuft.branches.empty()) s.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
     curve_marks(s, c, draw);
+    ghost_marks(s, c, draw);
     axis_cross(s, c, draw);
     scale_bar(s, c, draw);
     legends(s, draw);

@@ -12,7 +12,7 @@
 #include "ink/composite.h"
 #include "io/export.h"
 #include "io/image.h"
-#include "io/inkml.h"
+#include "io/svg.h"
 #include "io/read_model.h"
 #include "stroke/habit.h"
 
@@ -105,7 +105,7 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
 
     std::vector<stroke::Stroke> strokes;
     for (const fs::path& file : a.strokes) {
-        std::vector<stroke::Trace> traces = io::read_inkml(file);
+        std::vector<stroke::Trace> traces = io::read_strokes(file);
         if (habit) traces = stroke::undo_habit(*habit, std::move(traces));
         for (stroke::Trace& trace : traces) {
             if (trace.brush.empty() || !a.brush.empty())

@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <cmath>
+
+#include "app/studio.h"
+#include "core/units.h"
+
+/// Placing writing and drawings with the mouse.
+namespace tuft::app {
+
+std::optional<stroke::Placement> Studio::writing_placement() const {
+    const Session& s = session_;
+    if (s.tool != Tool::writing || s.writing.empty() || !cursor_inside_ || dialog_open()) return std::nullopt;
+    const Aim aim = aim_of(cursor_);
+    const auto hit = aim_at(*s.painter->model().query, aim);
+    if (!hit) return std::nullopt;
+    const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
+    stroke::Placement placement = place_writing(s.writing, *hit, normal, aim.view_right);
+    if (s.writing.laying == stroke::Laying::project) {
+        // Straight through the picture: as it is seen now it comes to lie.
+        const double c = std::cos(s.writing.turn), t = std::sin(s.writing.turn);
+        placement.right = c * aim.view_right - t * aim.view_up;
+        placement.down = -t * aim.view_right - c * aim.view_up;
+    }
+    return placement;
+}
+
+void Studio::watch_writing() {
+    Session& s = session_;
+    const auto placement = writing_placement();
+    if (!placement) {
+        s.ghost.clear();
+        ghost_scale_ = 0;
+        return;
+    }
+    const stroke::Placement& old = ghost_placement_;
+    if (placement->origin == old.origin && placement->right == old.right && placement->down == old.down && placement->laying == old.laying &&
+        ghost_scale_ == s.writing.scale)
+        return;
+    ghost_placement_ = *placement;
+    ghost_scale_ = s.writing.scale;
+    s.ghost = ghost_lines(*s.painter->model().query, s.writing, *placement);
+}
+
+void Studio::writing_wheel(const Event& e) {
+    Writing& w = session_.writing;
+    if (e.modifiers & kShift) w.turn = std::remainder(w.turn + 3 * kDegree * e.steps, 360 * kDegree);
+    else w.scale = std::clamp(w.scale * std::pow(1.05, e.steps), 1e-3, 1e3);
+}
+
+void Studio::lay_writing() {
+    Session& s = session_;
+    const auto placement = writing_placement();
+    if (!placement) return;
+    // Pressures in files are made up round a half.
+    std::vector<stroke::Trace> traces = placed_traces(s.writing, *placement, s.hand.pressure / 0.5);
+    for (stroke::Trace& trace : traces) {
+        if (!s.writing.own_ink || trace.brush.empty()) trace.brush = s.brush;
+        if (!s.writing.own_ink || trace.ink.empty()) trace.ink = s.ink;
+    }
+    s.painter->post(PaintTraces{std::move(traces), s.symmetry});
+}
+
+}  // namespace tuft::app

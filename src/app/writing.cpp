@@ -1,0 +1,94 @@
+#include "app/writing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "io/svg.h"
+#include "stroke/placement.h"
+
+namespace tuft::app {
+
+namespace {
+
+bool same_place(const stroke::Placement& a, const stroke::Placement& b) {
+    return a.origin == b.origin && a.right == b.right && a.down == b.down;
+}
+
+// Parts that the file puts at places of their own, such as characters round a bowl, would lie over
+// each other at one place.
+void set_side_by_side(std::vector<stroke::Trace>& traces) {
+    double edge = 0;
+    for (std::size_t i = 0; i < traces.size();) {
+        std::size_t end = i;
+        Box box;
+        for (; end < traces.size() && same_place(traces[end].placement, traces[i].placement); ++end)
+            for (const stroke::TraceSample& s : traces[end].samples) box.add(s.position);
+        const Vec3 shift = i == 0 ? Vec3(0) : Vec3(edge - box.lo.x + 0.15 * std::max(box.size().x, box.size().y), 0, 0);
+        for (; i < end; ++i)
+            for (stroke::TraceSample& s : traces[i].samples) s.position += shift;
+        edge = box.hi.x + shift.x;
+    }
+}
+
+}  // namespace
+
+Writing read_writing(const std::filesystem::path& file) {
+    Writing out{.file = file, .traces = io::read_strokes(file)};
+    std::erase_if(out.traces, [](const stroke::Trace& t) { return !t.flat || t.samples.empty(); });
+    if (out.traces.empty()) throw Error(file.string(), "its strokes lie in space already; only flat writing can be placed");
+    set_side_by_side(out.traces);
+    Box box;
+    for (const stroke::Trace& trace : out.traces)
+        for (const stroke::TraceSample& s : trace.samples) box.add(s.position);
+    for (stroke::Trace& trace : out.traces)
+        for (stroke::TraceSample& s : trace.samples) s.position -= box.centre();
+    out.width = box.size().x;
+    out.height = box.size().y;
+    return out;
+}
+
+stroke::Placement place_writing(const Writing& w, const mesh::SurfacePoint& at, const Vec3& normal, const Vec3& right) {
+    Vec3 x = right - glm::dot(right, normal) * normal;
+    x = glm::length(x) > 1e-6 ? glm::normalize(x) : make_frame(at.position, normal).t;
+    const Vec3 y = glm::cross(x, normal);  // down, as seen from outside
+    const double c = std::cos(w.turn), s = std::sin(w.turn);
+    return {.origin = at.position, .right = c * x + s * y, .down = -s * x + c * y, .laying = w.laying};
+}
+
+std::vector<stroke::Trace> placed_traces(const Writing& w, const stroke::Placement& placement, double pressure) {
+    std::vector<stroke::Trace> traces = w.traces;
+    for (stroke::Trace& trace : traces) {
+        trace.placement = placement;
+        trace.placed = true;
+        trace.before.clear();
+        for (stroke::TraceSample& s : trace.samples) {
+            s.position *= w.scale;
+            s.time *= std::max(0.2, w.scale);  // the same pace for larger letters
+            if (!trace.pressed) s.pressure = std::min(1.0, s.pressure * pressure);
+        }
+    }
+    return traces;
+}
+
+std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& w, const stroke::Placement& placement, std::size_t most) {
+    std::size_t all = 0;
+    for (const stroke::Trace& trace : w.traces) all += trace.samples.size();
+    const std::size_t step = std::max<std::size_t>(1, all / most);
+    std::vector<std::vector<GhostPoint>> lines;
+    for (const stroke::Trace& trace : w.traces) {
+        stroke::Trace thin{.placement = placement};
+        const std::size_t n = trace.samples.size();
+        for (std::size_t i = 0; i < n; i += step) thin.samples.push_back(trace.samples[i]);
+        if ((n - 1) % step != 0) thin.samples.push_back(trace.samples.back());
+        for (stroke::TraceSample& s : thin.samples) s.position *= w.scale;
+        lines.emplace_back();
+        for (const stroke::LaidSample& s : stroke::lay(query, thin).samples) {
+            if (s.on_surface) lines.back().push_back({s.position, s.normal});
+            else if (!lines.back().empty()) lines.emplace_back();
+        }
+    }
+    return lines;
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "mesh/surface_query.h"
+#include "stroke/trace.h"
+
+/// A drawing or handwriting that waits to be laid onto the model.
+namespace tuft::app {
+
+struct Writing {
+    std::filesystem::path file;
+    std::vector<stroke::Trace> traces;   ///< flat, metres, (0, 0) in their middle
+    double width = 0, height = 0;        ///< metres, as in the file
+    double scale = 1;
+    double turn = 0;                     ///< radians, clockwise as seen
+    stroke::Laying laying = stroke::Laying::wrap;
+    bool own_ink = false;                ///< brush and ink as the file names them
+
+    bool empty() const { return traces.empty(); }
+};
+
+/// Reads an InkML or SVG file. Throws `Error` also when nothing in it is flat.
+Writing read_writing(const std::filesystem::path& file);
+
+/// Where it comes to lie with its middle at a point of the surface, seen with `right` to the right.
+stroke::Placement place_writing(const Writing& writing, const mesh::SurfacePoint& at, const Vec3& normal, const Vec3& right);
+
+/// The traces as they will be painted, pressures that were made up times `pressure`.
+std::vector<stroke::Trace> placed_traces(const Writing& writing, const stroke::Placement& placement, double pressure);
+
+/// How it would lie: one line for each piece of a trace on the surface, with its normals, of at
+/// most `most` samples in all.
+struct GhostPoint {
+    Vec3 position, normal;
+};
+std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& writing, const stroke::Placement& placement,
+                                                 std::size_t most = 3000);
+
+}  // namespace tuft::app

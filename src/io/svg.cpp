@@ -1,0 +1,349 @@
+#include "io/svg.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <numbers>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "core/error.h"
+
+namespace tuft::io {
+namespace {
+
+constexpr double kPixel = 0.0254 / 96;   // metres of a CSS pixel
+constexpr double kSpacing = 5e-4;        // metres, of samples on a straight line
+constexpr int kDeepest = 64;             // of nested groups
+constexpr int kMostChords = 4096;        // of one curve
+using Matrix = glm::dmat3;
+using Line = std::vector<Vec2>;
+
+// Reads numbers, flags and words from an attribute.
+class Reader {
+  public:
+    Reader(std::string_view text, const std::string& source) : at_(text.data()), end_(at_ + text.size()), source_(source) {}
+
+    void skip() {
+        while (at_ < end_ && (std::isspace(static_cast<unsigned char>(*at_)) || *at_ == ',')) ++at_;
+    }
+    bool done() { return skip(), at_ == end_; }
+    char peek() { return skip(), at_ < end_ ? *at_ : '\0'; }
+    char take() { return *at_++; }
+    bool number_next() {
+        const char c = peek();
+        return c == '-' || c == '+' || c == '.' || (c >= '0' && c <= '9');
+    }
+    double number() {
+        skip();
+        if (at_ < end_ && *at_ == '+') ++at_;
+        double value = 0;
+        const auto [next, fault] = std::from_chars(at_, end_, value);
+        if (fault != std::errc() || !std::isfinite(value) || std::abs(value) > 1e9)
+            throw Error(source_, "'" + std::string(at_, std::min<std::size_t>(12, static_cast<std::size_t>(end_ - at_))) + "' is not a number of a drawing");
+        at_ = next;
+        return value;
+    }
+    bool flag() {
+        const char c = peek();
+        if (c != '0' && c != '1') throw Error(source_, "an arc's flag is neither 0 nor 1");
+        ++at_;
+        return c == '1';
+    }
+    std::string word() {
+        skip();
+        const char* start = at_;
+        while (at_ < end_ && std::isalpha(static_cast<unsigned char>(*at_))) ++at_;
+        return {start, at_};
+    }
+
+  private:
+    const char *at_, *end_;
+    const std::string& source_;
+};
+
+Matrix translation(double x, double y) { return {1, 0, 0, 0, 1, 0, x, y, 1}; }
+Matrix scaling(double x, double y) { return {x, 0, 0, 0, y, 0, 0, 0, 1}; }
+
+class Drawing {
+  public:
+    Drawing(const std::string& source, const SvgOptions& options) : source_(source), options_(options) {}
+
+    void walk(const pugi::xml_node& node, Matrix matrix, int depth) {
+        if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
+        const std::string name = local(node.name());
+        static constexpr const char* skipped[] = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "metadata", "style", "title", "desc"};
+        if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped)) return;
+        const std::string style = node.attribute("style").value();
+        if (std::strcmp(node.attribute("display").value(), "none") == 0 || style.find("display:none") != std::string::npos) return;
+        if (const auto transform = node.attribute("transform")) matrix = matrix * transform_of(transform.value());
+        matrix_ = matrix;
+        if (name == "path") path(node.attribute("d").value());
+        else if (name == "polyline" || name == "polygon") points(node.attribute("points").value(), name == "polygon");
+        else if (name == "line") emit({{number(node, "x1"), number(node, "y1")}, {number(node, "x2"), number(node, "y2")}});
+        else if (name == "rect") rectangle(node);
+        else if (name == "circle") ellipse(number(node, "cx"), number(node, "cy"), number(node, "r"), number(node, "r"));
+        else if (name == "ellipse") ellipse(number(node, "cx"), number(node, "cy"), number(node, "rx"), number(node, "ry"));
+        for (const pugi::xml_node& child : node.children())
+            if (child.type() == pugi::node_element) walk(child, matrix, depth + 1);
+    }
+
+    // Metres per unit of the drawing and the corner that becomes (0, 0).
+    Matrix frame(const pugi::xml_node& svg) const {
+        const double width = length(svg.attribute("width").value());
+        if (const std::string box = svg.attribute("viewBox").value(); !box.empty()) {
+            Reader in(box, source_);
+            const double x = in.number(), y = in.number(), w = in.number();
+            if (!(w > 0)) throw Error(source_, "the viewBox has no width");
+            const double scale = width > 0 ? width / w : kPixel;
+            return scaling(scale, scale) * translation(-x, -y);
+        }
+        return scaling(kPixel, kPixel);
+    }
+
+    const std::vector<Line>& lines() const { return lines_; }
+    static std::string local(const char* name) {
+        const char* colon = std::strchr(name, ':');
+        return colon ? colon + 1 : name;
+    }
+
+  private:
+    // A length with its unit, metres; 0: none, or a part of an unknown page.
+    double length(const std::string& text) const {
+        if (text.empty() || text.back() == '%') return 0;
+        Reader in(text, source_);
+        const double value = in.number();
+        const std::string unit = in.word();
+        if (unit == "mm") return value * 1e-3;
+        if (unit == "cm") return value * 1e-2;
+        if (unit == "in") return value * 0.0254;
+        if (unit == "pt") return value * 0.0254 / 72;
+        if (unit == "pc") return value * 0.0254 / 6;
+        return value * kPixel;
+    }
+    double number(const pugi::xml_node& node, const char* name) const {
+        const char* text = node.attribute(name).value();
+        return *text ? Reader(text, source_).number() : 0;
+    }
+
+    Matrix transform_of(const char* text) const {
+        Reader in(text, source_);
+        Matrix m(1);
+        while (!in.done()) {
+            const std::string name = in.word();
+            if (in.peek() != '(') throw Error(source_, "'" + name + "' is not a transform");
+            in.take();
+            std::vector<double> v;
+            while (in.number_next()) v.push_back(in.number());
+            if (in.peek() != ')') throw Error(source_, "a transform is not closed");
+            in.take();
+            const auto at = [&](std::size_t i, double otherwise = 0) { return i < v.size() ? v[i] : otherwise; };
+            if (name == "matrix" && v.size() == 6) m = m * Matrix(v[0], v[1], 0, v[2], v[3], 0, v[4], v[5], 1);
+            else if (name == "translate") m = m * translation(at(0), at(1));
+            else if (name == "scale") m = m * scaling(at(0, 1), at(1, at(0, 1)));
+            else if (name == "rotate") {
+                const double a = at(0) * std::numbers::pi / 180, c = std::cos(a), s = std::sin(a);
+                m = m * translation(at(1), at(2)) * Matrix(c, s, 0, -s, c, 0, 0, 0, 1) * translation(-at(1), -at(2));
+            } else if (name == "skewX") m = m * Matrix(1, 0, 0, std::tan(at(0) * std::numbers::pi / 180), 1, 0, 0, 0, 1);
+            else if (name == "skewY") m = m * Matrix(1, std::tan(at(0) * std::numbers::pi / 180), 0, 0, 1, 0, 0, 0, 1);
+            else throw Error(source_, "'" + name + "' is not a transform");
+        }
+        return m;
+    }
+
+    Vec2 moved(const Vec2& p) const { return Vec2(matrix_ * Vec3(p, 1)); }
+    void emit(const Line& line) {
+        Line out;
+        for (const Vec2& p : line) {
+            const Vec2 q = moved(p);
+            if (!(std::abs(q.x) < options_.ink.max_extent && std::abs(q.y) < options_.ink.max_extent)) throw Error(source_, "the drawing is absurdly large");
+            // Pressure is laid out along the samples, so long chords need some.
+            const int n = out.empty() ? 1 : static_cast<int>(std::clamp(glm::distance(out.back(), q) / kSpacing, 1.0, static_cast<double>(kMostChords)));
+            const Vec2 from = out.empty() ? q : out.back();
+            if (!out.empty() && q == from) continue;
+            for (int i = 1; i <= n; ++i) out.push_back(glm::mix(from, q, static_cast<double>(i) / n));
+        }
+        if (out.size() < 2) return;
+        n_points_ += out.size();
+        if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
+        lines_.push_back(std::move(out));
+    }
+
+    // Chords of a curve over t in (0, 1]; `bend` bounds the length of its second derivative in user units.
+    template <class Curve>
+    void chords(Line& line, double bend, const Curve& curve) const {
+        const double scale = std::sqrt(std::abs(matrix_[0][0] * matrix_[1][1] - matrix_[1][0] * matrix_[0][1]));
+        // A chord over a step h leaves a curve by at most h² |c''| / 8.
+        const double steps = std::ceil(std::sqrt(bend * scale / (8 * options_.tolerance)));
+        const int n = static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMostChords)));
+        for (int i = 1; i <= n; ++i) line.push_back(curve(static_cast<double>(i) / n));
+    }
+    void cubic(Line& line, const Vec2& b, const Vec2& c, const Vec2& d) const {
+        const Vec2 a = line.back();
+        chords(line, 6 * std::max(glm::length(a - 2.0 * b + c), glm::length(b - 2.0 * c + d)), [&](double t) {
+            const double u = 1 - t;
+            return u * u * u * a + 3 * u * u * t * b + 3 * u * t * t * c + t * t * t * d;
+        });
+    }
+    // Appendix F.6.5: from end points to centre and angles.
+    void arc(Line& line, double rx, double ry, double turn, bool large, bool sweep, const Vec2& end) const {
+        const Vec2 start = line.back();
+        rx = std::abs(rx), ry = std::abs(ry);
+        if (rx == 0 || ry == 0 || start == end) return line.push_back(end);
+        const double c = std::cos(turn), s = std::sin(turn);
+        const Vec2 h = 0.5 * (start - end), p(c * h.x + s * h.y, -s * h.x + c * h.y);
+        if (const double over = p.x * p.x / (rx * rx) + p.y * p.y / (ry * ry); over > 1) rx *= std::sqrt(over), ry *= std::sqrt(over);
+        const double below = rx * rx * p.y * p.y + ry * ry * p.x * p.x;
+        const double root = (large == sweep ? -1 : 1) * std::sqrt(std::max(0.0, (rx * rx * ry * ry - below) / below));
+        const Vec2 q(root * rx * p.y / ry, -root * ry * p.x / rx);
+        const Vec2 centre = Vec2(c * q.x - s * q.y, s * q.x + c * q.y) + 0.5 * (start + end);
+        const double from = std::atan2((p.y - q.y) / ry, (p.x - q.x) / rx);
+        double way = std::atan2((-p.y - q.y) / ry, (-p.x - q.x) / rx) - from;
+        if (sweep && way < 0) way += 2 * std::numbers::pi;
+        if (!sweep && way > 0) way -= 2 * std::numbers::pi;
+        chords(line, std::max(rx, ry) * way * way, [&](double t) {
+            const double a = from + t * way, x = rx * std::cos(a), y = ry * std::sin(a);
+            return Vec2(c * x - s * y, s * x + c * y) + centre;
+        });
+        line.back() = end;
+    }
+
+    void points(const char* text, bool closed) {
+        Reader in(text, source_);
+        Line line;
+        while (in.number_next()) {
+            const double x = in.number();
+            line.emplace_back(x, in.number());
+        }
+        if (closed && !line.empty()) line.push_back(line.front());
+        emit(line);
+    }
+    void rectangle(const pugi::xml_node& node) {
+        const double x = number(node, "x"), y = number(node, "y"), w = number(node, "width"), h = number(node, "height");
+        emit({{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}, {x, y}});
+    }
+    void ellipse(double x, double y, double rx, double ry) {
+        if (!(rx > 0 && ry > 0)) return;
+        Line line{{x + rx, y}};
+        arc(line, rx, ry, 0, false, true, {x - rx, y});
+        arc(line, rx, ry, 0, false, true, {x + rx, y});
+        emit(line);
+    }
+
+    void path(const char* text) {
+        Reader in(text, source_);
+        Line line;
+        Vec2 start(0), at(0), control(0);
+        char command = '\0', before = '\0';
+        const auto flush = [&] {
+            emit(line);
+            line.clear();
+        };
+        while (!in.done()) {
+            if (std::isalpha(static_cast<unsigned char>(in.peek()))) command = in.take();
+            else if (!in.number_next() || command == '\0' || command == 'Z' || command == 'z') throw Error(source_, "a path cannot be read");
+            const bool relative = std::islower(static_cast<unsigned char>(command)) != 0;
+            const Vec2 base = relative ? at : Vec2(0);
+            const auto point = [&] {
+                const double x = in.number();
+                return base + Vec2(x, in.number());
+            };
+            const char c = static_cast<char>(std::toupper(static_cast<unsigned char>(command)));
+            if (c == 'M') {
+                flush();
+                start = at = point();
+                command = relative ? 'l' : 'L';  // more points are lines
+                before = 'M';
+                continue;
+            }
+            if (line.empty()) line.push_back(at);
+            // The reflected control point after a curve of the same kind, else the current point.
+            const auto smooth = [&](const char* kinds) { return std::strchr(kinds, before) && before ? 2.0 * at - control : at; };
+            switch (c) {
+                case 'L': line.push_back(point()); break;
+                case 'H': line.emplace_back(base.x + in.number(), at.y); break;
+                case 'V': line.emplace_back(at.x, base.y + in.number()); break;
+                case 'C':
+                case 'S': {
+                    const Vec2 first = c == 'C' ? point() : smooth("CS");
+                    control = point();
+                    cubic(line, first, control, point());
+                    break;
+                }
+                case 'Q':
+                case 'T': {
+                    control = c == 'Q' ? point() : smooth("QT");
+                    const Vec2 end = point();
+                    cubic(line, at + 2.0 / 3 * (control - at), end + 2.0 / 3 * (control - end), end);
+                    break;
+                }
+                case 'A': {
+                    const double rx = in.number(), ry = in.number(), turn = in.number() * std::numbers::pi / 180;
+                    const bool large = in.flag(), sweep = in.flag();
+                    arc(line, rx, ry, turn, large, sweep, point());
+                    break;
+                }
+                case 'Z':
+                    line.push_back(start);
+                    flush();
+                    at = start;
+                    before = 'Z';
+                    continue;
+                default: throw Error(source_, std::string("a path has the unknown command '") + command + "'");
+            }
+            at = line.back();
+            before = c;
+        }
+        flush();
+    }
+
+    const std::string& source_;
+    const SvgOptions& options_;
+    Matrix matrix_{1};
+    std::vector<Line> lines_;
+    std::size_t n_points_ = 0;
+};
+
+}  // namespace
+
+std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& source, const SvgOptions& options) {
+    pugi::xml_document document;
+    const auto parsed = document.load_buffer(text.data(), text.size());
+    if (!parsed) throw Error(source, std::string("not well formed: ") + parsed.description());
+    const pugi::xml_node svg = document.document_element();
+    if (Drawing::local(svg.name()) != "svg") throw Error(source, "not an SVG drawing");
+    Drawing drawing(source, options);
+    drawing.walk(svg, drawing.frame(svg), 0);
+    if (drawing.lines().empty()) throw Error(source, "nothing is drawn in this file; text must be turned into paths first");
+    std::ostringstream ink;
+    ink.precision(12);
+    ink << "<ink xmlns='http://www.w3.org/2003/InkML'>";
+    for (const Line& line : drawing.lines()) {
+        ink << "<trace>";
+        for (std::size_t i = 0; i < line.size(); ++i) ink << (i ? "," : "") << 1e3 * line[i].x << ' ' << 1e3 * line[i].y;
+        ink << "</trace>";
+    }
+    ink << "</ink>";
+    return parse_inkml(ink.str(), source, options.ink);
+}
+
+std::vector<stroke::Trace> read_svg(const std::filesystem::path& path, const SvgOptions& options) {
+    std::error_code ec;
+    if (const auto size = std::filesystem::file_size(path, ec); ec) throw Error(path.string(), "the file cannot be read");
+    else if (size > options.ink.max_bytes) throw Error(path.string(), "the file is too large for a drawing");
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    if (!in) throw Error(path.string(), "the file cannot be read");
+    return parse_svg(text.str(), path.string(), options);
+}
+
+std::vector<stroke::Trace> read_strokes(const std::filesystem::path& path, const InkmlOptions& options) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == ".svg" ? read_svg(path, {.ink = options}) : read_inkml(path, options);
+}
+
+}  // namespace tuft::io

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/inkml.h"
+#include "stroke/trace.h"
+
+/// Drawings: SVG 1.1 (W3C Recommendation, 16 August 2011).
+namespace tuft::io {
+
+/// The outlines of a drawing as flat traces, in the order of the file: `path` (all commands),
+/// `line`, `polyline`, `polygon`, `rect`, `circle`, `ellipse`, under the `transform`s of their groups.
+/// Curves become chords that stay within `tolerance` of them; elliptical arcs after appendix F.6.5. What
+/// is not displayed, and what lies in `defs`, is left out; fill and stroke styles are not looked at.
+/// One user unit is what `width` and `viewBox` say, else 1/96 inch. Pace and pressure are those of
+/// `parse_inkml` for traces that have none.
+///
+/// Throws `Error` with the file's name: not SVG, nothing to draw in it, a number that is none,
+/// absurd sizes.
+struct SvgOptions {
+    double tolerance = 2e-5;     ///< metres
+    InkmlOptions ink;            ///< pace, pressure, limits
+};
+std::vector<stroke::Trace> read_svg(const std::filesystem::path& path, const SvgOptions& options = {});
+std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& source, const SvgOptions& options = {});
+
+/// Traces of an `.svg` drawing, or else of an InkML file.
+std::vector<stroke::Trace> read_strokes(const std::filesystem::path& path, const InkmlOptions& options = {});
+
+}  // namespace tuft::io

@@ -1,0 +1,103 @@
+#include "io/svg.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+
+namespace tuft::io {
+namespace {
+
+std::vector<stroke::Trace> drawn(const std::string& inside, const std::string& size = "width='100mm' viewBox='0 0 100 100'") {
+    return parse_svg("<svg xmlns='http://www.w3.org/2000/svg' " + size + ">" + inside + "</svg>", "test.svg");
+}
+Vec2 first(const stroke::Trace& t) { return Vec2(t.samples.front().position) * 1e3; }
+Vec2 last(const stroke::Trace& t) { return Vec2(t.samples.back().position) * 1e3; }
+double length(const stroke::Trace& t) {
+    double sum = 0;
+    for (std::size_t i = 1; i < t.samples.size(); ++i) sum += glm::distance(t.samples[i - 1].position, t.samples[i].position);
+    return 1e3 * sum;
+}
+void expect_near(const Vec2& a, const Vec2& b) {
+    EXPECT_NEAR(a.x, b.x, 1e-6);
+    EXPECT_NEAR(a.y, b.y, 1e-6);
+}
+
+TEST(Svg, UnitsFollowWidthAndViewBox) {
+    const auto mm = drawn("<line x1='10' y1='20' x2='30' y2='20'/>");
+    expect_near(first(mm[0]), {10, 20});
+    expect_near(last(mm[0]), {30, 20});
+    // 96 units are an inch where nothing is said.
+    EXPECT_NEAR(length(drawn("<line x1='0' y1='0' x2='96' y2='0'/>", "")[0]), 25.4, 1e-6);
+    EXPECT_NEAR(length(drawn("<line x1='0' y1='0' x2='1' y2='0'/>", "width='2in' viewBox='0 0 4 4'")[0]), 12.7, 1e-6);
+}
+
+TEST(Svg, CirclesAndArcsHaveTheirLength) {
+    // Chords that stay within e of an arc of radius r are shorter than it by a part e / 3r: 20 µm of 5 mm is 0.13 %.
+    EXPECT_NEAR(length(drawn("<circle cx='50' cy='50' r='5'/>")[0]), 10 * std::numbers::pi, 0.0015 * 10 * std::numbers::pi);
+    const auto half = drawn("<path d='M 0 0 A 10 10 0 0 1 20 0'/>");
+    EXPECT_NEAR(length(half[0]), 10 * std::numbers::pi, 0.0015 * 10 * std::numbers::pi);
+    for (const auto& s : half[0].samples) EXPECT_NEAR(glm::distance(1e3 * s.position, Vec3(10, 0, 0)), 10, 0.02);
+    // y points down, so a positive sweep goes over the top.
+    EXPECT_LT(half[0].samples[half[0].samples.size() / 2].position.y, 0);
+    // Radii too small for the distance grow until they reach (F.6.6).
+    EXPECT_NEAR(length(drawn("<path d='M 0 0 A 1 1 0 0 1 20 0'/>")[0]), 10 * std::numbers::pi, 0.0015 * 10 * std::numbers::pi);
+}
+
+TEST(Svg, CommandsAgreeInTheirAbsoluteAndRelativeForms) {
+    const auto a = drawn("<path d='M10 10 L20 10 H30 V20 C30 30 40 30 40 20 S50 10 50 20 Q55 30 60 20 T70 20 Z'/>");
+    const auto r = drawn("<path d='m10 10 l10 0 h10 v10 c0 10 10 10 10 0 s10-10 10 0 q5 10 10 0 t10 0 z'/>");
+    ASSERT_EQ(a.size(), 1u);
+    ASSERT_EQ(a[0].samples.size(), r[0].samples.size());
+    for (std::size_t i = 0; i < a[0].samples.size(); ++i) EXPECT_NEAR(glm::distance(a[0].samples[i].position, r[0].samples[i].position), 0, 1e-12);
+    expect_near(last(a[0]), {10, 10});
+}
+
+TEST(Svg, AQuadraticIsTheParabolaItNames) {
+    for (const auto& s : drawn("<path d='M0 0 Q 10 20 20 0'/>")[0].samples) {
+        const double x = 1e3 * s.position.x;
+        EXPECT_NEAR(1e3 * s.position.y, 2 * x - x * x / 10, 0.021);  // the tolerance of 20 µm
+    }
+}
+
+TEST(Svg, TransformsNestFromTheOutside) {
+    const auto t = drawn("<g transform='translate(10,0) rotate(90)'><g transform='scale(2)'><line x1='1' y1='0' x2='3' y2='0'/></g></g>");
+    expect_near(first(t[0]), {10, 2});
+    expect_near(last(t[0]), {10, 6});
+}
+
+TEST(Svg, HiddenThingsAndDefinitionsAreLeftOut) {
+    EXPECT_EQ(drawn("<defs><path d='M0 0 L1 1'/></defs><path display='none' d='M0 0 L9 9'/><rect x='0' y='0' width='1' height='1'/>").size(), 1u);
+}
+
+TEST(Svg, LongLinesSwellAndTaper) {
+    const auto& s = drawn("<line x1='0' y1='0' x2='50' y2='0'/>")[0].samples;
+    EXPECT_GT(s[s.size() / 2].pressure, 1.5 * s.back().pressure);
+}
+
+TEST(Svg, MistakesAreNamedWithTheFile) {
+    const auto fault = [](const std::string& text) {
+        try {
+            parse_svg(text, "bad.svg");
+            return std::string();
+        } catch (const Error& e) {
+            return std::string(e.what());
+        }
+    };
+    for (const std::string inside : {"<path d='L'/>", "<path d='M 1 x'/>", "<path d='M 0 0 B 1 1'/>", "<path d='M0 0 L1e300 0'/>", "<text>Hi</text>",
+                                     "<g transform='spin(3)'/>", "<path d='M0 0 Z 5 5'/>", "<path d='M0 0 A1 1 0 7 1 2 2'/>"}) {
+        const std::string message = fault("<svg>" + inside + "</svg>");
+        EXPECT_EQ(message.rfind("bad.svg", 0), 0u) << inside << ": " << message;
+    }
+    EXPECT_NE(fault("<ink/>"), "");
+    EXPECT_NE(fault("<svg"), "");
+    std::string deep;
+    for (int i = 0; i < 5000; ++i) deep += "<g>";
+    for (int i = 0; i < 5000; ++i) deep += "</g>";
+    EXPECT_NE(fault("<svg>" + deep + "</svg>"), "");
+}
+
+}  // namespace
+}  // namespace tuft::io
