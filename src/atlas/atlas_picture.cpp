@@ -50,10 +50,11 @@ double triangle_stretch(const mesh::TriangleMesh& mesh, const Atlas& atlas, std:
     const Vec2 d1 = unit * (Vec2(atlas.corner_uvs[3 * t + 1]) - Vec2(atlas.corner_uvs[3 * t]));
     const Vec2 d2 = unit * (Vec2(atlas.corner_uvs[3 * t + 2]) - Vec2(atlas.corner_uvs[3 * t]));
     const double det = d1.x * d2.y - d1.y * d2.x;
-    if (det == 0) return 1;
+    if (det == 0 || !std::isfinite(det)) return 1;
     const Vec3 su = (e1 * d2.y - e2 * d1.y) / det, sv = (e2 * d1.x - e1 * d2.x) / det;
     const double a = glm::dot(su, su), b = glm::dot(su, sv), c = glm::dot(sv, sv);
-    return std::sqrt(0.5 * (a + c + std::sqrt((a - c) * (a - c) + 4 * b * b)));
+    const double stretch = std::sqrt(0.5 * (a + c + std::sqrt((a - c) * (a - c) + 4 * b * b)));
+    return std::isfinite(stretch) ? stretch : 1;
 }
 
 class Canvas {
@@ -68,12 +69,14 @@ class Canvas {
                   picture_.rgb.begin() + static_cast<std::ptrdiff_t>(at));
     }
 
-    void line(std::uint32_t square, const Vec2& a, const Vec2& b, const Colour& colour) {
+    void line(std::uint32_t square, const Vec2f& a_uv, const Vec2f& b_uv, const Colour& colour) {
+        if (!is_finite(a_uv) || !is_finite(b_uv)) return;
+        const Vec2 a(a_uv), b(b_uv);
         const double length = std::max(std::abs(b.x - a.x), std::abs(b.y - a.y)) * side_;
         const int steps = static_cast<int>(std::min(length, 4.0 * side_)) + 1;
         for (int i = 0; i <= steps; ++i) {
             const Vec2 p = (a + (b - a) * (double(i) / steps)) * double(side_);
-            if (p.x >= 0 && p.y >= 0)
+            if (p.x >= 0 && p.y >= 0 && p.x < side_ && p.y < side_)
                 set(square, static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y),
                     colour);
         }
@@ -112,7 +115,7 @@ AtlasPicture draw_atlas(const mesh::TriangleMesh& mesh, const Atlas& atlas,
     for (std::uint32_t h = 0; h < seam.size(); ++h) {
         if (!seam[h]) continue;
         const Colour border = mix(chart_colour(atlas.triangle_chart[h / 3]), {0, 0, 0}, 0.55);
-        canvas.line(0, Vec2(atlas.corner_uvs[h]), Vec2(atlas.corner_uvs[next_half(h)]), border);
+        canvas.line(0, atlas.corner_uvs[h], atlas.corner_uvs[next_half(h)], border);
     }
     return picture;
 }

@@ -30,13 +30,20 @@ bool walk_border(const ChartMesh& chart, std::vector<std::uint32_t>& loop) {
 }  // namespace
 
 ChartMesh make_chart(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> glued,
-                     std::vector<std::uint32_t> triangles, double unit) {
+                     std::vector<std::uint32_t> triangles, double unit,
+                     std::span<std::uint32_t> place) {
     ChartMesh chart;
     chart.triangles = std::move(triangles);
     const auto n = static_cast<std::uint32_t>(chart.triangles.size());
     chart.twin.resize(3 * std::size_t{n});
-    for (std::uint32_t h = 0; h < 3 * n; ++h)
-        chart.twin[h] = local_half(chart.triangles, glued[3 * chart.triangles[h / 3] + h % 3]);
+    for (std::uint32_t t = 0; t < n && !place.empty(); ++t) place[chart.triangles[t]] = t;
+    for (std::uint32_t h = 0; h < 3 * n; ++h) {
+        const std::uint32_t g = glued[3 * chart.triangles[h / 3] + h % 3];
+        if (place.empty() || g == kNone)
+            chart.twin[h] = local_half(chart.triangles, g);
+        else
+            chart.twin[h] = 3 * place[g / 3] + g % 3;
+    }
 
     const Vec3 origin = mesh.position(chart.triangles[0], 0);
     chart.faces.assign(n, {kNone, kNone, kNone});
@@ -122,12 +129,13 @@ FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv, double ga
         stretch.emplace_back(static_cast<float>(std::sqrt(largest)), static_cast<float>(a3));
     }
     check.l2 = area > 0 ? std::sqrt(sum / area) : 1;
-    std::sort(stretch.begin(), stretch.end(), std::greater<>());
+    // The largest first, for as long as they are needed.
+    std::make_heap(stretch.begin(), stretch.end());
     double above = 0;
-    for (const auto& [s, a3] : stretch) {
-        check.stretch_999 = s;
-        above += a3;
-        if (above > 1e-3 * area) break;
+    for (auto end = stretch.end(); end != stretch.begin() && above <= 1e-3 * area; --end) {
+        std::pop_heap(stretch.begin(), end);
+        check.stretch_999 = (end - 1)->first;
+        above += (end - 1)->second;
     }
     if (check.flips == 0 && chart.disk) check.crosses = crosses_itself(chart, uv, gap);
     return check;
@@ -185,7 +193,7 @@ struct EdgeGrid {
 
 }  // namespace
 
-bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap) {
+bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap, double near) {
     const std::vector<std::uint32_t>& loop = chart.loop;
     const std::size_t n = loop.size();
     if (n < 4) return false;
@@ -208,6 +216,9 @@ bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap
         return d.x * (q.y - o.y) - d.y * (q.x - o.x);
     };
     const auto meet = [&](std::size_t i, std::size_t j) {
+        const double between = std::abs(along[i] - along[j]);
+        const double apart = std::min(between, along[n] - between);
+        if (apart < near * along[n]) return false;
         const Vec2 a = p[i], b = p[(i + 1) % n], c = p[j], d = p[(j + 1) % n];
         const double lab = touch * glm::length(b - a), lcd = touch * glm::length(d - c);
         const double c1 = height(a, b - a, c), c2 = height(a, b - a, d);
@@ -216,8 +227,7 @@ bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap
             ((a1 > lcd && a2 < -lcd) || (a1 < -lcd && a2 > lcd)))
             return true;
         if (!(gap > 0)) return false;
-        const double apart = std::abs(along[i] - along[j]);
-        if (std::min(apart, along[n] - apart) < 16 * gap) return false;
+        if (apart < 16 * gap) return false;
         // The chart lies left of its border: only what is near on the right is too near.
         if (height(a, b - a, 0.5 * (c + d)) > 0 || height(c, d - c, 0.5 * (a + b)) > 0)
             return false;

@@ -23,9 +23,11 @@ struct ChartMesh {
 };
 
 /// `glued` [3 n_triangles of the mesh] is the opposite half-edge, kNone on borders and
-/// seams; none may lead out of `triangles` (ascending).
+/// seams; none may lead out of `triangles` (ascending). `place` [n_triangles of the mesh] is
+/// room to work in, of which only the chart's own triangles are touched; without it, slower.
 ChartMesh make_chart(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> glued,
-                     std::vector<std::uint32_t> triangles, double unit);
+                     std::vector<std::uint32_t> triangles, double unit,
+                     std::span<std::uint32_t> place = {});
 
 /// Triangles of each chart (ascending), charts in the order of their first triangle.
 std::vector<std::vector<std::uint32_t>> connected_charts(std::span<const std::uint32_t> glued);
@@ -47,7 +49,8 @@ FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv, double ga
 
 /// Whether the chart's border crosses itself, or comes nearer than `gap` to a part of
 /// itself that is more than 16 gaps away along it and twice as far on the surface. (What
-/// is nearer may be the two sides of a slit.) Touching alone is no crossing.
-bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap);
+/// is nearer may be the two sides of a slit.) Touching alone is no crossing. Parts less than
+/// `near` of the border's length apart along it are not looked at.
+bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap, double near = 0);
 
 }  // namespace tuft::atlas

@@ -5,9 +5,10 @@
 #include <limits>
 
 #include "atlas/hull.h"
+#include "atlas/meter.h"
 #include "atlas/seam_graph.h"
 #include "atlas/straighten.h"
-#include "core/parallel.h"
+#include "atlas/tasks.h"
 
 namespace tuft::atlas {
 namespace {
@@ -94,47 +95,45 @@ std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const
     return pieces;
 }
 
+/// Lays the piece flat; false when that stretches it too much.
+bool flatten_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& piece,
+                   const ChartOptions& options, MeterPart meter, FlatChart& flat) {
+    flat.mesh = make_chart(mesh, cut.glued, piece.triangles, cut.unit, cut.place);
+    ArapOptions arap = trial_arap(options);
+    const double step = static_cast<double>(piece.triangles.size()) / arap.iterations;
+    arap.on_step = [&] { meter.advance(step); };
+    flat.uv = flatten(flat.mesh, arap);
+    if (flat.uv.empty()) return false;
+    const FlatCheck check = check_flat(flat.mesh, flat.uv, options.gap);
+    flat.worst = check.linf;
+    if (flat.mesh.faces.size() > 1 && !good(check, options, piece.depth)) return false;
+    meter.finish();
+    return true;
+}
+
 /// Flattens all pieces, cutting those that do not lie flat, and adds them to the charts.
 void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Piece> pieces,
                     const ChartOptions& options, const ProgressFn& progress) {
-    std::size_t done = 0;
-    const std::size_t all = std::max<std::size_t>(mesh.n_triangles(), 1);
+    double all = 0;
+    for (const Piece& p : pieces) all += static_cast<double>(p.triangles.size());
+    // Pieces that are cut are laid flat again: as much more as is usual.
+    Meter meter(progress, "flatten", 1.3 * all);
     while (!pieces.empty()) {
         std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
             return a.triangles.size() > b.triangles.size();
         });
-        // Batches keep the progress honest and the memory of finished charts small.
+        std::vector<FlatChart> flat(pieces.size());
+        std::vector<std::vector<Piece>> parts(pieces.size());
+        run_tasks(pieces.size(), [&](std::size_t i) {
+            const MeterPart part(meter, static_cast<double>(pieces[i].triangles.size()));
+            if (flatten_piece(mesh, cut, pieces[i], options, part, flat[i])) return;
+            flat[i] = {};
+            parts[i] = cut_piece(mesh, cut, pieces[i]);  // changes seams inside the piece only
+        });
         std::vector<Piece> again;
-        for (std::size_t first = 0; first < pieces.size();) {
-            std::size_t last = first, triangles = 0;
-            while (last < pieces.size() && triangles < 200000)
-                triangles += pieces[last++].triangles.size();
-            std::vector<FlatChart> flat(last - first);
-            std::vector<std::uint8_t> accepted(last - first);
-            parallel_for(flat.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) {
-                    flat[i].mesh =
-                        make_chart(mesh, cut.glued, pieces[first + i].triangles, cut.unit);
-                    flat[i].uv = flatten(flat[i].mesh, trial_arap(options));
-                    if (flat[i].uv.empty()) continue;
-                    const FlatCheck check = check_flat(flat[i].mesh, flat[i].uv, options.gap);
-                    flat[i].worst = check.linf;
-                    accepted[i] = flat[i].mesh.faces.size() == 1 ||
-                                  good(check, options, pieces[first + i].depth);
-                }
-            });
-            for (std::size_t i = 0; i < flat.size(); ++i) {
-                if (accepted[i]) {
-                    done += flat[i].mesh.faces.size();
-                    cut.charts.push_back(std::move(flat[i]));
-                } else {
-                    for (Piece& p : cut_piece(mesh, cut, pieces[first + i]))
-                        again.push_back(std::move(p));
-                }
-            }
-            report(progress, "flatten",
-                   std::min(1.0, static_cast<double>(done) / static_cast<double>(all)));
-            first = last;
+        for (std::size_t i = 0; i < flat.size(); ++i) {
+            if (!flat[i].uv.empty()) cut.charts.push_back(std::move(flat[i]));
+            for (Piece& p : parts[i]) again.push_back(std::move(p));
         }
         pieces = std::move(again);
     }
@@ -193,13 +192,16 @@ CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& opti
     CutMesh cut;
     cut.twin = twin_half_edges(mesh);
     cut.glued = cut.twin;
+    cut.place.resize(mesh.n_triangles());
     cut.unit = std::max(std::sqrt(mesh::surface_area(mesh)), 1e-30);
     Triangles all(mesh.n_triangles());
     for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
     {
         const Patch patch = make_patch(mesh, cut.twin, all, cut.unit);
         SeamGraph graph(patch, {}, 0);
-        graph.glue_developable({}, progress);
+        GluingLimits limits;
+        limits.triangles = options.triangles;
+        graph.glue_developable(limits, progress);
         std::vector<std::uint8_t> seam = graph.seams();
         straighten_seams(patch, seam);
         cut_along(cut, patch, seam);

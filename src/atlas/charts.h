@@ -17,6 +17,8 @@ struct ChartOptions {
     double worst = 3;       ///< and anywhere, where that can be helped
     double longest = 1.35;  ///< long side of a chart's smallest rectangle, over the unit: no longer
                             ///< than a page that charts cover to a half is wide
+    std::uint32_t triangles = 200000;  ///< of a chart, at most: what laying it flat costs grows
+                                       ///< faster than they do
     double gap = 0;         ///< that parts of a chart's border keep from each other, over the unit
 };
 
@@ -36,6 +38,7 @@ struct CutMesh {
     std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges of the mesh
     std::vector<std::uint32_t> glued;  ///< the same, kNone at seams
     std::vector<FlatChart> charts;
+    std::vector<std::uint32_t> place;  ///< [n_triangles] room for `make_chart`
 };
 
 /// Cuts and flattens the whole mesh. Every triangle lies in one chart.

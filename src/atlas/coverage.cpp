@@ -136,11 +136,13 @@ Coverage cover(std::span<const Vec2f> corner_uvs, std::span<const std::uint32_t>
 int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corner_uvs,
                  std::span<const std::uint32_t> triangle_chart, std::uint32_t size) {
     std::vector<Segment> segments;
-    for (std::uint32_t h = 0; h < seam.size(); ++h)
-        if (seam[h])
-            segments.push_back({Vec2(corner_uvs[h]) * double(size),
-                                Vec2(corner_uvs[next_half(h)]) * double(size),
-                                triangle_chart[h / 3]});
+    for (std::uint32_t h = 0; h < seam.size(); ++h) {
+        if (!seam[h]) continue;
+        const Vec2f a = corner_uvs[h], b = corner_uvs[next_half(h)];
+        if (!is_finite(a) || !is_finite(b)) continue;
+        segments.push_back(
+            {Vec2(a) * double(size), Vec2(b) * double(size), triangle_chart[h / 3]});
+    }
     constexpr double kMost = 64;
     for (double reach = 2; reach <= kMost; reach *= 2) {
         const SegmentGrid grid(segments, std::max(reach, size / 1024.0), size);

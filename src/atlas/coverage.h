@@ -25,7 +25,8 @@ Coverage cover(std::span<const Vec2f> corner_uvs, std::span<const std::uint32_t>
                std::uint32_t size);
 
 /// Texels between the two nearest charts, rounded down, 64 at most; from the exact
-/// distance of their borders, the half-edges marked in `seam`.
+/// distance of their borders, the half-edges marked in `seam`. UVs that are not finite are
+/// left out.
 int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corner_uvs,
                  std::span<const std::uint32_t> triangle_chart, std::uint32_t size);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace tuft::atlas {
 namespace {
@@ -153,38 +154,78 @@ double start_energy(const ChartMesh& chart, const std::vector<Reference>& refere
     return energy / std::max(chart.area, 1e-300);
 }
 
-}  // namespace
+/// A factorised stiffness matrix: both coordinates are solved for in one pass over it.
+class Factor {
+  public:
+    bool compute(const Matrix& matrix) {
+        ldlt_.compute(matrix);
+        if (ldlt_.info() != Eigen::Success) return false;
+        diagonal_ = ldlt_.vectorD();
+        permuted_.resize(static_cast<std::size_t>(matrix.rows()));
+        return true;
+    }
 
-double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options) {
+    /// Replaces the right hand side by the solution.
+    void solve(std::span<Vec2> x) {
+        const auto& place = ldlt_.permutationP().indices();
+        const auto& factor = ldlt_.matrixL().nestedExpression();  // below the diagonal of ones
+        const int* start = factor.outerIndexPtr();
+        const int* row = factor.innerIndexPtr();
+        const double* value = factor.valuePtr();
+        const auto n = static_cast<Eigen::Index>(x.size());
+        Vec2* p = permuted_.data();
+        for (Eigen::Index i = 0; i < n; ++i) p[place[i]] = x[static_cast<std::size_t>(i)];
+        for (Eigen::Index j = 0; j < n; ++j)
+            for (int k = start[j]; k < start[j + 1]; ++k) p[row[k]] -= value[k] * p[j];
+        for (Eigen::Index j = 0; j < n; ++j) p[j] /= diagonal_[j];
+        for (Eigen::Index j = n; j-- > 0;) {
+            Vec2 sum = p[j];
+            for (int k = start[j]; k < start[j + 1]; ++k) sum -= value[k] * p[row[k]];
+            p[j] = sum;
+        }
+        for (Eigen::Index i = 0; i < n; ++i) x[static_cast<std::size_t>(i)] = p[place[i]];
+    }
+
+  private:
+    Eigen::SimplicialLDLT<Matrix> ldlt_;
+    Eigen::VectorXd diagonal_;
+    std::vector<Vec2> permuted_;
+};
+
+/// The local step: `rhs` of the global one for the rotations that fit `uv` best. Returns the
+/// energy of `uv`.
+double fit_rotations(const ChartMesh& chart, const std::vector<Reference>& references,
+                     const std::vector<Vec2>& uv, std::vector<Vec2>& rhs) {
+    std::fill(rhs.begin(), rhs.end(), Vec2(0));
+    double energy = 0;
+    for (std::size_t t = 0; t < references.size(); ++t) {
+        const auto& f = chart.faces[t];
+        const Reference& r = references[t];
+        const auto [c, s, e] = closest_rotation(f, r, uv);
+        energy += e;
+        for (int k = 0; k < 3; ++k) {
+            const int l = (k + 1) % 3;
+            const Vec2 dx = r.corner[k] - r.corner[l];
+            const Vec2 b = r.half_cot[k] * Vec2(c * dx.x - s * dx.y, s * dx.x + c * dx.y);
+            rhs[f[k]] += b;
+            rhs[f[l]] -= b;
+        }
+    }
+    return energy;
+}
+
+double arap(const ChartMesh& chart, const std::vector<Reference>& references,
+            std::vector<Vec2>& uv, const ArapOptions& options) {
     const std::size_t n = chart.n_vertices();
     if (n < 3) return 0;
-    const std::vector<Reference> references = reference_triangles(chart);
     const double area = std::max(chart.area, 1e-300);
-    Eigen::SimplicialLDLT<Matrix> solver;
-    Eigen::MatrixX2d rhs(static_cast<Eigen::Index>(n), 2);
-    Eigen::MatrixX2d solution;
+    Factor factor;
+    std::vector<Vec2> rhs(n);
     const Vec2 pin = uv[0];
     double before = -1, energy = 0;
     for (int step = 0; step < options.iterations; ++step) {
-        rhs.setZero();
-        energy = 0;
-        for (std::size_t t = 0; t < references.size(); ++t) {
-            const auto& f = chart.faces[t];
-            const Reference& r = references[t];
-            const auto [c, s, e] = closest_rotation(f, r, uv);
-            energy += e;
-            for (int k = 0; k < 3; ++k) {
-                const int l = (k + 1) % 3;
-                const Vec2 dx = r.corner[k] - r.corner[l];
-                const double w = r.half_cot[k];
-                const double bx = w * (c * dx.x - s * dx.y), by = w * (s * dx.x + c * dx.y);
-                rhs(f[k], 0) += bx;
-                rhs(f[k], 1) += by;
-                rhs(f[l], 0) -= bx;
-                rhs(f[l], 1) -= by;
-            }
-        }
-        energy /= area;
+        if (options.on_step) options.on_step();
+        energy = fit_rotations(chart, references, uv, rhs) / area;
         if (energy < options.enough) break;
         if (before >= 0 && before - energy < options.tolerance * energy) break;
         if (step >= 3) {
@@ -193,18 +234,18 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
             if (left > options.hopeless) break;
         }
         before = energy;
-        if (step == 0) {
-            solver.compute(stiffness(chart, references));
-            if (solver.info() != Eigen::Success) break;
-        }
+        if (step == 0 && !factor.compute(stiffness(chart, references))) break;
         // Vertex 0 is pinned at the origin while solving, then all is moved to where it was.
-        solution = solver.solve(rhs.bottomRows(static_cast<Eigen::Index>(n) - 1));
-        for (std::size_t v = 1; v < n; ++v) {
-            const auto row = static_cast<Eigen::Index>(v) - 1;
-            uv[v] = pin + Vec2(solution(row, 0), solution(row, 1));
-        }
+        factor.solve(std::span(rhs).subspan(1));
+        for (std::size_t v = 1; v < n; ++v) uv[v] = pin + rhs[v];
     }
     return energy;
+}
+
+}  // namespace
+
+double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options) {
+    return arap(chart, reference_triangles(chart), uv, options);
 }
 
 bool untangle(const ChartMesh& chart, std::vector<Vec2>& uv) {
@@ -291,7 +332,7 @@ std::vector<Vec2> flatten(const ChartMesh& chart, const ArapOptions& options) {
         if (start.empty())
             if (auto conformal = lscm(chart)) start = std::move(*conformal);
         if (start.empty()) continue;
-        arap(chart, start, options);
+        arap(chart, references, start, options);
         if (!all_finite(start)) continue;
         uv = std::move(start);
         if (all_positive(chart, uv)) break;

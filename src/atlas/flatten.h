@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct ArapOptions {
     double tolerance = 1e-3;  ///< stop when the energy falls by less than this part per step
     double enough = 1e-12;    ///< stop below this energy
     double hopeless = 1e300;  ///< stop when the energy will stay above this, as far as can be told
+    std::function<void()> on_step;  ///< called before each iteration; may throw to stop
 };
 
 /// Least squares conformal map (Lévy et al. 2002) of a disk by CGAL, scaled to the

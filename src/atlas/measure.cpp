@@ -81,7 +81,9 @@ void measure_stretch(const mesh::TriangleMesh& mesh, const Atlas& atlas, AtlasRe
         const UvTriangle u = uv_triangle(mesh, atlas, t);
         // Slivers without a measurable area, on the surface or in the atlas, say nothing.
         if (u.area3 <= 1e-12 * diagonal * diagonal) return;
-        if (!(std::abs(u.area_uv) > 1e-9 * u.area3 / sizes.area3)) return;
+        if (!std::isfinite(u.area_uv) ||
+            !(std::abs(u.area_uv) > 1e-9 * u.area3 / sizes.area3))
+            return;
         const Vec2 d1 = u.d1 / scale, d2 = u.d2 / scale;
         const double det = d1.x * d2.y - d1.y * d2.x;
         const Vec3 su = (u.e1 * d2.y - u.e2 * d1.y) / det, sv = (u.e2 * d1.x - u.e1 * d2.x) / det;

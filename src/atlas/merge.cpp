@@ -5,11 +5,16 @@
 #include <numeric>
 
 #include "atlas/hull.h"
+#include "atlas/meter.h"
 #include "atlas/seam_graph.h"
-#include "core/parallel.h"
+#include "atlas/tasks.h"
 
 namespace tuft::atlas {
 namespace {
+
+constexpr std::size_t kDear = 16384;    // triangles
+constexpr double kNearEnds = 1.0 / 32;  // of the border's length
+constexpr double kUsualWork = 5;        // triangles in all trials, over those of the mesh
 
 /// A rigid motion of the plane.
 struct Motion {
@@ -100,15 +105,17 @@ class Merger {
     }
 
     void run(const ProgressFn& progress) {
-        std::size_t first = 0;
+        Meter meter(progress, "merge", kUsualWork * double(mesh_.n_triangles()));
         for (int round = 0; round < 200; ++round) {
             std::vector<Trial> trials = next_trials();
             if (trials.empty()) break;
-            first = std::max(first, trials.size());
-            report(progress, "merge", 1 - double(trials.size()) / double(first + 1));
             for (const Trial& t : trials) set_glued(t, true);
-            parallel_for(trials.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) attempt(trials[i]);
+            const std::vector<std::uint32_t> order = largest_first(trials);
+            run_tasks(order.size(), [&](std::size_t i) {
+                Trial& t = trials[order[i]];
+                MeterPart part(meter, double(n_triangles(t)));
+                attempt(t, part);
+                part.finish();
             });
             for (Trial& t : trials) conclude(t);
         }
@@ -150,6 +157,8 @@ class Merger {
             const double area_a = graph_.moments(c.chart_a).area;
             const double area_b = graph_.moments(c.chart_b).area;
             if (area_a + area_b > merge_.largest_chart) continue;
+            if (graph_.n_triangles(c.chart_a) + graph_.n_triangles(c.chart_b) > options_.triangles)
+                continue;
             Trial t;
             t.chain = c.id;
             t.a = c.chart_a;
@@ -174,8 +183,22 @@ class Merger {
         return chosen;
     }
 
+    std::size_t n_triangles(const Trial& t) const {
+        return cut_.charts[chart_at_[t.a]].mesh.faces.size() +
+               cut_.charts[chart_at_[t.b]].mesh.faces.size();
+    }
+
+    std::vector<std::uint32_t> largest_first(const std::vector<Trial>& trials) const {
+        std::vector<std::uint32_t> order(trials.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
+            return n_triangles(trials[x]) > n_triangles(trials[y]);
+        });
+        return order;
+    }
+
     /// Flattens the two charts as one from where they lie now.
-    void attempt(Trial& t) const {
+    void attempt(Trial& t, MeterPart& part) {
         const FlatChart& a = cut_.charts[chart_at_[t.a]];
         const FlatChart& b = cut_.charts[chart_at_[t.b]];
         const auto [motion, misfit] = fit_sides(a, b, cut_.twin, t);
@@ -186,7 +209,7 @@ class Merger {
         std::vector<std::uint32_t> triangles(a.mesh.triangles.size() + b.mesh.triangles.size());
         std::merge(a.mesh.triangles.begin(), a.mesh.triangles.end(), b.mesh.triangles.begin(),
                    b.mesh.triangles.end(), triangles.begin());
-        t.flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit);
+        t.flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         ChartMesh& mesh = t.flat.mesh;
         if (!mesh.disk) return;
         t.flat.uv.assign(mesh.n_vertices(), Vec2(0));
@@ -205,10 +228,15 @@ class Merger {
         }
         for (std::size_t v = 0; v < count.size(); ++v) t.flat.uv[v] /= double(count[v]);
 
+        // Charts that lie one over the other stay so; only near the ends of the chain do small
+        // crossings go away. That is worth a look where laying flat is dear.
+        if (mesh.faces.size() > kDear && crosses_itself(mesh, t.flat.uv, 0, kNearEnds)) return;
         const double flat_enough = 1 + 0.1 * (options_.l2 - 1);
         FlatCheck check = check_flat(mesh, t.flat.uv, options_.gap);
         if (!check.sound() || check.l2 > flat_enough) {
-            arap(mesh, t.flat.uv, trial_arap(options_));
+            ArapOptions trial = trial_arap(options_);
+            trial.on_step = [&] { part.advance(double(mesh.faces.size()) / trial.iterations); };
+            arap(mesh, t.flat.uv, trial);
             scale_to_area(mesh, t.flat.uv);
             check = check_flat(mesh, t.flat.uv, options_.gap);
         }

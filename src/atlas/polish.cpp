@@ -5,8 +5,9 @@
 #include <numeric>
 
 #include "atlas/flatten.h"
+#include "atlas/meter.h"
 #include "atlas/straighten.h"
-#include "core/parallel.h"
+#include "atlas/tasks.h"
 
 namespace tuft::atlas {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 constexpr int kRounds = 8;
 constexpr float kFirstReach = 0.12f;  // how far seams may move at first, over their length
 constexpr float kLeastReach = 0.02f;  // seams that may move less stay
+constexpr double kUsualWork = 2;  // triangles laid flat in all rounds, over those of the mesh
 constexpr double kSlack = 1.1;  // stretch that straighter seams may cost, over what charts may have
 
 /// Where the triangles of the mesh lie now.
@@ -120,10 +122,10 @@ class Polisher {
 
     void run(const ProgressFn& progress) {
         Attempt last;
+        Meter meter(progress, "polish", kUsualWork * double(mesh_.n_triangles()));
         for (int round = 0; round <= kRounds; ++round) {
-            report(progress, "polish", double(round) / (kRounds + 1));
             if (round == kRounds) reach_.assign(reach_.size(), 0);
-            Attempt now = attempt(last);
+            Attempt now = attempt(last, meter);
             bool failed = false;
             std::vector<std::uint8_t> hit(reach_.size(), 0);
             for (std::size_t i = 0; i < now.charts.size(); ++i) {
@@ -144,7 +146,7 @@ class Polisher {
   private:
     /// Straightens seams as far as each may move; charts that come out as in the last
     /// attempt are taken from there.
-    Attempt attempt(Attempt& last) const {
+    Attempt attempt(Attempt& last, Meter& meter) {
         std::vector<std::uint8_t> seam(cut_.glued.size());
         std::vector<float> reach(mesh_.n_triangles());
         for (std::size_t h = 0; h < seam.size(); ++h) seam[h] = cut_.glued[h] == kNone;
@@ -160,15 +162,13 @@ class Polisher {
         now.chart_of.resize(mesh_.n_triangles());
         for (std::uint32_t i = 0; i < parts.size(); ++i)
             for (const std::uint32_t t : parts[i]) now.chart_of[t] = i;
-        parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                if (!last.charts.empty() && same_cuts(now.glued, last.glued, parts[i])) {
-                    const std::uint32_t j = last.chart_of[parts[i][0]];
-                    now.charts[i] = std::move(last.charts[j]);
-                    now.failed[i] = last.failed[j];
-                } else {
-                    now.failed[i] = !flatten_part(now.glued, parts[i], now.charts[i]);
-                }
+        run_tasks(parts.size(), [&](std::size_t i) {
+            if (!last.charts.empty() && same_cuts(now.glued, last.glued, parts[i])) {
+                const std::uint32_t j = last.chart_of[parts[i][0]];
+                now.charts[i] = std::move(last.charts[j]);
+                now.failed[i] = last.failed[j];
+            } else {
+                now.failed[i] = !flatten_part(now.glued, parts[i], now.charts[i], meter);
             }
         });
         return now;
@@ -176,12 +176,16 @@ class Polisher {
 
     /// False when the chart's seams changed and it does not lie flat with them.
     bool flatten_part(const std::vector<std::uint32_t>& glued,
-                      const std::vector<std::uint32_t>& part, FlatChart& chart) const {
-        chart.mesh = make_chart(mesh_, glued, part, cut_.unit);
+                      const std::vector<std::uint32_t>& part, FlatChart& chart, Meter& meter) {
+        chart.mesh = make_chart(mesh_, glued, part, cut_.unit, cut_.place);
+        MeterPart work(meter, double(part.size()));
+        ArapOptions options;
+        options.on_step = [&] { work.advance(double(part.size()) / options.iterations); };
         const bool as_before = same_cuts(glued, cut_.glued, part);
         if (chart.mesh.disk) {
             chart.uv = carried_uvs(cut_, places_, chart.mesh);
-            arap(chart.mesh, chart.uv);
+            arap(chart.mesh, chart.uv, options);
+            work.finish();
             scale_to_area(chart.mesh, chart.uv);
             const FlatCheck check = check_flat(chart.mesh, chart.uv, options_.gap);
             chart.worst = check.linf;

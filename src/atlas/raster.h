@@ -13,7 +13,11 @@ namespace tuft::atlas {
 
 inline constexpr double kUvGrid = 16777216;  ///< grid steps per unit of UV, 2²⁴
 
-/// The UV in grid steps; [−8, 8] at most.
+inline bool is_finite(const Vec2f& uv) {
+    return std::isfinite(uv.x) && std::isfinite(uv.y);
+}
+
+/// A finite UV in grid steps; [−8, 8] at most.
 inline std::array<std::int64_t, 2> uv_grid(const Vec2f& uv) {
     const auto step = [](float x) {
         return static_cast<std::int64_t>(std::llround(std::clamp(double{x}, -8.0, 8.0) * kUvGrid));
@@ -30,10 +34,12 @@ inline std::int64_t twice_area(const std::array<std::int64_t, 2>& a,
 
 /// Calls run(row, first, last) for every row of texels of a size × size page whose
 /// centres first..last lie in the triangle. A centre on an edge belongs to one side
-/// only. Orientation does not matter; triangles without area have no texels.
+/// only. Orientation does not matter; triangles without area, or with a corner that is not
+/// finite, have no texels.
 template <class Run>
 void raster_rows(const std::array<Vec2f, 3>& uv, std::uint32_t size, Run&& run) {
     using Wide = __int128;
+    if (!std::all_of(uv.begin(), uv.end(), is_finite)) return;
     std::array<std::array<std::int64_t, 2>, 3> p{uv_grid(uv[0]), uv_grid(uv[1]), uv_grid(uv[2])};
     const std::int64_t area = twice_area(p[0], p[1], p[2]);
     if (area == 0) return;

@@ -123,6 +123,7 @@ SeamGraph::SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam, int
         if (std::abs(angle[v] - 2 * std::numbers::pi) > kSlitDefect) stays_[v] = 1;
 
     const std::vector<Vec3f> normal = smoothed_normals(patch, smooth);
+    n_triangles_.assign(n, 1);
     moments_.resize(n);
     for (std::uint32_t t = 0; t < n; ++t) {
         const Vec3 m = Vec3(normal[t]);
@@ -144,6 +145,7 @@ SeamGraph::SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam, int
             if (a == b) continue;
             chart_parent_[std::max(a, b)] = std::min(a, b);
             moments_[std::min(a, b)].add(moments_[std::max(a, b)]);
+            n_triangles_[std::min(a, b)] += n_triangles_[std::max(a, b)];
         } else {
             ++degree_[ends_[e].a];
             ++degree_[ends_[e].b];
@@ -236,7 +238,10 @@ void SeamGraph::take_away(std::uint32_t chain, std::vector<std::uint32_t>& chang
     const std::uint32_t a = chart_of(half_[chain] / 3);
     const std::uint32_t b = chart_of(patch_.twin[half_[chain]] / 3);
     chart_parent_[std::max(a, b)] = std::min(a, b);
-    if (a != b) moments_[std::min(a, b)].add(moments_[std::max(a, b)]);
+    if (a != b) {
+        moments_[std::min(a, b)].add(moments_[std::max(a, b)]);
+        n_triangles_[std::min(a, b)] += n_triangles_[std::max(a, b)];
+    }
     for (std::uint32_t e = chain; e != kNone; e = next_[e]) {
         seam_[e] = 0;
         --degree_[patch_.vertex[half_[e]]];
@@ -257,6 +262,7 @@ double SeamGraph::cost(std::uint32_t chain, const GluingLimits& limits) const {
     const std::uint32_t a = chart_of(half_[chain] / 3);
     const std::uint32_t b = chart_of(patch_.twin[half_[chain]] / 3);
     if (a == b || is_closed(chain)) return kNever;
+    if (n_triangles_[a] + n_triangles_[b] > limits.triangles) return kNever;
     if (bent_[chain] > limits.crease * length_[chain]) return kNever;
     NormalMoments both = moments_[a];
     both.add(moments_[b]);

@@ -19,6 +19,7 @@ struct GluingLimits {
     double crease = 0.87;       ///< radians; chains bent more (on average) stay
     double small = 1e-3;        ///< weight of the smaller chart's area in the cost
     double area = 1e300;        ///< largest area of a chart, over unit²
+    std::uint32_t triangles = kNone;  ///< most triangles of a chart
 };
 
 /// Area-weighted moments of the normals of a chart. Its developability error is the
@@ -62,6 +63,7 @@ class SeamGraph {
 
     std::uint32_t chart_of(std::uint32_t triangle) const;  ///< a triangle that stands for the chart
     const NormalMoments& moments(std::uint32_t chart) const { return moments_[chart]; }
+    std::uint32_t n_triangles(std::uint32_t chart) const { return n_triangles_[chart]; }
     std::vector<std::uint8_t> seams() const;  ///< [3n], borders included
 
   private:
@@ -86,6 +88,7 @@ class SeamGraph {
     std::vector<float> length_, bent_;  // of chains: sum of length, of length × angle
     std::vector<std::uint32_t> version_;
     std::vector<NormalMoments> moments_;      // of charts
+    std::vector<std::uint32_t> n_triangles_;  // of charts
     std::vector<std::uint32_t> vertex_half_;  // [n_vertices] a half-edge that leaves it
     std::vector<std::uint32_t> degree_;       // seam edges at a vertex, borders included
     std::vector<std::uint8_t> stays_;         // vertex lies on a border or wants its slit

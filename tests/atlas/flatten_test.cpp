@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "atlas/charts.h"
+#include "atlas/merge.h"
 #include "atlas/seam_graph.h"
 #include "atlas/snap.h"
 #include "atlas/straighten.h"
@@ -43,6 +45,26 @@ TEST(Flatten, UnrollsCylindersAndCones) {
             }));
         EXPECT_NEAR(check_flat(cone, flatten(cone)).l2, 1, 1e-4) << turn;
     }
+}
+
+// Bounded charts are what makes large meshes linear: a sheet that would be one chart becomes
+// several, and merging them keeps to the bound.
+TEST(Charts, HoldNoMoreTrianglesThanAllowed) {
+    const mesh::TriangleMesh sheet =
+        test::grid_mesh(40, 40, false, false, [](double u, double v) { return Vec3(u, v, 0); });
+    ChartOptions options;
+    EXPECT_EQ(cut_into_charts(sheet, options, {}).charts.size(), 1u);
+    options.triangles = 500;
+    CutMesh cut = cut_into_charts(sheet, options, {});
+    MergeOptions all;
+    all.largest_chart = 1;
+    merge_charts(sheet, cut, options, all, {});
+    std::size_t triangles = 0;
+    for (const FlatChart& c : cut.charts) {
+        EXPECT_LE(c.mesh.faces.size(), 500u);
+        triangles += c.mesh.faces.size();
+    }
+    EXPECT_EQ(triangles, sheet.n_triangles());
 }
 
 // Strains of a spherical cap laid flat grow with the square of its angle (Gauss), so L2 − 1,

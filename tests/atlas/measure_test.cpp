@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "atlas/atlas.h"
 #include "atlas/coverage.h"
@@ -117,6 +118,26 @@ TEST(Measure, FlipsAndTrianglesWithoutRoom) {
     EXPECT_EQ(measure(two, atlas).roomless_triangles, 1u);
     atlas.corner_uvs[5] = Vec2f(NAN);
     EXPECT_EQ(measure(two, atlas).roomless_triangles, 1u);
+}
+
+// What is not finite counts as having no room; the rest is measured as if it were alone.
+TEST(Measure, UvsThatAreNotNumbersAreLeftOut) {
+    std::vector<Vec3f> p = kTwoSquares;
+    for (const Vec3f& q : kTwoSquares) p.push_back(q + Vec3f(0, 2, 0));
+    const mesh::TriangleMesh three = quads(p, {{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}});
+    const float infinite = std::numeric_limits<float>::infinity();
+    for (const float bad : {NAN, infinite, -infinite}) {
+        Atlas atlas = rectangles(
+            {{0, 0, 0.25f, 0.25f}, {0.2578125f, 0, 0.5f, 0.25f}, {0.75f, 0.75f, 1, 1}}, 1024);
+        for (const std::size_t corner : {12u, 16u}) atlas.corner_uvs[corner].x = bad;
+        const AtlasReport r = measure(three, atlas);
+        EXPECT_EQ(r.roomless_triangles, 2u);
+        EXPECT_EQ(r.flips + r.overlapping_texels, 0u);
+        EXPECT_EQ(r.smallest_gap, 8);
+        EXPECT_DOUBLE_EQ(r.utilisation, (256.0 * 256 + 248 * 256) / 1024 / 1024);
+        EXPECT_TRUE(std::isfinite(r.l2_stretch) && std::isfinite(r.linf_stretch));
+        EXPECT_TRUE(std::isfinite(r.angle_distortion) && std::isfinite(r.area_distortion));
+    }
 }
 
 // Triangles that share edges split the texels among them: none is covered twice, none is

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "atlas/atlas.h"
@@ -258,6 +260,54 @@ TEST(AtlasPicture, ShowsChartsAndTheirStretch) {
     for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
         drawn += (i / 3) % 512 >= 256 && picture.rgb[i] > 30;
     EXPECT_EQ(drawn, static_cast<std::size_t>(std::lround(u.report.utilisation * 256 * 256)));
+}
+
+TEST(AtlasPicture, LeavesOutUvsThatAreNotNumbersOrOutside) {
+    const TriangleMesh m = sheet();
+    UnwrapOptions options;
+    options.size = 256;
+    Atlas atlas = unwrap(m, options).atlas;
+    const AtlasPicture whole = draw_atlas(m, atlas, {.side = 256});
+    const float infinite = std::numeric_limits<float>::infinity();
+    atlas.corner_uvs[0] = Vec2f(NAN, 0.5f);
+    atlas.corner_uvs[4] = Vec2f(0.5f, infinite);
+    atlas.corner_uvs[8] = Vec2f(-infinite, NAN);
+    const AtlasPicture holed = draw_atlas(m, atlas, {.side = 256});
+    // Only the pixels of the three triangles, and the borders round them, may differ.
+    std::size_t differing = 0;
+    for (std::size_t i = 0; i < whole.rgb.size(); i += 3)
+        differing += !std::equal(&whole.rgb[i], &whole.rgb[i] + 3, &holed.rgb[i]);
+    EXPECT_GT(differing, 0u);
+    EXPECT_LT(differing, 2 * 3 * (256u * 256 / m.n_triangles() + 4 * 40));
+    for (Vec2f& uv : atlas.corner_uvs) uv *= 1e30f;
+    EXPECT_EQ(draw_atlas(m, atlas, {.side = 256}).rgb.size(), whole.rgb.size());
+}
+
+// The listener hears of the work inside one chart, from whichever thread, and can stop it.
+TEST(Unwrap, LargeChartsReportTheirProgressAndCanBeStopped) {
+    const TriangleMesh m = test::grid_mesh(160, 160, false, false, [](double u, double v) {
+        return Vec3(u, v, 0.05 * std::sin(3 * u) * std::sin(3 * v));
+    });
+    std::size_t calls = 0;
+    double last = 0;
+    UnwrapOptions options;
+    options.progress = [&](std::string_view phase, double fraction) {
+        if (phase != "flatten") return true;
+        ++calls;
+        EXPECT_GE(fraction, last);
+        EXPECT_LE(fraction, 1);
+        last = fraction;
+        return true;
+    };
+    const Unwrapped u = unwrap(m, options);
+    EXPECT_GT(calls, 2 * u.report.charts);  // several within a chart
+    calls = 0;
+    options.progress = [&](std::string_view phase, double) {
+        calls += phase == "flatten";
+        return calls < 2;
+    };
+    EXPECT_THROW(unwrap(m, options), Cancelled);
+    EXPECT_EQ(calls, 2u);  // nobody is asked again
 }
 
 }  // namespace
