@@ -40,10 +40,15 @@ struct Preset {
     double plastic_share = 0.3;   ///< part of the stiffness that yields; 1 is the ideally plastic hair
                                   ///< of the paper, less gives a set that saturates
 
+    double damping = 3e-3;        ///< s, viscous over elastic stiffness of the wet bundle: hair that
+                                  ///< slips off an edge or buckles lets go in this time
+
     // Contact.
     double transverse_stiffness = 1.2e4;  ///< k_c, N/m²: force per length per indentation of the tuft's side
     double core_stiffness = 150;  ///< times k_c once the hair is packed
     double core_start = 0.65;     ///< indentation over radius at which it is packed
+    double end_give = 5e-4;       ///< m, scatter of the hairs' ends: by so much the point gives before
+                                  ///< the tuft, pressed end-on, buckles
     double adhesion = 0.5;        ///< N/m, pull of the wet film per length of hair; none when dry
     double adhesion_range = 1e-3; ///< m, gap at which the film breaks
     double friction_wet = 0.30, friction_dry = 0.45;  ///< Coulomb μ

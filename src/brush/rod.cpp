@@ -1,5 +1,6 @@
 #include "brush/rod.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,6 +35,7 @@ Rod make_rod(const Profile& profile, std::span<const double> lengths) {
     // the tip is less by a quarter segment's lever; a little less than that, because yielding
     // grows faster than the moment (set within 2 % at 16 segments).
     if (n > 0) rod.yield[0] /= 1 - 0.225 * rod.length[0];
+    rod.buckling = buckling_load(rod);
     return rod;
 }
 
@@ -45,7 +47,31 @@ Rod outer_part(const Rod& rod, int first, double share) {
     for (double& k : part.stiffness) k /= share;
     part.yield.assign(rod.yield.begin() + first, rod.yield.end());
     part.weight.assign(rod.weight.begin() + first, rod.weight.end());
+    part.buckling = buckling_load(part);
     return part;
+}
+
+double buckling_load(const Rod& rod) {
+    const Eigen::Index n = rod.segments();
+    if (n < 2) return 0;
+    // In φ = √l θ the load's form is |φ|² and the tip is held where v·φ = 0.
+    DenseMatrix a = DenseMatrix::Zero(n, n);
+    Eigen::VectorXd v(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+        const double k = rod.stiffness[j], l = rod.length[j];
+        v[j] = std::sqrt(l);
+        a(j, j) += k / l;
+        if (j == 0) continue;
+        const double before = rod.length[j - 1];
+        a(j - 1, j - 1) += k / before;
+        a(j, j - 1) -= k / std::sqrt(l * before);
+        a(j - 1, j) = a(j, j - 1);
+    }
+    v.normalize();
+    const DenseMatrix held = DenseMatrix::Identity(n, n) - v * v.transpose();
+    a = held * a * held + a.trace() * v * v.transpose();
+    const Eigen::SelfAdjointEigenSolver<DenseMatrix> eigen(a, Eigen::EigenvaluesOnly);
+    return eigen.info() == Eigen::Success ? eigen.eigenvalues()[0] : 0;
 }
 
 Memory make_memory(const Rod& rod, const Clamp& clamp) {
@@ -90,22 +116,27 @@ namespace {
 constexpr double kFirstTouch = 0.1;   ///< B0/L²: guess of a first contact's force
 constexpr double kFaint = 0.02;       ///< B0/L²: normal force below which relative accuracy is no aim
 
-/// Where a point first touched on its way from its last place to `x`.
-Vec3 touching_point(const Obstacle& o, const Vec3& x_t0, const Vec3& x) {
-    const double z0 = glm::dot(x_t0 - o.origin, o.normal) - o.radius;
-    const double z1 = glm::dot(x - o.origin, o.normal) - o.radius;
+/// Where a point first touched on its way from its last place, z0 off the surface, to `x`.
+Vec3 touching_point(double z0, double z1, const Vec3& x_t0, const Vec3& x) {
     if (z0 <= 0 || z1 >= z0) return x;
     return x_t0 + std::min(1.0, z0 / (z0 - z1)) * (x - x_t0);
 }
 
+/// Share of the friction of hair at this angle: ends that stand on the surface fold under it.
+double end_share(const Law& law, const Vec3& tangent, const Vec3& normal) {
+    const double c = glm::dot(tangent, normal);
+    return law.end_friction + (1 - law.end_friction) * std::max(0.0, 1 - c * c);
+}
+
 /// Friction of a point for the next pass, from the normal force and tangent known so far.
-Friction friction_of(const Law& law, const Obstacle& o, double weight, double normal_force,
+Friction friction_of(const Law& law, const Vec3& plane, double weight, double normal_force,
                      const Vec3& anchor, const Vec3& x, const Vec3& tangent) {
     Friction f;
     f.anchor = anchor;
     f.stick = law.stick_stiffness * weight;
     f.cap = law.friction * normal_force;
-    const Vec3 flat = tangent - glm::dot(tangent, o.normal) * o.normal;
+    f.normal = plane;
+    const Vec3 flat = tangent - glm::dot(tangent, plane) * plane;
     const double lean = glm::length(flat);
     if (lean < 1e-6) return f;
     const Vec3 hair = flat / lean;
@@ -114,7 +145,7 @@ Friction friction_of(const Law& law, const Obstacle& o, double weight, double no
     f.across = 1 + (1 - 2 * law.grain) * lean;
     if (law.with_hair > 0) {
         Vec3 d = x - anchor;
-        d -= glm::dot(d, o.normal) * o.normal;
+        d -= glm::dot(d, plane) * plane;
         const double moved = glm::length(d);
         if (moved > 0) {
             const double with = std::max(0.0, -glm::dot(d, hair) / moved);
@@ -149,7 +180,7 @@ struct Solver {
         Vec3 a = memory.clamp.tangent, side = memory.clamp.side;
         for (int j = 0; j < n(); ++j) {
             // Frames are laid anew along the rod, so that spin gathered in one solve is dropped.
-            if (memory.joint[j].yielded) memory.joint[j].bend = bend_of(a, side, shape.tangent[j]);
+            memory.joint[j].bend = bend_of(a, side, shape.tangent[j]);
             a = shape.tangent[j];
             side = shape.side[j];
         }
@@ -162,6 +193,7 @@ struct Solver {
         frozen.clamp = memory.clamp;
         const std::size_t points = fine.size();
         frozen.friction.assign(points, {});
+        lay_give();
         frozen.multiplier.assign(points, 0);
         normal.assign(points, 0);
         anchor.assign(points, Vec3{0});
@@ -177,8 +209,9 @@ struct Solver {
                 anchored[p] = 1;
                 normal[p] = c.force;
                 frozen.multiplier[p] = c.multiplier;
-            } else if (glm::dot(x - fine[p].origin, fine[p].normal) < fine[p].radius) {
-                anchor[p] = touching_point(fine[p], point(before, p), x);
+            } else if (const double z = distance(p, x).z - fine[p].radius; z < 0) {
+                const Vec3 from = point(before, p);
+                anchor[p] = touching_point(distance(p, from).z - fine[p].radius, z, from, x);
                 anchored[p] = 1;
                 // Hair that touches for the first time sticks where it touched; without any
                 // friction in the first pass it could slip to the wrong side of the hand.
@@ -196,9 +229,49 @@ struct Solver {
         return (1 - at.s) * x[at.node] + at.s * x[at.node + 1];
     }
 
+    /// The two planes of a point over a crease: those of the nodes beside it, or a node's own
+    /// and the one next to it that differs most.
+    void lay_crease(std::size_t p, const PointPlace& at) {
+        int i = at.node, k = at.node + 1;
+        if (at.s == 0 || at.s == 1) {
+            i = at.s == 0 ? at.node : at.node + 1;
+            k = i + 1 <= n() ? i + 1 : i - 1;
+            if (i > 1 && i < n() &&
+                glm::dot(obstacles[i].normal, obstacles[i - 1].normal) <
+                    glm::dot(obstacles[i].normal, obstacles[k].normal)) {
+                k = i - 1;
+            }
+        }
+        const Obstacle &a = obstacles[i], &b = obstacles[k];
+        const double alike = glm::dot(a.normal, b.normal);
+        constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°, as over smooth surfaces
+        const double w = std::clamp((kAlike - alike) / (kAlike - kApart), 0.0, 1.0);
+        if (w <= 0) return;
+        Crease& c = frozen.crease[p];
+        c.share = w * w * (3 - 2 * w);
+        c.convex = glm::dot(b.origin - a.origin, a.normal - b.normal) < 0;
+        c.origin[0] = a.origin;
+        c.origin[1] = b.origin;
+        c.normal[0] = a.normal;
+        c.normal[1] = b.normal;
+    }
+
+    Distance distance(std::size_t p, const Vec3& x) const {
+        return distance_of(fine[p], frozen.crease[p], law.edge, x);
+    }
+
+    /// Unit normal of the surface under a contact point.
+    Vec3 normal_at(std::size_t p, const Vec3& x) const {
+        if (frozen.crease[p].share <= 0) return fine[p].normal;
+        const Vec3 slope = distance(p, x).slope;
+        const double size = glm::length(slope);
+        return size > 1e-6 ? slope / size : fine[p].normal;
+    }
+
     /// Planes, radii and tributary lengths of the contact points.
     void lay_points() {
         if (obstacles.empty()) return;
+        frozen.crease.assign(static_cast<std::size_t>(law.points_per_segment) * n() + 1, {});
         const int per = law.points_per_segment;
         fine.resize(static_cast<std::size_t>(per) * n() + 1);
         frozen.weight.assign(fine.size(), 0);
@@ -210,11 +283,27 @@ struct Solver {
             fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
             fine[p].normal = size > 1e-6 ? normal_sum / size : a.normal;
             fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
+            if (law.edge > 0) lay_crease(p, at);
             if (p + 1 < fine.size()) {
                 const double half = 0.5 * rod.length[at.node] / per;
                 frozen.weight[p] += half;
                 frozen.weight[p + 1] += half;
             }
+        }
+    }
+
+    /// How much the hair's ends give at each contact point: 1/k_e, k_e = 2 P s_e^-2 per length
+    /// so that a straight end takes the buckling load P at s_e.
+    void lay_give() {
+        frozen.give.assign(fine.size(), 0);
+        if (law.end_give <= 0 || law.hard || rod.buckling <= 0) return;
+        const double soft = law.end_give * law.end_give / (2 * rod.buckling);
+        double from_tip = 0;
+        for (std::size_t p = fine.size(); p-- > 1;) {
+            const double window = 1 - from_tip / (4 * law.end_give);
+            if (window <= 0) break;
+            frozen.give[p] = soft * window * window / frozen.weight[p];
+            from_tip += rod.length[place(p - 1).node] / law.points_per_segment;
         }
     }
 
@@ -225,9 +314,13 @@ struct Solver {
             if (!anchored[p] || normal[p] <= 0) continue;
             const PointPlace at = place(p);
             const Vec3& tangent = shape.tangent[at.s > 0 ? at.node : at.node - 1];
-            Friction f = friction_of(law, fine[p], frozen.weight[p], normal[p], anchor[p], point(x, p), tangent);
-            if (p + 1 == fine.size()) {
-                f.pore_cap = law.pore_grip * normal[p] * std::max(0.0, -glm::dot(tangent, fine[p].normal));
+            const Vec3 at_point = point(x, p), plane = normal_at(p, at_point);
+            Friction f = friction_of(law, plane, frozen.weight[p], normal[p], anchor[p], at_point, tangent);
+            const bool tip = p + 1 == fine.size();
+            const double c = std::min(0.0, glm::dot(tangent, plane));
+            if (law.end_friction < 1) f.cap *= tip ? std::max(law.end_friction, 1 - c * c) : 1 - c * c;
+            if (tip) {
+                f.pore_cap = law.pore_grip * normal[p] * (law.end_friction < 1 ? 1 - c * c : 1) * std::max(0.0, -c);
             }
             frozen.friction[p] = f;
         }
@@ -315,6 +408,8 @@ struct Solver {
         out.contact_force.assign(n() + 1, Vec3{0});
         for (int j = 0; j < n(); ++j) {
             out.moment[j] = glm::length(at.joint[j].moment + end_moment(frozen));
+            const Vec2 turn = at.joint[j].bend - memory.joint[j].bend;
+            out.dissipation += law.damping * rod.stiffness[j] * glm::dot(turn, turn);
             out.dissipation += commit_joint(rod, j, memory.joint[j], at.joint[j].bend);
             out.bend_energy += stored_energy(rod, j, memory.joint[j], at.joint[j].bend);
         }
@@ -357,7 +452,7 @@ struct Solver {
             return;
         }
         Vec3 d = x - c.anchor;
-        d -= glm::dot(d, fine[p].normal) * fine[p].normal;
+        d -= glm::dot(d, f.normal) * f.normal;
         const double along = glm::dot(d, f.grain);
         const Vec3 side = d - along * f.grain;
         const double q = std::sqrt(f.along * f.along * along * along +

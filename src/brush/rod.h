@@ -10,7 +10,12 @@
 /// Inextensible discrete rod of n rigid segments with bending joints, clamped at the root,
 /// in frictional contact with one plane per node. Minimises
 ///
-///   Π = Σ ψ_j(w_j) + Σ contact(r*-z_i) + Σ μ N̂_i h(|x_i - a_i|) - F·x_tip
+///   Π = Σ ψ_j(w_j) + Σ contact(r*-z_i, c_i) + Σ μ N̂_i h(|x_i - a_i|) - F·x_tip
+///       + Σ η_j/(2Δt) |w_j - w_j(t0)|²
+///
+/// with c_i = -t_i·n how much the hair meets the surface end-on: the ends of the hairs are not
+/// of one length, so that a point gives a way s along itself, by the potential
+/// min_s ½ k_e s² + contact(r*-z_i - s c_i).
 ///
 /// over unit tangents t_j by Newton with a dense Cholesky factorisation; N̂ is the normal
 /// force of the pass before (outer fixed point), a_i the sticking anchor. Twist is carried
@@ -31,6 +36,7 @@ struct Rod {
     std::vector<double> yield;      ///< [n] joint angle θ_e where yielding starts; infinite: elastic
     std::vector<double> weight;     ///< [n+1] tributary length of each node
     double plastic_share = 1;       ///< part of k_j in stops that yield; the rest stays elastic
+    double buckling = 0;            ///< least load that buckles it as a column with its tip held
     int segments() const { return static_cast<int>(length.size()); }
 };
 
@@ -43,6 +49,10 @@ Rod make_rod(const Profile& profile, std::span<const double> lengths);
 /// Segments from `first` to the tip as a rod of their own, with 1/share of the stiffness;
 /// still in units of the whole. Its clamp is the segment inboard of `first`.
 Rod outer_part(const Rod& rod, int first, double share);
+
+/// Least eigenvalue P of Σ k_j (θ_j - θ_{j-1})² - P Σ l_j θ_j² on Σ l_j θ_j = 0: the load at
+/// which a straight rod pressed end-on by a point that holds its tip bows out. B0/L².
+double buckling_load(const Rod& rod);
 
 /// Root of the rod. `side` is a unit vector normal to `tangent` that marks the ferrule's turn.
 struct Clamp {
@@ -67,6 +77,16 @@ struct Law {
     double core_stiffness = 0;  ///< further k beyond core_start · radius
     double core_start = 0.65;
     double onset = 0;           ///< indentation over which a stiffness comes in, smoothing its kink
+    double end_friction = 1;    ///< share of μ that is left where hair meets the surface end-on; the
+                                ///< rest comes with lying down, as sin² of its angle to the normal
+    double end_give = 0;        ///< length by which the hair's ends give at the buckling load
+                                ///< when they meet a surface end-on, less the more they lie;
+                                ///< 0: none. Fades to nothing 4 end_give behind the tip
+    double damping = 0;         ///< viscous stiffness over elastic stiffness of the joints:
+                                ///< η/(k Δt) of backward Euler
+    double edge = 0;            ///< over a crease, where the planes of neighbouring nodes part, a
+                                ///< point keeps off both (in a corner) or either (over an edge),
+                                ///< the edge rounded by a quarter of this length; 0: one plane each
     double adhesion = 0;        ///< pull per length of a wet node that all but touches, fading
     double adhesion_range = 0;  ///< as (1 - gap/range)² to nothing at this gap
     double friction = 0;        ///< μ
@@ -116,7 +136,7 @@ struct Result {
     int iterations = 0, passes = 0;
     double bend_energy = 0;            ///< stored in the joints
     double contact_energy = 0;         ///< stored in indented and sticking contacts
-    double dissipation = 0;            ///< by yielding and slip, this solve
+    double dissipation = 0;            ///< by yielding, slip and damping, this solve
     std::vector<double> moment;        ///< [n] |m| at the joints
     std::vector<double> normal_force;  ///< [n+1], shares of the points beside each node
     std::vector<Vec3> contact_force;   ///< [n+1] on the rod, with friction

@@ -224,26 +224,121 @@ void add_friction(const Friction& f, const Vec3& normal, const Vec3& x, double& 
 
 namespace {
 
+/// Potential of a point by its indentation and by c = -t·n, with derivatives.
+struct EndOn {
+    double energy = 0, d = 0, c = 0;      ///< value, ∂/∂depth (the normal force), ∂/∂c
+    double dd = 0, dc = 0, cc = 0;
+};
+
+/// min_s s²/(2 give) + contact(depth - c s). With e the indentation left, s = give c f(e) and
+/// e + give c² f(e) = depth, whose left side is convex and grows with e: Newton from above.
+EndOn end_on(const Law& law, double weight, double radius, double depth, double c, double give) {
+    const double soft = give * c * c;
+    double e = depth;
+    NormalForce f = normal_force(law, weight, radius, e, 0);
+    for (int i = 0; i < 40; ++i) {
+        const double miss = e + soft * f.force - depth;
+        if (miss <= 1e-15 * depth) break;
+        e -= miss / (1 + soft * f.stiffness);
+        f = normal_force(law, weight, radius, e, 0);
+    }
+    const double s = give * c * f.force, k = f.stiffness, total = 1 + soft * k;
+    const double s_c = give * (f.force - c * k * s) / total;
+    EndOn out;
+    out.energy = f.energy + 0.5 * s * c * f.force;
+    out.d = f.force;
+    out.c = -s * f.force;
+    out.dd = k / total;
+    out.dc = -k * (s + c * s_c);
+    out.cc = -s_c * f.force - s * out.dc;
+    return out;
+}
+
+}  // namespace
+
+Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const Vec3& x) {
+    Distance out{glm::dot(x - o.origin, o.normal), o.normal};
+    if (crease.share <= 0) return out;
+    const double z0 = glm::dot(x - crease.origin[0], crease.normal[0]);
+    const double z1 = glm::dot(x - crease.origin[1], crease.normal[1]);
+    const double sign = crease.convex ? 1 : -1, apart = sign * (z0 - z1);
+    const double w0 = std::clamp(0.5 + 0.5 * apart / edge, 0.0, 1.0);
+    const double round = std::max(0.0, edge - std::abs(apart));
+    const double wedge = (apart > 0 ? z0 : z1) + sign * round * round / (4 * edge);
+    out.z += crease.share * (wedge - out.z);
+    out.slope += crease.share * (w0 * crease.normal[0] + (1 - w0) * crease.normal[1] - out.slope);
+    if (round > 0) {
+        out.bend = crease.share * sign / (2 * edge);
+        out.across = crease.normal[0] - crease.normal[1];
+    }
+    return out;
+}
+
+namespace {
+
+/// True where the points between two nodes, from p on, are all out of reach of one plane.
+bool all_clear(const Frozen& frozen, int p, const Evaluation& at) {
+    const Law& law = *frozen.law;
+    const int j = p / law.points_per_segment;
+    if (law.points_per_segment < 3 || law.hard) return false;
+    for (int q = p - 1; q < p + law.points_per_segment; ++q) {
+        if (frozen.crease[q].share > 0) return false;
+    }
+    // A point's plane lies between its neighbours' planes, which are of one surface here.
+    const Obstacle &first = frozen.obstacles[p], &last = frozen.obstacles[p + law.points_per_segment - 2];
+    const double reach = law.adhesion_range + std::max(first.radius, last.radius);
+    for (const Obstacle* o : {&first, &last}) {
+        for (int i = j; i <= j + 1; ++i) {
+            if (glm::dot(at.node[i] - o->origin, o->normal) < 1.5 * reach) return false;
+        }
+    }
+    return true;
+}
+
 /// Adds contact point p to the slopes and curvatures of its two nodes; returns its potential.
 double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     const Law& law = *frozen.law;
     const Obstacle& o = frozen.obstacles[p];
     const PointPlace at = point_place(p, law.points_per_segment, frozen.rod->segments());
     const Vec3 x = (1 - at.s) * out.node[at.node] + at.s * out.node[at.node + 1];
-    const double depth = o.radius - glm::dot(x - o.origin, o.normal);
+    const Distance at_surface = distance_of(o, frozen.crease[p], law.edge, x);
+    const double depth = o.radius - at_surface.z;
     if (depth <= -law.adhesion_range && !law.hard) return 0;
-    const NormalForce f = normal_force(law, frozen.weight[p], o.radius, depth, frozen.multiplier[p]);
+    const double length = frozen.rod->length[at.node];
+    const double c = glm::dot(out.node[at.node] - out.node[at.node + 1], o.normal) / length;
+    EndOn f;
+    if (depth > 0 && c > 0 && frozen.give[p] > 0 && frozen.crease[p].share <= 0) {
+        f = end_on(law, frozen.weight[p], o.radius, depth, c, frozen.give[p]);
+    } else {
+        const NormalForce n =
+            normal_force(law, frozen.weight[p], o.radius, depth, frozen.multiplier[p]);
+        f = {.energy = n.energy, .d = n.force, .dd = n.stiffness};
+    }
     const NormalForce pull = adhesion(law, frozen.weight[p], -depth);
     double energy = f.energy + pull.energy;
-    out.normal[p] = f.force;
-    Vec3 slope = (pull.force - f.force) * o.normal;
-    Mat3 curvature = (f.stiffness + pull.stiffness) * outer(o.normal);
-    add_friction(frozen.friction[p], o.normal, x, energy, slope, curvature);
-    out.slope[at.node] += (1 - at.s) * slope;
+    out.normal[p] = f.d;
+    Vec3 slope = (pull.force - f.d) * at_surface.slope;
+    Mat3 curvature = (f.dd + pull.stiffness) * outer(at_surface.slope);
+    if (at_surface.bend != 0) {
+        curvature += (pull.force - f.d) * at_surface.bend * outer(at_surface.across);
+    }
+    add_friction(frozen.friction[p], frozen.friction[p].normal, x, energy, slope, curvature);
+    const double inner = 1 - at.s;
+    out.slope[at.node] += inner * slope;
     out.slope[at.node + 1] += at.s * slope;
-    out.curvature[at.node] += (1 - at.s) * (1 - at.s) * curvature;
+    out.curvature[at.node] += inner * inner * curvature;
     out.curvature[at.node + 1] += at.s * at.s * curvature;
-    if (at.s > 0 && at.s < 1) out.coupling[at.node] += at.s * (1 - at.s) * curvature;
+    if (at.s > 0 && at.s < 1) out.coupling[at.node] += at.s * inner * curvature;
+    if (f.c != 0) {
+        // c turns with the difference of the two nodes, the indentation with their mean.
+        const Mat3 nn = outer(o.normal);
+        const double dc = f.dc / length, cc = f.cc / (length * length);
+        out.slope[at.node] += f.c / length * o.normal;
+        out.slope[at.node + 1] -= f.c / length * o.normal;
+        out.curvature[at.node] += (cc - 2 * inner * dc) * nn;
+        out.curvature[at.node + 1] += (cc + 2 * at.s * dc) * nn;
+        out.coupling[at.node] += ((inner - at.s) * dc - cc) * nn;
+    }
     return energy;
 }
 
@@ -255,6 +350,21 @@ Vec2 end_moment(const Frozen& frozen) {
     return frozen.load.end_moment *
            Vec2{glm::dot(c.side, toward), glm::dot(glm::cross(c.tangent, c.side), toward)};
 }
+
+namespace {
+
+/// Backward Euler: the joint resists its turn since the last solve.
+double add_damping(const Frozen& frozen, int j, JointForce& joint) {
+    const double k = frozen.law->damping * frozen.rod->stiffness[j];
+    if (k <= 0) return 0;
+    const Vec2 turn = joint.bend - (*frozen.joint)[j].bend;
+    joint.moment += k * turn;
+    joint.d00 += k;
+    joint.d11 += k;
+    return 0.5 * k * glm::dot(turn, turn);
+}
+
+}  // namespace
 
 void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     const Rod& rod = *frozen.rod;
@@ -276,6 +386,7 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
         // A dead moment at the end does the same work in every joint.
         value += out.joint[j].energy - glm::dot(moment, out.joint[j].bend);
         out.joint[j].moment -= moment;
+        value += add_damping(frozen, j, out.joint[j]);
         out.node[j + 1] = out.node[j] + rod.length[j] * b;
         a = b;
         side = shape.side[j];
@@ -283,6 +394,10 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     value -= glm::dot(frozen.load.tip_force, out.node[n]);
     out.slope[n] -= frozen.load.tip_force;
     for (int p = 1; p < static_cast<int>(frozen.obstacles.size()); ++p) {
+        if (p % frozen.law->points_per_segment == 1 && all_clear(frozen, p, out)) {
+            p += frozen.law->points_per_segment - 2;
+            continue;
+        }
         value += add_contact(frozen, p, out);
     }
     out.value = value;

@@ -17,11 +17,31 @@ inline PointPlace point_place(int p, int per_segment, int segments) {
     return {p / per_segment, static_cast<double>(p % per_segment) / per_segment};
 }
 
+/// Crease beside a contact point: the planes of two neighbouring nodes.
+struct Crease {
+    double share = 0;        ///< 0: none, the point has one plane; 1: a sharp one
+    bool convex = true;
+    Vec3 origin[2]{Vec3{0}, Vec3{0}}, normal[2]{Vec3{0}, Vec3{0}};
+};
+
+/// Distance of a point from the surface, with derivatives.
+struct Distance {
+    double z = 0;
+    Vec3 slope{0};           ///< ∂z/∂x
+    double bend = 0;         ///< ∂²z/∂x² = bend · across acrossᵀ
+    Vec3 across{0};
+};
+
+/// From the plane of `o`, and over a crease from both its planes: the larger distance over an
+/// edge, the smaller in a corner, rounded where they differ by less than `edge`.
+Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const Vec3& x);
+
 /// Friction of one contact point, frozen during one Newton solve.
 struct Friction {
     double cap = 0;          ///< μ N̂, force at slip
     double stick = 0;        ///< force per displacement while sticking
     Vec3 anchor{0};
+    Vec3 normal{0, 0, 1};    ///< unit, of the surface
     Vec3 grain{0};           ///< unit, in the plane, along the hair towards the tip; zero: isotropic
     double along = 1, across = 1;  ///< factors on displacement along the grain and across
     double pore_cap = 0;     ///< force against being pushed along the grain
@@ -32,12 +52,14 @@ struct Frozen {
     const Rod* rod = nullptr;
     const std::vector<JointMemory>* joint = nullptr;
     std::span<const Obstacle> obstacles;  ///< of the contact points, or none
+    std::vector<Crease> crease;       ///< of the contact points
     std::vector<double> weight;       ///< of the contact points, tributary lengths
     const Law* law = nullptr;
     Load load;
     Clamp clamp;
     std::vector<Friction> friction;   ///< of the contact points
     std::vector<double> multiplier;   ///< of the contact points
+    std::vector<double> give;         ///< of the contact points, end-on displacement per force
 };
 
 /// Unit tangent t and unit normal s of every segment; the pair (s, t × s) moves without spin.

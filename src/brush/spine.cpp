@@ -10,10 +10,13 @@ namespace tuft::brush {
 namespace {
 
 constexpr double kOnset = 5e-5;    ///< m, fuzz of the tuft's side
-constexpr int kContactPoints = 3;  ///< per segment: a patch then grows smoothly with depth
+constexpr double kStraight = 1e-4; ///< 1 - cos of a bend that is none yet, 0.8°
+constexpr double kEndFriction = 0.2;  ///< of the fold of hair ends that carries the tip along
+constexpr double kEdge = 2e-4;     ///< m, by a quarter of which creases are rounded
+constexpr int kContactPoints = 6;  ///< per segment: a patch then grows smoothly with depth
 
-/// The preset's contact law in units of L and B0, for one of `share` spines.
-rod::Law law_of(const Preset& p, double wetness, double share) {
+/// The preset's law in units of L and B0, for one of `share` spines and a solve over `dt`.
+rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     const double unit = p.stiffness / std::pow(p.length, 4);
     rod::Law law;
     law.points_per_segment = kContactPoints;
@@ -21,6 +24,10 @@ rod::Law law_of(const Preset& p, double wetness, double share) {
     law.core_stiffness = p.core_stiffness * law.stiffness;
     law.core_start = p.core_start;
     law.onset = kOnset / p.length;
+    law.end_friction = kEndFriction;
+    law.edge = kEdge / p.length;
+    law.end_give = p.end_give / p.length;
+    law.damping = dt > 0 ? p.damping / dt : 0;
     law.adhesion = wetness * p.adhesion / (unit * p.length) / share;
     law.adhesion_range = p.adhesion_range / p.length;
     law.friction = p.friction_dry + (p.friction_wet - p.friction_dry) * wetness;
@@ -41,12 +48,13 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
     if (planes.empty()) return;
     const Vec3 axis = spine.memory.clamp.tangent;
     for (const Vec3& t : spine.memory.tangent) {
-        if (glm::dot(t, axis) < 1 - 1e-7) return;
+        if (glm::dot(t, axis) < 1 - kStraight) return;
     }
     const ContactPlane& at_tip = planes.front();
     const Vec3 tip = to.position + p.length * to.axis();
     const double along = glm::dot(to.axis(), at_tip.normal);
-    if (along > -0.9999 || glm::dot(tip - at_tip.origin, at_tip.normal) > 0) return;
+    const double under = spine.rest_radius.back() - glm::dot(tip - at_tip.origin, at_tip.normal);
+    if (along > -0.9999 || under < 0) return;
     Vec3 aside = from.position - to.position;
     aside -= glm::dot(aside, to.axis()) * to.axis();
     const Quat back = from.rotation * glm::conjugate(to.rotation);
@@ -54,8 +62,7 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
                 ? glm::normalize(back * aside)
                 : from.rotation * Vec3{1, 0, 0};
     // Bend angle ε s² that takes the tip back up to the surface: the tip rises by L ε²/10.
-    const double under = -glm::dot(tip - at_tip.origin, at_tip.normal) / p.length;
-    const double angle = std::clamp(std::sqrt(10 * under), 0.02, 0.6);
+    const double angle = std::clamp(std::sqrt(10 * under / p.length), 0.02, 0.6);
     double s = 0;
     for (std::size_t j = 0; j < spine.memory.tangent.size(); ++j) {
         s += spine.rod.length[j];
@@ -110,8 +117,9 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Qu
 }  // namespace
 
 Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
-                   std::span<const ContactPlane> planes, double wetness, double share) {
-    const rod::Law law = law_of(p, wetness, share);
+                   std::span<const ContactPlane> planes, double wetness, double share,
+                   double dt) {
+    const rod::Law law = law_of(p, wetness, share, dt);
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
     rod::Result result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law);
     return with_sections(p, spine, std::move(result), turn, obstacles, wetness, share);
@@ -134,8 +142,8 @@ Pose between(const Pose& a, const Pose& b, double t) {
 }  // namespace
 
 void approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
-              std::span<const ContactPlane> planes, double wetness) {
-    rod::Law law = law_of(p, wetness, 1);
+              std::span<const ContactPlane> planes, double wetness, double& dt) {
+    rod::Law law = law_of(p, wetness, 1, 0);
     if (planes.empty()) return;
     const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
     const double moved = glm::length(to.position - from.position) / p.length + turned;
@@ -146,6 +154,8 @@ void approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
         parts = std::clamp(static_cast<int>(std::ceil(moved / largest)), 1, kMaxParts);
     }
     law.max_iterations = std::max(30, law.max_iterations / parts);
+    dt /= parts;
+    law.damping = dt > 0 ? p.damping / dt : 0;
     Pose last = from;
     for (int k = 1; k < parts; ++k) {
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
@@ -158,7 +168,7 @@ void approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
 
 Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const rod::Clamp& clamp,
                    const Quat& turn, std::span<const ContactPlane> planes, double wetness) {
-    const rod::Law law = law_of(p, wetness, 1);
+    const rod::Law law = law_of(p, wetness, 1, 0);
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
     rod::Memory& m = spine.memory;
     const Vec3 root_before = m.clamp.position;

@@ -19,13 +19,14 @@ Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& cl
                  double share);
 
 /// Follows the ferrule from `from` to just before `to` in parts small enough, and lets
-/// hair that stands upright fall behind the motion.
+/// hair that stands upright fall behind the motion. `dt`: in, seconds of the whole way; out,
+/// of the part that is left.
 void approach(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
-              std::span<const ContactPlane> planes, double wetness);
+              std::span<const ContactPlane> planes, double wetness, double& dt);
 
-/// The spine bent by the rod solver; `turn` is the ferrule's rotation, `planes` tip first.
+/// The spine bent by the rod solver over `dt` seconds; `turn` is the ferrule's rotation, `planes` tip first.
 Solved solve_spine(const Preset& preset, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
-                   std::span<const ContactPlane> planes, double wetness, double share);
+                   std::span<const ContactPlane> planes, double wetness, double share, double dt);
 
 /// The spine from the query table: bent in the plane of the holder and the tip's last place,
 /// so that the tip follows the hand as a tractrix, by the moment that puts the tip on the plane.
@@ -41,6 +42,6 @@ double split_measure(const Preset& preset, double ink_left, double root_moment);
 void split(Tuft& tuft);
 
 /// Solves the sub-spines on the bent trunk and puts them in place of the last third.
-void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state);
+void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt);
 
 }  // namespace tuft::brush

@@ -58,7 +58,7 @@ std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose) {
     return out;
 }
 
-TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double /*dt*/) {
+TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt) {
     const Preset& p = tuft.preset;
     const std::size_t expected = expected_planes(tuft);
     if (planes.size() > 1 && planes.size() != expected) {
@@ -79,10 +79,11 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     tuft.wetness = std::clamp(tuft.wetness, 0.0, 1.0);
     const std::size_t own = tuft.spine.rest_radius.size();
     const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
-    if (p.spine == SpineMethod::rod) approach(p, tuft.spine, tuft.pose, pose, main_planes, tuft.wetness);
+    double part = std::isfinite(dt) ? std::max(0.0, dt) : 0;
+    if (p.spine == SpineMethod::rod) approach(p, tuft.spine, tuft.pose, pose, main_planes, tuft.wetness, part);
     Solved solved = p.spine == SpineMethod::table
                         ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness)
-                        : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1);
+                        : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part);
     tuft.pose = pose;
 
     const rod::Result& r = solved.result;
@@ -99,7 +100,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
 
     const double measure = split_measure(p, tuft.ink_left, state.root_moment);
     if (tuft.split) {
-        solve_twigs(tuft, planes, state);
+        solve_twigs(tuft, planes, state, dt);
         if (measure < p.merge_at) tuft.split = false;
     } else if (measure > p.split_at) {
         split(tuft);

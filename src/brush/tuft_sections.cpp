@@ -74,7 +74,9 @@ std::vector<double> squash(const SectionInput& in) {
         if (in.obstacles.empty()) continue;
         const rod::Obstacle& o = in.obstacles[i];
         const double z = glm::dot(m.node[i] - o.origin, o.normal);
-        if (o.radius > 0) raw[i] = std::clamp((o.radius - z) / o.radius, 0.0, 1.0);
+        // Hair that stands on the surface is not pressed flat.
+        const double c = glm::dot(m.tangent[i - 1], o.normal);
+        if (o.radius > 0) raw[i] = std::clamp((o.radius - z) / o.radius, 0.0, 1.0) * (1 - c * c);
     }
     for (std::size_t i = 0; i < count; ++i) {
         double sum = 0, weight = 0;

@@ -62,7 +62,7 @@ void split(Tuft& tuft) {
     tuft.split = true;
 }
 
-void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state) {
+void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt) {
     const Preset& p = tuft.preset;
     const int k = branch_node(tuft.spine.rod);
     const std::vector<Section> whole = std::move(state.branches.front().sections);
@@ -75,7 +75,7 @@ void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& st
         if (planes.size() > 1) own = planes.subspan(next, count);
         next += count;
         const rod::Clamp clamp = twig_clamp(tuft, k, index);
-        Solved solved = solve_spine(p, twig, clamp, tuft.pose.rotation, own, tuft.wetness, kTwigs);
+        Solved solved = solve_spine(p, twig, clamp, tuft.pose.rotation, own, tuft.wetness, kTwigs, dt);
         state.iterations += solved.result.iterations;
         state.converged = state.converged && solved.result.converged;
         Branch branch = std::move(solved.branch);

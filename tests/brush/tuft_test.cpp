@@ -301,7 +301,9 @@ TEST(Tuft, TenThousandRandomPosesStayFiniteAndBounded) {
             for (ContactPlane& p : planes) p.origin.z += 1e-3 * random.uniform();
             const TuftState state = step(tuft, pose, planes, 0.01);
             ASSERT_TRUE(std::isfinite(state.normal_force) && std::isfinite(glm::length(state.force)));
-            ASSERT_LE(state.iterations, 4 * 72);  // the rod and three sub-spines
+            // The rod and three sub-spines: 60 each, the last of which may cost five trials and the
+            // eigenvectors' twelve.
+            ASSERT_LE(state.iterations, 4 * (59 + 17));
             for (const Branch& b : state.branches) {
                 for (const Section& s : b.sections) {
                     ASSERT_TRUE(std::isfinite(glm::length(s.centre)) && std::isfinite(s.a) && std::isfinite(glm::length(s.e)));
