@@ -35,6 +35,7 @@ bool same_composition(const Amounts& a, const Amounts& b) {
 struct Tile {
     Canvas& canvas;
     std::uint32_t slot;
+    float stain;
 
     Amounts at(int film, int t) const {
         Amounts a{};
@@ -62,11 +63,16 @@ struct Tile {
         put(kOpenFilm - 1, t, {});
     }
     void close(int t) {
-        const Amounts amounts = at(kOpenFilm, t);
+        Amounts amounts = at(kOpenFilm, t);
         const float sum = sum_of(amounts);
         if (!(sum > 0)) return;
         put(kOpenFilm, t, {});
         int film = top(t);
+        if (film == kSoakedFilm && stain > 0) {
+            Amounts in;
+            for (int p = 0; p < kMaxPigments; ++p) in[p] = stain * amounts[p], amounts[p] -= in[p];
+            add(kSoakedFilm, t, in);
+        }
         if (film >= kFirstDryFilm) {
             const Amounts below = at(film, t);
             if (sum < kNothing || sum_of(below) < kNothing || same_composition(amounts, below)) {
@@ -92,9 +98,10 @@ struct Tile {
 
 }  // namespace
 
-void close_films(Canvas& canvas, std::uint32_t slot, std::span<const std::uint8_t, kN> closing) {
+void close_films(Canvas& canvas, std::uint32_t slot, std::span<const std::uint8_t, kN> closing,
+                 float stain) {
     if (!canvas.has_film(slot, kOpenFilm)) return;
-    Tile tile{canvas, slot};
+    Tile tile{canvas, slot, stain};
     for (int t = 0; t < kN; ++t)
         if (closing[t]) tile.close(t);
     tile.drop_empty_planes();

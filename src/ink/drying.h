@@ -14,9 +14,11 @@ namespace tuft::ink {
 /// composition as the one under it joins it, which changes nothing either (a mixture layered
 /// on itself is itself, thicker). A texel whose dry films are used up makes room by merging
 /// its two lowest into one mixture, whose colour may change by what still shows of it through
-/// all the others. Liquid is not regarded. Slots may be closed by different threads.
+/// all the others. On a texel without dry films, the part `stain` goes into the soaked film
+/// instead, below and beside the rest of it. Liquid is not regarded. Slots may be closed by
+/// different threads.
 void close_films(Canvas& canvas, std::uint32_t slot,
-                 std::span<const std::uint8_t, atlas::kTileTexels> closing);
+                 std::span<const std::uint8_t, atlas::kTileTexels> closing, float stain = 0);
 
 /// Lets everything dry at once: liquid goes without moving anything, every open film is
 /// closed. Returns the liquid that went, film·m².

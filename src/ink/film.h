@@ -1,0 +1,85 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "atlas/seam_links.h"
+#include "ink/canvas.h"
+
+/// The wet film: water and pigment that flow on the surface, soak in and dry.
+namespace tuft::ink {
+
+/// How liquid behaves on a surface. Amounts of liquid in film units (10 µm).
+struct FilmParams {
+    double mobility = 1e-10;         ///< D, m²/s per film unit: thick liquid flows to thin
+    double threshold = 0.1;          ///< w_c: liquid below it is held by the surface
+    double pin = 1;                  ///< film units above w_c that it takes to wet dry surface
+    double mixing = 1e-10;           ///< m²/s: pigments' own diffusion within the liquid
+    double absorbency = 0;           ///< 1/s: part of the liquid that empty pores draw in
+    double pores = 0;                ///< liquid that the substrate can hold inside; 0: none
+    double evaporation = 1.0 / 60;   ///< film units a second
+    double rim_evaporation = 0;      ///< film units · m a second, more, per metre of rim
+    double stain = 0;                ///< part of a drying film that stays in bare substrate
+    Vec3 down{0};                    ///< towards the ground, length 1; zero: no weight
+    double hold = 2.5;               ///< film units that no weight moves
+    double weight = 1.1e-4;          ///< ρ g h₀² / 3 μ for a film unit h₀: m/s at one unit of film
+    double shortest_step = 0.01;     ///< seconds; where stability asked for shorter steps, the
+                                     ///< fastest flows are held back instead
+};
+
+/// What a surface does by its substance (`Substrate`: diffusion, threshold, edge, absorbency,
+/// pores, evaporation) and the direction of weight.
+FilmParams film_params(const Substrate& substrate, const Vec3& down = Vec3{0});
+
+struct FilmReport {
+    std::size_t steps = 0;
+    std::size_t tile_steps = 0;  ///< tiles stepped, over all steps
+    double evaporated = 0;       ///< liquid that went into the air, film·m²
+};
+
+/// Steps the wet film of a canvas. Finite volumes on the texels with the metric of the
+/// surface: liquid w on the surface and s in the pores (w + s = T), pigments p of the open film:
+///
+///     ∂w/∂t = ∇·(D ⟨w − w_c⟩ ∇w − V(w) g_t) − soak − e,    V(w) = weight ⟨w − hold⟩² w
+///     ∂s/∂t = ∇·(D s ∇s) + soak,                           soak = a w (1 − s / pores)
+///     ∂p/∂t = ∇·((p/T)↑ j + D_p T ∇(p/T)),                 j: the flux of w and s together
+///
+/// ↑: of the texel the liquid comes from. Liquid goes onto a dry texel only from one that has
+/// more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
+/// about a millimetre, as surfaces are not clean). The rim evaporates faster by
+/// `rim_evaporation`, so that liquid, and pigment with it, is drawn there: dark edges.
+/// A texel with nothing wet any more is closed (drying.h).
+///
+/// The fluxes through a face are the same numbers on both its sides, over seams too, so each
+/// amount is kept to rounding. Explicit steps, as many as stability needs (never negative, the
+/// pores never beyond their capacity) for any `seconds`; only tiles that are wet or next to wet
+/// ones are looked at; the same bits for any number of threads and on every instruction set.
+/// Conductances: 1/√g (g22, −g12; −g12, g11), the mixed term by diagonal faces (Selling's
+/// decomposition), made when a tile first gets wet (5 KiB a tile). Some 5 ns per texel and step
+/// with four pigments.
+class WetFilm {
+  public:
+    /// The map must outlive it.
+    WetFilm(const atlas::TexelMap& map, atlas::SeamLinks seams);
+    ~WetFilm();
+    WetFilm(WetFilm&&) noexcept;
+
+    /// Called for a slot before anything in it changes, in the order of slots within a step.
+    using BeforeFn = std::function<void(std::uint32_t slot)>;
+
+    /// Lets `seconds` pass. Does nothing on a dry canvas.
+    FilmReport advance(Canvas& canvas, double seconds, const FilmParams& params,
+                       const BeforeFn& before = {});
+
+    /// Lets time pass until nothing is wet, at most `limit` seconds; then what is left dries
+    /// where it is. Also closes open films that never were wet.
+    FilmReport dry(Canvas& canvas, const FilmParams& params, const BeforeFn& before = {},
+                   double limit = 3600);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace tuft::ink

@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/random.h"
+#include "ink/film_tile.h"
+
+namespace tuft::ink::wet {
+namespace {
+
+constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of the border need both sides
+constexpr float kMostConductance = 4; // over the smaller of the two areas
+constexpr double kNoShear = 0.02;     // of √g g^12: less is left out, 1 % of a flux at most
+constexpr double kGrainLength = 1.2e-3, kGrainDepth = 0.4;  // metres; of the mean
+constexpr std::uint64_t kGrainSeed = 0x66696c6d;
+
+struct Spot {
+    bool valid = false;
+    Vec3 position{0};
+    double area = 0, reach = 0;
+    double m11 = 1, m12 = 0, m22 = 1;  // √g times the inverse metric
+};
+
+struct Neighbourhood {
+    std::array<Spot, kWide * kWide> spots;
+
+    Spot& at(int column, int row) { return spots[(row + 2) * kWide + column + 2]; }
+    const Spot& at(int column, int row) const { return spots[(row + 2) * kWide + column + 2]; }
+};
+
+bool together(const Spot& a, const Spot& b, double stretch = 1) {
+    return a.valid && b.valid &&
+           glm::distance(a.position, b.position) <= stretch * std::max(a.reach, b.reach);
+}
+
+/// Derivative of the position along the atlas at `s`, from the neighbours that hang together with it.
+Vec3 derivative(const Spot& before, const Spot& s, const Spot& after) {
+    const bool back = together(before, s), on = together(s, after);
+    if (back && on) return 0.5 * (after.position - before.position);
+    if (on) return after.position - s.position;
+    if (back) return s.position - before.position;
+    return Vec3{0};
+}
+
+void set_metric(Neighbourhood& n, int column, int row) {
+    Spot& s = n.at(column, row);
+    if (!s.valid) return;
+    const Vec3 x = derivative(n.at(column - 1, row), s, n.at(column + 1, row));
+    const Vec3 y = derivative(n.at(column, row - 1), s, n.at(column, row + 1));
+    const double g11 = glm::dot(x, x), g12 = glm::dot(x, y), g22 = glm::dot(y, y);
+    const double root = std::sqrt(std::max(0.0, g11 * g22 - g12 * g12));
+    if (!(root > 1e-3 * (g11 + g22))) return;  // alone or folded: as if undistorted
+    s.m11 = g22 / root;
+    s.m12 = -g12 / root;
+    s.m22 = g11 / root;
+}
+
+Neighbourhood gather(const atlas::TexelMap& map, std::uint32_t slot) {
+    Neighbourhood n;
+    const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
+    const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
+    for (int row = -2; row < kSide + 2; ++row)
+        for (int column = -2; column < kSide + 2; ++column) {
+            const atlas::TexelRef ref = atlas::texel_ref(map, x0 + column, y0 + row);
+            if (!ref.valid()) continue;
+            const float area = map.tiles[ref.slot].area[ref.texel];
+            n.at(column, row) = {.valid = area > 0,
+                                 .position = Vec3(map.position(ref.slot, ref.texel)),
+                                 .area = static_cast<double>(area),
+                                 .reach = static_cast<double>(map.reach[ref.slot])};
+        }
+    for (int row = -1; row < kSide + 1; ++row)
+        for (int column = -1; column < kSide + 1; ++column) set_metric(n, column, row);
+    return n;
+}
+
+/// The mixed term at the corner above and right of a texel; 0 where the square is broken.
+double shear(const Neighbourhood& n, int column, int row) {
+    const Spot &a = n.at(column, row), &b = n.at(column + 1, row), &c = n.at(column, row + 1),
+               &d = n.at(column + 1, row + 1);
+    if (!together(a, d, 1.5) || !together(b, c, 1.5) || !together(a, b)) return 0;
+    const double m = 0.25 * ((a.m12 + d.m12) + (b.m12 + c.m12));
+    return std::abs(m) < kNoShear ? 0 : m;
+}
+
+double lattice(std::int64_t x, std::int64_t y, std::int64_t z) {
+    const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1fffff; };
+    return uniform(kGrainSeed, bits(x) << 42 | bits(y) << 21 | bits(z));
+}
+
+/// Smooth noise of the place, mean 1.
+double grain(const Vec3& position) {
+    const Vec3 p = position / kGrainLength, floor = glm::floor(p), f = p - floor;
+    const Vec3 s = f * f * (3.0 - 2.0 * f);
+    double sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
+        const double weight = (i ? s.x : 1 - s.x) * (j ? s.y : 1 - s.y) * (k ? s.z : 1 - s.z);
+        sum += weight * lattice(static_cast<std::int64_t>(floor.x) + i, static_cast<std::int64_t>(floor.y) + j,
+                                static_cast<std::int64_t>(floor.z) + k);
+    }
+    return 1 + kGrainDepth * (2 * sum - 1);
+}
+
+float conductance(double g, const Spot& a, const Spot& b, double mean_area) {
+    const double most = static_cast<double>(kMostConductance) * std::min(a.area, b.area) / mean_area;
+    return static_cast<float>(std::clamp(g, 0.0, most));
+}
+
+float sum_at(const Geometry& g, int k) {
+    const auto up = [&](int i) { return g.gd[i] > 0 ? g.gd[i] : 0; };
+    const auto down = [&](int i) { return g.gd[i] < 0 ? -g.gd[i] : 0; };
+    return g.gx[k] + g.gx[k - 1] + g.gy[k] + g.gy[k - kRow] + up(k) + up(k - kRow - 1) + down(k - 1) +
+           down(k - kRow);
+}
+
+}  // namespace
+
+Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot) {
+    const Neighbourhood n = gather(map, slot);
+    const double mean = map.texel_size * map.texel_size;
+    Geometry g;
+    const auto field = [](int column, int row) { return (row + 1) * kRow + column + 1; };
+    for (int row = -1; row < kSide + 1; ++row)
+        for (int column = -1; column < kSide + 1; ++column) {
+            const Spot& s = n.at(column, row);
+            if (!s.valid) continue;
+            g.inverse_area[field(column, row)] = static_cast<float>(mean / s.area);
+            g.grain[field(column, row)] = static_cast<float>(grain(s.position));
+        }
+    for (int row = -1; row < kSide; ++row)
+        for (int column = -1; column < kSide; ++column) {
+            const Spot& s = n.at(column, row);
+            const int k = field(column, row);
+            if (const Spot& right = n.at(column + 1, row); row >= 0 && together(s, right)) {
+                const double sheared = 0.5 * (std::abs(shear(n, column, row)) + std::abs(shear(n, column, row - 1)));
+                g.gx[k] = conductance(0.5 * (s.m11 + right.m11) - sheared, s, right, mean);
+            }
+            if (const Spot& up = n.at(column, row + 1); column >= 0 && together(s, up)) {
+                const double sheared = 0.5 * (std::abs(shear(n, column, row)) + std::abs(shear(n, column - 1, row)));
+                g.gy[k] = conductance(0.5 * (s.m22 + up.m22) - sheared, s, up, mean);
+            }
+            const double m = shear(n, column, row);
+            if (m > 0) g.gd[k] = conductance(m, s, n.at(column + 1, row + 1), mean);
+            if (m < 0) g.gd[k] = -conductance(-m, n.at(column + 1, row), n.at(column, row + 1), mean);
+            g.diagonals |= m != 0;
+        }
+    for (int t = 0; t < kTexels; ++t) {
+        const int k = field_of(t);
+        g.inverse[t] = g.inverse_area[k];
+        g.stiffness = std::max(g.stiffness, g.inverse[t] * sum_at(g, k));
+        if (g.inverse[t] > 0) g.smallest = std::min(g.smallest, 1 / g.inverse[t]);
+    }
+    return g;
+}
+
+Slopes make_slopes(const atlas::TexelMap& map, std::uint32_t slot, const Geometry& geometry, const Vec3& down) {
+    const Neighbourhood n = gather(map, slot);
+    Slopes slopes;
+    const Vec3 d = down / map.texel_size;
+    for (int row = -1; row < kSide; ++row)
+        for (int column = -1; column < kSide; ++column) {
+            const int k = (row + 1) * kRow + column + 1;
+            const Vec3& here = n.at(column, row).position;
+            if (geometry.gx[k] > 0)
+                slopes.x[k] = geometry.gx[k] * static_cast<float>(glm::dot(d, n.at(column + 1, row).position - here));
+            if (geometry.gy[k] > 0)
+                slopes.y[k] = geometry.gy[k] * static_cast<float>(glm::dot(d, n.at(column, row + 1).position - here));
+            slopes.steepest = std::max({slopes.steepest, std::abs(slopes.x[k]), std::abs(slopes.y[k])});
+        }
+    return slopes;
+}
+
+}  // namespace tuft::ink::wet

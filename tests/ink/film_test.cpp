@@ -1,0 +1,410 @@
+#include "ink/film.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../atlas/analytic_surfaces.h"
+#include "core/parallel.h"
+#include "ink/drying.h"
+
+namespace tuft::ink {
+namespace {
+
+using atlas::TexelMap;
+constexpr int kN = atlas::kTileTexels;
+
+/// Keeps map and film together: the film looks at the map.
+struct Wet {
+    testing::Unwrapped u;
+    TexelMap map;
+    WetFilm film;
+    Canvas canvas;
+
+    explicit Wet(testing::Unwrapped unwrapped)
+        : u(std::move(unwrapped)),
+          map(atlas::build_texel_map(u.mesh, u.atlas)),
+          film(map, atlas::build_seam_links(u.mesh, u.atlas, map)),
+          canvas(map.n_slots()) {
+        for (const char* name : {"carbon", "cinnabar"}) canvas.add_pigment(load_ink(name).parts[0].pigment);
+    }
+    /// Calls fn(slot, texel, position) for every texel of the charts.
+    template <class Fn>
+    void each(Fn&& fn) const {
+        for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+            for (int t = 0; t < kN; ++t)
+                if (map.tiles[slot].piece[t] != atlas::kNoPiece) fn(slot, t, Vec3(map.position(slot, t)));
+    }
+    template <class Fn>
+    void wet(Fn&& amount, Liquid where = Liquid::film) {
+        each([&](std::uint32_t slot, int t, const Vec3& p) {
+            if (const double a = amount(p); a > 0) canvas.touch_liquid(slot, where)[t] = static_cast<float>(a);
+        });
+    }
+    template <class Fn>
+    void ink(int pigment, Fn&& amount) {
+        each([&](std::uint32_t slot, int t, const Vec3& p) {
+            if (const double a = amount(p); a > 0) canvas.touch(slot, pigment)[t] = static_cast<float>(a);
+        });
+    }
+    double water(std::uint32_t slot, int t, Liquid where = Liquid::film) const {
+        const Plane* w = canvas.liquid(slot, where);
+        return w ? static_cast<double>((*w)[t]) : 0;
+    }
+    double amount(std::uint32_t slot, int t, int pigment = 0) const {
+        double sum = 0;
+        for (int layer = 0; layer < kFilms; ++layer)
+            if (const Plane* w = canvas.film_plane(slot, layer, pigment)) sum += static_cast<double>((*w)[t]);
+        return sum;
+    }
+};
+
+/// Nothing but what a test switches on.
+FilmParams still() {
+    FilmParams p;
+    p.mobility = p.threshold = p.pin = p.mixing = p.evaporation = 0;
+    p.shortest_step = 0;
+    return p;
+}
+
+double disc(const Vec3& p, double radius, double soft = 0.3e-3) {
+    return std::clamp((radius - glm::length(p)) / soft + 0.5, 0.0, 1.0);
+}
+
+TEST(WetFilm, APointOfPigmentSpreadsAsAGaussian) {
+    // A sheet of 20 mm, texels of 0.125 mm, water all over: ∂p/∂t = D ∇²p.
+    Wet s(testing::sheet(0.02, 1, 160));
+    FilmParams p = still();
+    p.mixing = 2e-9;
+    const double sigma0 = 0.6e-3, seconds = 500, sigma2 = sigma0 * sigma0 + 2 * p.mixing * seconds;
+    s.wet([](const Vec3&) { return 1.5; });
+    const auto gaussian = [](const Vec3& at, double variance) {
+        return std::exp(-glm::dot(at, at) / (2 * variance)) / variance * 1e-6;
+    };
+    s.ink(0, [&](const Vec3& at) { return gaussian(at, sigma0 * sigma0); });
+    const double before = s.canvas.total(s.map, 0);
+    s.film.advance(s.canvas, seconds, p);
+    double worst = 0;
+    s.each([&](std::uint32_t slot, int t, const Vec3& at) {
+        if (glm::length(at) < 6e-3)  // beyond, the sheet's edge reflects
+            worst = std::max(worst, std::abs(s.amount(slot, t) - gaussian(at, sigma2)));
+    });
+    // Second order in texels, 4.8 of them to the first σ, and 2 k steps a texel: some 0.1 %.
+    EXPECT_LT(worst / gaussian(Vec3{0}, sigma2), 2e-3);
+    EXPECT_NEAR(s.canvas.total(s.map, 0) / before, 1, 1e-6);
+}
+
+TEST(WetFilm, OnASphereItFollowsTheHeatKernel) {
+    // Six charts with shear up to 30°, from the kernel of one time to that of a later one.
+    const double r = 0.01;
+    Wet s(testing::sphere(r, 60));
+    FilmParams p = still();
+    p.mixing = 2e-9;
+    const Vec3 pole = glm::normalize(Vec3{0.9, 0.5, 0.62});  // beside a corner of three charts
+    const auto kernel = [&](const Vec3& at, double t) {
+        const double x = glm::dot(glm::normalize(at), pole);
+        double sum = 0, p0 = 1, p1 = x;
+        for (int l = 0; l < 60; ++l) {
+            sum += (2 * l + 1) * std::exp(-l * (l + 1) * p.mixing * t / (r * r)) * p0;
+            const double p2 = ((2 * l + 3) * x * p1 - (l + 1) * p0) / (l + 2);
+            p0 = p1;
+            p1 = p2;
+        }
+        return std::max(0.0, sum) / 60;
+    };
+    const double t0 = 500, t1 = 1500;  // σ 1.4 to 2.4 mm, texels of 0.26 mm
+    s.wet([](const Vec3&) { return 1.0; });
+    s.ink(0, [&](const Vec3& at) { return kernel(at, t0); });
+    const double before = s.canvas.total(s.map, 0);
+    s.film.advance(s.canvas, t1 - t0, p);
+    double worst = 0, sum2 = 0, area = 0;
+    s.each([&](std::uint32_t slot, int t, const Vec3& at) {
+        const double e = (s.amount(slot, t) - kernel(at, t1)) / kernel(pole, t1);
+        const auto a = static_cast<double>(s.map.tiles[slot].area[t]);
+        worst = std::max(worst, std::abs(e));
+        sum2 += e * e * a;
+        area += a;
+    });
+    // Over eleven seams and seven corners; inside one chart it is some 0.1 %.
+    EXPECT_LT(worst, 0.04);
+    EXPECT_LT(std::sqrt(sum2 / area), 0.004);
+    EXPECT_NEAR(s.canvas.total(s.map, 0) / before, 1, 1e-6);
+}
+
+TEST(WetFilm, AMoundOfWaterSinksAsBarenblattsSolution) {
+    // ∂w/∂t = D/2 ∇²w²: w = τ^-1/2 ⟨C − r²/(16 τ^1/2)⟩ with τ = D t / 2 in units of L = 1 mm.
+    Wet s(testing::sheet(0.02, 1, 160));
+    FilmParams p = still();
+    p.mobility = 1e-9;
+    const auto mound = [](const Vec3& at, double tau) {
+        const double r2 = glm::dot(at, at) / 1e-6;
+        return std::max(0.0, 3 - r2 / (16 * std::sqrt(tau))) / std::sqrt(tau);
+    };
+    const auto seconds = [&](double tau) { return 2 * tau * 1e-6 / p.mobility; };
+    s.wet([&](const Vec3& at) { return mound(at, 0.02); });
+    const double before = s.canvas.total_liquid(s.map);
+    s.film.advance(s.canvas, seconds(0.3) - seconds(0.02), p);
+    double worst = 0;
+    s.each([&](std::uint32_t slot, int t, const Vec3& at) {
+        worst = std::max(worst, std::abs(s.water(slot, t) - mound(at, 0.3)));
+    });
+    EXPECT_LT(worst / mound(Vec3{0}, 0.3), 0.01) << "at the front, where the slope jumps";
+    EXPECT_NEAR(s.canvas.total_liquid(s.map) / before, 1, 1e-6);
+}
+
+/// Water and ink spread from a blot of 3 mm on a sheet of one chart, and of two with the seam through
+/// the blot, one turned by a quarter and put at `place` in the atlas.
+struct SeamError {
+    double worst = 0, rms = 0;  ///< of the peak
+};
+SeamError blot_over_seam(const Vec2& place) {
+    testing::Patch left = testing::flat({-8e-3, -8e-3, 0}, {8e-3, 0, 0}, {0, 16e-3, 0}, 8, 16);
+    testing::Patch right = testing::flat({0, -8e-3, 0}, {8e-3, 0, 0}, {0, 16e-3, 0}, 8, 16);
+    testing::place(left, {8.21, 8.13}, {80, 0}, {0, 160});
+    testing::place(right, place, {0, 80}, {-160, 0});
+    Wet whole(testing::sheet(0.016, 1, 160)), cut(testing::build({left, right}, 288));
+    const FilmParams p = film_params(load_substrate("bisque"));
+    for (Wet* s : {&whole, &cut}) {
+        const auto centred = [](const Vec3& at) { return disc(at - Vec3{0.7e-3, 0.2e-3, 0}, 3e-3, 3e-3); };
+        s->wet([&](const Vec3& at) { return 4 * centred(at); });
+        s->ink(0, [&](const Vec3& at) { return 2 * centred(at); });
+        s->film.advance(s->canvas, 20, p);
+    }
+    // The whole one between its texels.
+    const auto read = [&](const Vec3& at) {
+        const double x = (at.x + 8e-3) / 1e-4 + 8.21 - 0.5, y = (at.y + 8e-3) / 1e-4 + 8.13 - 0.5;
+        const double i = std::floor(x), j = std::floor(y);
+        double sum = 0;
+        for (int k = 0; k < 4; ++k) {
+            const double di = k & 1, dj = k >> 1;
+            const atlas::TexelRef ref = atlas::texel_ref(whole.map, static_cast<std::int64_t>(i + di),
+                                                         static_cast<std::int64_t>(j + dj));
+            if (ref.valid())
+                sum += (1 - std::abs(x - i - di)) * (1 - std::abs(y - j - dj)) * whole.amount(ref.slot, ref.texel);
+        }
+        return sum;
+    };
+    double worst = 0, sum2 = 0, peak = 0;
+    std::size_t n = 0;
+    cut.each([&](std::uint32_t slot, int t, const Vec3& at) {
+        if (std::max(std::abs(at.x), std::abs(at.y)) > 7.8e-3) return;
+        const double reference = read(at), e = cut.amount(slot, t) - reference;
+        peak = std::max(peak, reference);
+        worst = std::max(worst, std::abs(e));
+        sum2 += e * e;
+        ++n;
+    });
+    return {worst / peak, std::sqrt(sum2 / static_cast<double>(n)) / peak};
+}
+
+TEST(WetFilm, ABlotIsTheSameWithASeamUnderIt) {
+    // Texels of both charts where the whole sheet has its own: what differs is the seam alone.
+    const SeamError same = blot_over_seam({268.87, 8.21});
+    EXPECT_LT(same.worst, 0.01);
+    // Texels elsewhere: the blot's front, two texels wide, lies at other fractions of them.
+    const SeamError shifted = blot_over_seam({268.6, 8.37});
+    EXPECT_LT(shifted.rms, 0.006);
+}
+
+TEST(WetFilm, UniformWaterStaysUniformOverEverySeam) {
+    Wet s(testing::sphere(0.01, 48));
+    FilmParams p = still();
+    p.mobility = 1e-8;
+    p.mixing = 1e-9;
+    p.pores = 5;
+    s.wet([](const Vec3&) { return 2.0; });
+    s.ink(0, [](const Vec3&) { return 0.7; });
+    s.film.advance(s.canvas, 20, p);
+    s.each([&](std::uint32_t slot, int t, const Vec3&) {
+        ASSERT_NEAR(s.water(slot, t), 2, 1e-6);
+        ASSERT_NEAR(s.amount(slot, t), 0.7, 1e-6);
+    });
+}
+
+/// A blot on a ball, heavy, soaking and drying.
+FilmParams everything() {
+    FilmParams p = film_params(load_substrate("bisque"), {0, 0.6, -0.8});
+    p.hold = 0.5;
+    return p;
+}
+void blot(Wet& s) {
+    const Vec3 at = glm::normalize(Vec3{1, 0.9, 0.8}) * 0.01;  // over a corner of three charts
+    s.wet([&](const Vec3& p) { return 5 * disc(p - at, 3e-3); });
+    s.ink(0, [&](const Vec3& p) { return 2 * disc(p - at, 3e-3); });
+    s.ink(1, [&](const Vec3& p) { return 1.5 * disc(p - at - Vec3{0, 0, 1e-3}, 1e-3); });
+}
+
+TEST(WetFilm, KeepsEveryPigmentAndAllWater) {
+    Wet s(testing::sphere(0.01, 64));
+    blot(s);
+    const double ink0 = s.canvas.total(s.map, 0), ink1 = s.canvas.total(s.map, 1);
+    const double water = s.canvas.total_liquid(s.map);
+    FilmReport r;
+    double gone = 0;
+    for (int i = 0; i < 60; ++i) {
+        r = s.film.advance(s.canvas, 2, everything());
+        gone += r.evaporated;
+        EXPECT_NEAR((s.canvas.total_liquid(s.map) + gone) / water, 1, 1e-5);
+    }
+    gone += s.film.dry(s.canvas, everything()).evaporated;
+    EXPECT_FALSE(s.canvas.wet());
+    EXPECT_NEAR(gone / water, 1, 1e-5);
+    EXPECT_NEAR(s.canvas.total(s.map, 0) / ink0, 1, 1e-5);
+    EXPECT_NEAR(s.canvas.total(s.map, 1) / ink1, 1, 1e-5);
+}
+
+TEST(WetFilm, TenThousandStepsDriftByLessThanTheirRounding) {
+    Wet s(testing::sphere(0.002, 18));
+    blot(s);
+    s.each([&](std::uint32_t slot, int t, const Vec3& p) {
+        s.canvas.touch_liquid(slot, Liquid::film)[t] = static_cast<float>(2 + std::sin(900 * p.x));
+        s.canvas.touch(slot, 0)[t] = static_cast<float>(1 + std::cos(700 * p.y));
+    });
+    FilmParams p = everything();
+    p.evaporation = p.rim_evaporation = 0;
+    const double ink = s.canvas.total(s.map, 0), water = s.canvas.total_liquid(s.map);
+    std::size_t steps = 0;
+    while (steps < 10000) steps += s.film.advance(s.canvas, 10, p).steps;
+    EXPECT_NEAR(s.canvas.total(s.map, 0) / ink, 1, 1e-5);
+    EXPECT_NEAR(s.canvas.total_liquid(s.map) / water, 1, 1e-5);
+}
+
+TEST(WetFilm, PoresNeverHoldMoreThanTheirCapacityAndNothingGetsNegative) {
+    for (const double shortest : {0.0, 0.05}) {  // the second far beyond what stability allows
+        Wet s(testing::sphere(0.01, 48));
+        FilmParams p = film_params(load_substrate("rice-paper"), {0, 0, -1});
+        p.mobility = 2e-8;
+        p.pores = 1.2;
+        p.hold = 0;
+        p.shortest_step = shortest;
+        blot(s);
+        const double ink = s.canvas.total(s.map, 0);
+        for (int i = 0; i < 20; ++i) {
+            s.film.advance(s.canvas, 0.5, p);
+            s.each([&](std::uint32_t slot, int t, const Vec3&) {
+                ASSERT_LE(s.water(slot, t, Liquid::pores), 1.2f);
+                ASSERT_GE(s.water(slot, t, Liquid::pores), 0);
+                ASSERT_GE(s.water(slot, t), 0);
+                ASSERT_GE(s.amount(slot, t), 0);
+            });
+        }
+        EXPECT_NEAR(s.canvas.total(s.map, 0) / ink, 1, 1e-5) << shortest;
+    }
+}
+
+TEST(WetFilm, HalvingTheStepHalvesTheError) {
+    const auto after = [&](int parts) {
+        Wet s(testing::sheet(0.01, 2, 40));
+        FilmParams p = film_params(load_substrate("bisque"));
+        p.mobility = 1e-9;
+        s.wet([](const Vec3& at) { return 3 * disc(at, 2.5e-3, 1e-3); });
+        s.ink(0, [](const Vec3& at) { return 2 * disc(at, 2.5e-3, 1e-3); });
+        for (int i = 0; i < 40 * parts; ++i) s.film.advance(s.canvas, 0.24 / parts, p);
+        std::vector<double> ink;
+        s.each([&](std::uint32_t slot, int t, const Vec3&) {
+            ink.push_back(s.water(slot, t) + s.water(slot, t, Liquid::pores));
+        });
+        return ink;
+    };
+    const auto one = after(1), two = after(2), four = after(4);
+    double first = 0, second = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        first += std::abs(one[i] - two[i]);
+        second += std::abs(two[i] - four[i]);
+    }
+    EXPECT_GT(first / second, 1.6) << "first order in time";
+    EXPECT_LT(second / static_cast<double>(one.size()), 2e-3);
+}
+
+TEST(WetFilm, ThreadsDoNotChangeABit) {
+    std::uint64_t hashes[2];
+    for (int i = 0; i < 2; ++i) {
+        set_thread_count(i ? 4 : 1);
+        Wet s(testing::sphere(0.01, 64));
+        blot(s);
+        s.film.advance(s.canvas, 20, everything());
+        hashes[i] = s.canvas.hash();
+    }
+    set_thread_count(0);
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(WetFilm, ADryCanvasCostsNothingAndOnlyWetTilesDo) {
+    Wet s(testing::sheet(0.02, 1, 320));
+    s.ink(0, [](const Vec3& at) { return disc(at, 8e-3); });
+    const std::uint64_t hash = s.canvas.hash();
+    const FilmReport none = s.film.advance(s.canvas, 100, everything());
+    EXPECT_EQ(none.steps + none.tile_steps, 0u);
+    EXPECT_EQ(s.canvas.hash(), hash);
+    EXPECT_TRUE(s.canvas.plane(s.canvas.touched_slots()[0], 0)) << "an open film that never was wet stays open";
+    const std::uint32_t slot = atlas::texel_ref(s.map, 168, 168).slot;
+    s.canvas.touch_liquid(slot, Liquid::film)[8 * 16 + 8] = 1;  // a drop in the middle of a tile
+    std::size_t told = 0;
+    const FilmReport one = s.film.advance(s.canvas, 1, film_params(load_substrate("porcelain")), [&](std::uint32_t) { ++told; });
+    EXPECT_GT(one.steps, 0u);
+    EXPECT_LE(one.tile_steps, 9u + one.steps) << "its own tile, and once those round it";
+    EXPECT_LE(told, 9u);
+    EXPECT_EQ(s.film.advance(s.canvas, 300, film_params(load_substrate("porcelain"))).evaporated > 0, true);
+    EXPECT_FALSE(s.canvas.wet());
+}
+
+TEST(WetFilm, WeightDrawsThickLiquidDownAndLeavesThinWhereItIs) {
+    for (const double thickness : {2.0, 5.5}) {
+        Wet s(testing::cylinder(0.01, 0.03, 3, 8000));
+        FilmParams p = film_params(load_substrate("porcelain"), {0, 0, -1});
+        const Vec3 at{0.01, 0, 5e-3};
+        s.wet([&](const Vec3& q) { return thickness * disc(q - at, 2e-3); });
+        s.ink(0, [&](const Vec3& q) { return thickness * disc(q - at, 2e-3); });
+        s.film.advance(s.canvas, 15, p);
+        double mean = 0, lowest = 1, sum = 0;
+        s.each([&](std::uint32_t slot, int t, const Vec3& q) {
+            const double a = s.amount(slot, t) * static_cast<double>(s.map.tiles[slot].area[t]);
+            mean += a * q.z;
+            sum += a;
+            if (s.amount(slot, t) > 0.3) lowest = std::min(lowest, q.z);
+        });
+        if (thickness < 2.5) {
+            EXPECT_NEAR(mean / sum, 5e-3, 0.05e-3);
+        } else {
+            EXPECT_LT(mean / sum, 4.5e-3);
+            EXPECT_LT(lowest, 1e-3) << "below the blot, which ends at 3 mm";
+        }
+    }
+}
+
+TEST(WetFilm, ADryingSpotHasADarkRim) {
+    Wet s(testing::sheet(0.012, 1, 120));
+    s.wet([](const Vec3& at) { return 3 * disc(at, 3e-3); });
+    s.ink(0, [](const Vec3& at) { return disc(at, 3e-3); });
+    FilmParams p = film_params(load_substrate("bisque"));
+    p.pores = p.absorbency = p.stain = 0;
+    s.film.dry(s.canvas, p);
+    double middle = 0, rim = 0;
+    s.each([&](std::uint32_t slot, int t, const Vec3& at) {
+        if (glm::length(at) < 1e-3) middle = std::max(middle, s.amount(slot, t));
+        rim = std::max(rim, s.amount(slot, t));
+    });
+    EXPECT_GT(rim, 1.5 * middle);
+    EXPECT_LT(middle, 1);
+}
+
+TEST(WetFilm, CleanWaterPushesInkAway) {
+    // A drop of water into a damp wash: a backrun, lighter inside and darker at its front.
+    Wet s(testing::sheet(0.016, 1, 160));
+    s.wet([](const Vec3&) { return 0.8; });
+    s.ink(0, [](const Vec3&) { return 1.0; });
+    s.wet([](const Vec3& at) { return 0.8 + 5 * disc(at, 1.5e-3); });
+    FilmParams p = film_params(load_substrate("bisque"));
+    p.pores = p.absorbency = 0;
+    s.film.advance(s.canvas, 10, p);
+    double middle = 1, front = 0;
+    s.each([&](std::uint32_t slot, int t, const Vec3& at) {
+        if (glm::length(at) < 1e-3) middle = std::min(middle, s.amount(slot, t));
+        if (glm::length(at) < 6e-3) front = std::max(front, s.amount(slot, t));
+    });
+    EXPECT_LT(middle, 0.7);
+    EXPECT_GT(front, 1.1);
+}
+
+}  // namespace
+}  // namespace tuft::ink
