@@ -25,11 +25,20 @@ struct Atlas {
 
 enum class UvPolicy { automatic, keep, renew };
 
+/// Edges that no chart may cross, besides the borders of the mesh.
+struct AskedSeams {
+    bool groups = false;     ///< between the face groups of the file
+    double sharp_angle = 0;  ///< radians: edges bent by more; 0: none
+
+    bool any() const { return groups || sharp_angle > 0; }
+};
+
 struct UnwrapOptions {
     std::uint32_t size = 0;        ///< texels per side; 0: from texel_size
     double texel_size = 0;         ///< metres; used when size is 0. Both 0: size 2048
     std::uint32_t gutter = 4;      ///< texels
     UvPolicy uvs = UvPolicy::automatic;  ///< automatic: the file's UVs if they are valid
+    AskedSeams seams;              ///< makes new UVs unless `UvPolicy::keep` is asked
     std::uint32_t max_size = 16384;
     ProgressFn progress;
 };
@@ -55,8 +64,9 @@ struct Unwrapped {
 
 /// Gives every triangle its place in the texture. Any mesh made by `build_surface`
 /// gets an atlas without flips or overlaps. Throws `Error` when the size cannot
-/// hold the charts with their gutters, saying which size would, and when
-/// `UvPolicy::keep` is asked of UVs that are absent or overlap.
+/// hold the charts with their gutters, saying which size would, when
+/// `UvPolicy::keep` is asked of UVs that are absent or overlap, and when seams are to
+/// follow face groups that the mesh does not have.
 Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& options = {});
 
 /// Measures any atlas; `seconds` stays empty.

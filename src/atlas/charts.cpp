@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "atlas/asked_seams.h"
 #include "atlas/hull.h"
 #include "atlas/meter.h"
 #include "atlas/seam_graph.h"
@@ -191,6 +192,7 @@ CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& opti
                         const ProgressFn& progress) {
     CutMesh cut;
     cut.twin = twin_half_edges(mesh);
+    cut_asked_seams(mesh, options.seams, cut.twin);
     cut.glued = cut.twin;
     cut.place.resize(mesh.n_triangles());
     cut.unit = std::max(std::sqrt(mesh::surface_area(mesh)), 1e-30);

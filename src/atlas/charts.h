@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "atlas/atlas.h"
 #include "atlas/chart_mesh.h"
 #include "atlas/flatten.h"
 #include "core/progress.h"
@@ -19,6 +20,7 @@ struct ChartOptions {
                             ///< than a page that charts cover to a half is wide
     std::uint32_t triangles = 200000;  ///< of a chart, at most: what laying it flat costs grows
                                        ///< faster than they do
+    AskedSeams seams;       ///< no chart crosses these
     double gap = 0;         ///< that parts of a chart's border keep from each other, over the unit
 };
 
@@ -35,7 +37,7 @@ struct FlatChart {
 
 struct CutMesh {
     double unit = 1;                   ///< metres: square root of the surface's area
-    std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges of the mesh
+    std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges, kNone where a seam was asked for
     std::vector<std::uint32_t> glued;  ///< the same, kNone at seams
     std::vector<FlatChart> charts;
     std::vector<std::uint32_t> place;  ///< [n_triangles] room for `make_chart`

@@ -98,6 +98,7 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     Unwrapped out;
     Stopwatch watch;
     ChartOptions chart_options;
+    chart_options.seams = options.seams;
     // Parts of one chart keep a gutter from each other like two charts do: charts cover
     // about two thirds of the page.
     const double side = std::sqrt(mesh::surface_area(mesh));
@@ -164,7 +165,8 @@ Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& given) {
     UnwrapOptions options = given;
     if (options.size == 0 && options.texel_size == 0) options.size = 2048;
     check_options(mesh, options);
-    if (options.uvs != UvPolicy::renew) {
+    if (options.uvs == UvPolicy::keep ||
+        (options.uvs == UvPolicy::automatic && !options.seams.any())) {
         const FileUvs found = read_file_uvs(mesh, options);
         if (found.fault.empty()) return {found.atlas, measure(mesh, found.atlas)};
         if (options.uvs == UvPolicy::keep)

@@ -54,6 +54,12 @@ void add_surface(CLI::App* app, Surface& s, bool with_unit = true) {
     auto* renew = app->add_flag("--new-uv", s.new_uv, "make a new atlas even if the file has UVs");
     auto* keep = app->add_flag("--keep-uv", s.keep_uv, "use the file's UVs or fail");
     renew->excludes(keep);
+    app->add_option("--seams", s.seams,
+                    "where the atlas must be cut: free, groups (of faces), sharp (edges), both")
+        ->check(CLI::IsMember({"free", "groups", "sharp", "both"}))
+        ->excludes(keep);
+    app->add_option("--sharp-angle", s.sharp_angle_deg, "degrees from which an edge is sharp")
+        ->check(CLI::Range(1.0, 180.0));
     add_store(app, s);
 }
 

@@ -16,6 +16,8 @@ struct Surface {
     std::uint32_t atlas_size = 0;   ///< texels per side; 0: from texel_size_mm or the default
     double texel_size_mm = 0;
     bool new_uv = false, keep_uv = false;
+    std::string seams = "free";     ///< free | groups | sharp | both
+    double sharp_angle_deg = 40;
     std::string texel_store = "auto";  ///< auto | float | packed
     std::string substrate = "porcelain";
 };

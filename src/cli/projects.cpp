@@ -32,7 +32,8 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
             surface.atlas_size = project.model.atlas.size;
         return load_model(a.model, surface, console);
     }
-    if (surface.atlas_size == 0 && surface.texel_size_mm == 0 && !surface.new_uv)
+    if (surface.atlas_size == 0 && surface.texel_size_mm == 0 && !surface.new_uv &&
+        surface.seams == "free")
         return std::move(project.model);
     stroke::ModelOptions options = model_options(surface, console);
     return stroke::rescale_model(std::move(project.model), options);

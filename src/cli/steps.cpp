@@ -25,6 +25,9 @@ stroke::ModelOptions model_options(const Surface& s, Console& console) {
     options.repair.metres_per_unit = metres_per(s.unit).value_or(kMillimetre);
     options.unwrap.size = s.atlas_size;
     options.unwrap.texel_size = s.texel_size_mm * kMillimetre;
+    options.unwrap.seams.groups = s.seams == "groups" || s.seams == "both";
+    if (s.seams == "sharp" || s.seams == "both")
+        options.unwrap.seams.sharp_angle = s.sharp_angle_deg * kDegree;
     options.unwrap.uvs = s.new_uv    ? atlas::UvPolicy::renew
                          : s.keep_uv ? atlas::UvPolicy::keep
                                      : atlas::UvPolicy::automatic;

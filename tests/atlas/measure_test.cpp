@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -140,6 +141,11 @@ TEST(Measure, UvsThatAreNotNumbersAreLeftOut) {
     }
 }
 
+double twice_signed_area(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
+    const Vec2 u = Vec2(b) - Vec2(a), v = Vec2(c) - Vec2(a);
+    return u.x * v.y - u.y * v.x;
+}
+
 // Triangles that share edges split the texels among them: none is covered twice, none is
 // left out, at page sizes that are no powers of two and with corners on texel centres.
 TEST(Measure, NeighboursNeverShareATexel) {
@@ -147,23 +153,30 @@ TEST(Measure, NeighboursNeverShareATexel) {
     for (const std::uint32_t size : {7u, 64u, 333u}) {
         constexpr int n = 12;
         std::vector<Vec2f> p;
+        std::vector<std::array<int, 3>> faces;
         for (int j = 0; j <= n; ++j)
-            for (int i = 0; i <= n; ++i) {
-                Vec2f q(float(i) / n, float(j) / n);
-                if (i % n && j % n) {
-                    q += Vec2f(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)) / float(n);
-                    if (random.uniform() < 0.3)
-                        q = (glm::floor(q * float(size)) + 0.5f) / float(size);
-                }
-                p.push_back(q);
-            }
-        std::vector<Vec2f> uvs;
+            for (int i = 0; i <= n; ++i) p.push_back(Vec2f(float(i) / n, float(j) / n));
         for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i) {
                 const int a = j * (n + 1) + i;
-                for (const int v : {a, a + 1, a + n + 2, a, a + n + 2, a + n + 1})
-                    uvs.push_back(p[std::size_t(v)]);
+                faces.push_back({a, a + 1, a + n + 2});
+                faces.push_back({a, a + n + 2, a + n + 1});
             }
+        for (int j = 1; j < n; ++j)
+            for (int i = 1; i < n; ++i) {
+                Vec2f& q = p[std::size_t(j * (n + 1) + i)];
+                const Vec2f before = q;
+                const double x = random.uniform(-0.3, 0.3), y = random.uniform(-0.3, 0.3);
+                q += Vec2f(float(x), float(y)) / float(n);
+                if (random.uniform() < 0.3) q = (glm::floor(q * float(size)) + 0.5f) / float(size);
+                const bool folded = std::any_of(faces.begin(), faces.end(), [&](const auto& f) {
+                    return twice_signed_area(p[f[0]], p[f[1]], p[f[2]]) < 1e-6;
+                });
+                if (folded) q = before;
+            }
+        std::vector<Vec2f> uvs;
+        for (const auto& f : faces)
+            for (const int v : f) uvs.push_back(p[std::size_t(v)]);
         const Coverage coverage = cover(uvs, {}, size);
         EXPECT_EQ(coverage.covered, std::size_t{size} * size);
         EXPECT_EQ(coverage.twice, 0u);

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "atlas/atlas.h"
 #include "atlas/atlas_picture.h"
+#include "atlas/coverage.h"
+#include "atlas/half_edges.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel.h"
@@ -148,6 +151,133 @@ TEST(Unwrap, ChartsDoNotDependOnTheUnit) {
             EXPECT_NEAR(static_cast<double>(unwrap(scaled(m, factor), {}).report.charts), charts,
                         0.05 * charts);
     }
+}
+
+/// The unit cube, each face a grid of n × n cells, edges bent by 90°.
+TriangleMesh box(int n) {
+    std::map<std::array<int, 3>, std::uint32_t> index;
+    std::vector<Vec3f> p;
+    test::Triangles t;
+    const auto at = [&](const std::array<int, 3>& g) {
+        const auto [it, is_new] = index.try_emplace(g, std::uint32_t(p.size()));
+        if (is_new) p.push_back(Vec3f(g[0], g[1], g[2]) / float(n));
+        return it->second;
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        for (const int side : {0, n})
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) {
+                    const auto corner = [&](int a, int b) {
+                        std::array<int, 3> g{};
+                        g[axis] = side;
+                        g[(axis + 1) % 3] = a;
+                        g[(axis + 2) % 3] = b;
+                        return at(g);
+                    };
+                    std::array<std::uint32_t, 4> q{corner(i, j), corner(i + 1, j),
+                                                   corner(i + 1, j + 1), corner(i, j + 1)};
+                    if (side == 0) std::swap(q[1], q[3]);
+                    t.push_back({q[0], q[1], q[2]});
+                    t.push_back({q[0], q[2], q[3]});
+                }
+    return test::finish_mesh(p, t);
+}
+
+/// Inner edges with `asked` true must part two charts.
+template <class Asked>
+void expect_parted(const TriangleMesh& m, const Atlas& atlas, Asked&& asked) {
+    const std::vector<std::uint32_t> twin = twin_half_edges(m);
+    std::size_t edges = 0;
+    for (std::uint32_t h = 0; h < twin.size(); ++h) {
+        if (twin[h] == kNone || !asked(h / 3, twin[h] / 3)) continue;
+        ++edges;
+        EXPECT_NE(atlas.triangle_chart[h / 3], atlas.triangle_chart[twin[h] / 3]) << h;
+    }
+    EXPECT_GT(edges, 0u);
+}
+
+TEST(Unwrap, SeamsFollowSharpEdgesWhereAsked) {
+    const TriangleMesh cube = box(8);
+    const TriangleMesh roof = test::grid_mesh(20, 20, false, false, [](double u, double v) {
+        return Vec3(u, v, -0.25 * std::abs(u - 0.5));  // bent by 28° along its ridge
+    });
+    UnwrapOptions options;
+    options.size = 512;
+    EXPECT_EQ(unwrap(roof, options).report.charts, 1u);
+    for (const TriangleMesh* m : {&cube, &roof}) {
+        options.seams.sharp_angle = 0.35;  // 20°
+        const Unwrapped u = unwrap(*m, options);
+        expect_sound(*m, u);
+        EXPECT_EQ(u.report.charts, m == &cube ? 6u : 2u);
+        expect_parted(*m, u.atlas, [&](std::uint32_t s, std::uint32_t t) {
+            return glm::dot(m->corner_normals[3 * s], m->corner_normals[3 * t]) < 0.93f;
+        });
+    }
+    options.seams.sharp_angle = 0.6;  // 34°
+    EXPECT_EQ(unwrap(roof, options).report.charts, 1u);
+}
+
+TEST(Unwrap, SeamsFollowFaceGroupsWhereAsked) {
+    const std::string text = [] {
+        std::string obj;
+        for (int j = 0; j <= 20; ++j)
+            for (int i = 0; i <= 20; ++i)
+                obj += "v " + std::to_string(i) + " " + std::to_string(j) + " 0\n";
+        for (int part = 0; part < 4; ++part) {
+            obj += part % 2 ? "g left" : "g right";
+            obj += part / 2 ? "\nusemtl red\n" : "\nusemtl blue\n";
+            for (int j = 0; j < 20; ++j)
+                for (int i = 0; i < 20; ++i) {
+                    if ((i < 7) != (part % 2 == 1) || (j < 4) != (part / 2 == 1)) continue;
+                    const int a = 21 * j + i + 1;
+                    obj += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " +
+                           std::to_string(a + 22) + " " + std::to_string(a + 21) + "\n";
+                }
+        }
+        return obj;
+    }();
+    TriangleMesh m = mesh::build_surface(mesh::read_obj({text.begin(), text.end()}, "g.obj")).mesh;
+    ASSERT_GE(m.group_names.size(), 4u);
+    UnwrapOptions options;
+    options.size = 512;
+    EXPECT_EQ(unwrap(m, options).report.charts, 1u);
+    options.seams.groups = true;
+    const Unwrapped u = unwrap(m, options);
+    expect_sound(m, u);
+    EXPECT_EQ(u.report.charts, 4u);
+    expect_parted(m, u.atlas, [&](std::uint32_t s, std::uint32_t t) {
+        return m.triangle_groups[s] != m.triangle_groups[t];
+    });
+    m.triangle_groups.clear();
+    EXPECT_THROW(unwrap(m, options), Error);
+    options.seams.sharp_angle = 0.5;  // both: what there is
+    EXPECT_EQ(unwrap(m, options).report.charts, 1u);
+}
+
+// The car has creases that end in smooth metal: slits, which must not become annuli.
+TEST(Unwrap, AskedSeamsKeepTheInvariantsOfARealModel) {
+    const TriangleMesh m = model("car.ply");
+    UnwrapOptions options;
+    options.size = 1024;
+    options.seams.sharp_angle = 0.5;
+    const Unwrapped u = unwrap(m, options);
+    expect_sound(m, u);
+    // A chart may lie on both sides of a crease that ends inside it, but no edge glues them.
+    const std::vector<std::uint32_t> twin = twin_half_edges(m);
+    const std::vector<std::uint8_t> seam = uv_seams(twin, u.atlas.corner_uvs);
+    std::size_t sharp = 0, crossed = 0;
+    for (std::uint32_t h = 0; h < twin.size(); ++h) {
+        if (twin[h] == kNone) continue;
+        const auto normal = [&](std::uint32_t t) {
+            const Vec3 a = m.position(t, 0);
+            return glm::normalize(glm::cross(m.position(t, 1) - a, m.position(t, 2) - a));
+        };
+        if (glm::dot(normal(h / 3), normal(twin[h] / 3)) > std::cos(0.5) - 1e-9) continue;
+        ++sharp;
+        crossed += !seam[h];
+    }
+    EXPECT_GT(sharp, 1000u);
+    EXPECT_EQ(crossed, 0u);
 }
 
 TEST(Unwrap, TexelSizeIsKept) {
