@@ -100,9 +100,9 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, const 
     work.painting->use_substrate(substrate);
     use_presets(project, *work.painting);
     std::vector<stroke::Stroke> strokes = project.strokes();
-    auto saved = project.load_canvas(work.model->texels.n_slots());
-    if (saved && !strokes.empty() && saved->stroke_id == strokes.back().id)
-        work.painting->adopt(std::move(strokes), std::move(saved->canvas));
+    auto saved = project.load_canvases(work.model->texels.n_slots());
+    if (saved && stroke::fits(strokes, saved->stroke_id))
+        work.painting->adopt(std::move(strokes), std::move(saved->layers), saved->stroke_id);
     else
         work.painting->replay(std::move(strokes), progress);
     work.texture = std::make_unique<Texture>(*work.painting, progress);

@@ -305,11 +305,12 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
     auto painting = std::make_unique<stroke::Painting>(*work_.model);
     painting->use_substrate(old.substrate());
     for (const stroke::Stroke& s : strokes) {
-        painting->use_brush(old.brush(s.trace.brush));
+        if (stroke::has_brush(s.action)) painting->use_brush(old.brush(s.trace.brush));
         if (!s.trace.ink.empty()) painting->use_ink(old.ink(s.trace.ink));
     }
     painting->replay(std::move(strokes), progress("Painting again"));
-    for (const std::uint32_t slot : old.canvas().touched_slots()) painting->canvas().mark_dirty(slot);
+    for (const stroke::LayerTexels& layer : old.canvases())
+        for (const std::uint32_t slot : layer.canvas->touched_slots()) painting->canvas().mark_dirty(slot);
     work_.painting = std::move(painting);
     groups_.assign(work_.painting->journal().strokes().size(), 1);
     undone_groups_.clear();
@@ -321,7 +322,7 @@ void Painter::export_model(const ExportModel& command) {
     progress("Exporting")("", 0);
     ink::ComposeOptions compose = work_.painting->compose_options();
     compose.progress = progress("Exporting");
-    io::ModelMaps maps = io::make_maps(work_.painting->canvas(), model.texels, work_.painting->substrate(), compose);
+    io::ModelMaps maps = io::make_maps(work_.painting->stack(), model.texels, work_.painting->substrate(), compose);
     if (!command.height) maps.height = {};
     if (!command.orm) maps.orm = {};
     io::export_model(command.path, *model.mesh, model.atlas, maps,

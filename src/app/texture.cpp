@@ -53,22 +53,23 @@ Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
     report(progress, "picture of the ink", 0);
     const ink::ComposeOptions options = painting.compose_options();
     report(progress, "picture of the ink", 0.6);
-    colour_ = ink::compose_srgb8(painting.canvas(), model.texels, painting.substrate(), options);
+    colour_ = ink::compose_srgb8(painting.stack(), model.texels, painting.substrate(), options);
     padded_ = model.texels.tiles_per_side * atlas::kTile;
     height_.assign(static_cast<std::size_t>(colour_.size) * colour_.size, 0);
-    refresh_heights(painting.canvas().touched_slots(), painting);
+    refresh_heights(painting.stack().touched_slots(), painting);
     report(progress, "picture of the ink", 1);
 }
 
 void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
     const atlas::TexelMap& map = painting.model().texels;
+    const ink::Stack stack = painting.stack();
     const ink::GutterPlan& plan = *painting.compose_options().seams;
     const std::size_t size = colour_.size;
     for (const std::uint32_t slot : slots) {
         const std::size_t tile = map.tile_of_slot[slot];
         const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
-        const bool inked = painting.canvas().touched(slot);
-        const ink::TileLook look = inked ? ink::look_of_tile(painting.canvas(), slot, painting.substrate()) : ink::TileLook{};
+        const bool inked = stack.touched(slot);
+        const ink::TileLook look = inked ? ink::look_of_tile(stack, slot, painting.substrate()) : ink::TileLook{};
         for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
             const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
             if (x < size && y < size && map.tiles[slot].piece[t] != atlas::kNoPiece)
@@ -135,7 +136,7 @@ std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> 
     std::vector<render::TilePixels> tiles;
     if (slots.empty()) return tiles;
     const stroke::Model& model = painting.model();
-    ink::refresh_srgb8(colour_, slots, painting.canvas(), model.texels, painting.substrate(),
+    ink::refresh_srgb8(colour_, slots, painting.stack(), model.texels, painting.substrate(),
                        painting.compose_options());
     const ink::GutterPlan& plan = *painting.compose_options().seams;
     refresh_heights(slots, painting);

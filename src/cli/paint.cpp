@@ -72,6 +72,7 @@ int run(const Paint& a) {
                                       .record_forces = !a.forces.empty()});
     // Unknown names are found before any paint flows.
     for (const stroke::Stroke& s : strokes) {
+        if (!stroke::has_brush(s.action)) continue;
         painting.brush(s.trace.brush);
         painting.ink(s.trace.ink);
     }
@@ -98,7 +99,7 @@ int run(const Paint& a) {
         throw;
     }
     if (project && !strokes.empty())
-        project->save_canvas(painting.canvas(), painting.journal().strokes().back().id);
+        project->save_canvases(painting.canvases(), painting.journal().strokes().back().id);
     const double painted = seconds_since(painting_start);
     console.clear();
     const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal());
@@ -125,7 +126,7 @@ int run(const Paint& a) {
             j["strokes"].push_back(to_json(reports[i], *done[i]));
         j["stamps"] = stamps;
         j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
-        j["canvas_hash"] = fmt::format("{:016x}", painting.canvas().hash());
+        j["canvas_hash"] = fmt::format("{:016x}", painting.hash());
         j["seconds"] = {{"to_first_stamp", first_stamp}, {"preparing", prepared},
                         {"painting", painted}, {"total", seconds_since(start)}};
         j["peak_mb"] = peak_megabytes();

@@ -55,6 +55,7 @@ int run(const Replay& a) {
     for (stroke::Stroke& s : strokes) {
         if (!a.brush.empty()) s.trace.brush = a.brush;
         if (!a.ink.empty()) s.trace.ink = a.ink;
+        if (!stroke::has_brush(s.action)) continue;
         painting.brush(s.trace.brush);
         painting.ink(s.trace.ink);
     }
@@ -71,7 +72,7 @@ int run(const Replay& a) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
                                         project->unit, painting, strokes);
         out.append(painting.journal().strokes());
-        if (!strokes.empty()) out.save_canvas(painting.canvas(), strokes.back().id);
+        if (!strokes.empty()) out.save_canvases(painting.canvases(), strokes.back().id);
     }
     write_outputs(outputs, painting, console);
     console.clear();
@@ -80,7 +81,7 @@ int run(const Replay& a) {
                          {"strokes", reports.size()},
                          {"missed", missed},
                          {"atlas", to_json(model.atlas, model.atlas_report)},
-                         {"canvas_hash", fmt::format("{:016x}", painting.canvas().hash())}};
+                         {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
         std::cout << j.dump(2) << '\n';
     } else {
         fmt::print("replayed {} strokes, {} of them miss the model; atlas {} x {}\n", reports.size(),
@@ -101,10 +102,10 @@ int run(const Export& a) {
     const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
     if (extension == ".png") {
-        io::write_image(a.output, io::view_of(ink::compose_srgb8(painting.canvas(), project->model.texels,
+        io::write_image(a.output, io::view_of(ink::compose_srgb8(painting.stack(), project->model.texels,
                                                                  painting.substrate(), compose)));
     } else if (extension == ".exr") {
-        io::write_image(a.output, io::view_of(ink::compose_linear(painting.canvas(), project->model.texels,
+        io::write_image(a.output, io::view_of(ink::compose_linear(painting.stack(), project->model.texels,
                                                                   painting.substrate(), compose)),
                         {.srgb = false});
     } else {

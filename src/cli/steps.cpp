@@ -178,7 +178,7 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
     ink::AtlasMap<float> colour, height;
     std::vector<Vec3f> texels;
     if (painting && !painting->journal().empty()) {
-        colour = ink::compose_linear(painting->canvas(), model.texels, substrate,
+        colour = ink::compose_linear(painting->stack(), model.texels, substrate,
                                      painting->compose_options());
         const auto* first = reinterpret_cast<const Vec3f*>(colour.texels.data());
         look.maps.size = colour.size;
@@ -213,7 +213,7 @@ void check_outputs(const Outputs& o) {
 void write_outputs(const Outputs& o, const stroke::Painting& painting, Console& console) {
     const stroke::Model& model = painting.model();
     if (!o.exported.empty()) {
-        const io::ModelMaps maps = io::make_maps(painting.canvas(), model.texels, painting.substrate(),
+        const io::ModelMaps maps = io::make_maps(painting.stack(), model.texels, painting.substrate(),
                                                  painting.compose_options());
         io::export_model(o.exported, *model.mesh, model.atlas, maps,
                          {.unit = o.unit, .progress = console.progress()});
@@ -237,6 +237,7 @@ io::Project start_project(const fs::path& path, const std::string& source, const
                .substrate = ink::substrate_toml(painting.substrate())});
     std::set<std::string> brushes, inks;
     for (const stroke::Stroke& s : strokes) {
+        if (!stroke::has_brush(s.action)) continue;
         if (brushes.insert(s.trace.brush).second)
             project.put_brush({s.trace.brush, brush::preset_toml(painting.brush(s.trace.brush))});
         if (inks.insert(s.trace.ink).second)
@@ -271,10 +272,9 @@ void use_presets(const io::Project& project, stroke::Painting& painting) {
 
 void show_strokes(const io::Project& project, stroke::Painting& painting, Console& console) {
     std::vector<stroke::Stroke> strokes = project.strokes();
-    std::optional<io::SavedCanvas> saved = project.load_canvas(painting.model().texels.n_slots());
-    const std::uint64_t last = strokes.empty() ? 0 : strokes.back().id;
-    if (saved && saved->stroke_id == last) {
-        painting.adopt(std::move(strokes), std::move(saved->canvas));
+    std::optional<io::SavedCanvases> saved = project.load_canvases(painting.model().texels.n_slots());
+    if (saved && stroke::fits(strokes, saved->stroke_id)) {
+        painting.adopt(std::move(strokes), std::move(saved->layers), saved->stroke_id);
         return;
     }
     painting.replay(std::move(strokes), console.progress());

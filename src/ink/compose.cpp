@@ -201,22 +201,24 @@ void refresh(AtlasMap<T>& image, std::span<const std::uint32_t> slots, const atl
 }
 
 template <class T, int C, class Fn, class Code>
-AtlasMap<T> compose(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<T> compose(const Stack& stack, const atlas::TexelMap& map,
                     const std::array<T, C>& background, const ComposeOptions& options, Fn&& look,
                     const Code& code) {
     AtlasMap<T> image{.size = map.size, .channels = C, .texels = {}};
     image.texels.resize(std::size_t{map.size} * map.size * C);
     for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i] = background[i % C];
-    refresh<T, C>(image, canvas.touched_slots(), map, options, look, code);
+    refresh<T, C>(image, stack.touched_slots(), map, options, look, code);
     return image;
 }
 
-/// Film units on a texel, all films and pigments together.
-float film_on(const Canvas& canvas, std::uint32_t slot, int texel) {
+/// Film units on a texel, all films and pigments together, of each layer what is seen of it.
+float film_on(const Stack& stack, std::uint32_t slot, int texel) {
     float sum = 0;
-    for (int film = kFirstDryFilm; film < kFilms; ++film)
-        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
-            if (const Plane* w = canvas.film_plane(slot, film, p)) sum += (*w)[texel];
+    for (const LayerView& layer : stack.layers)
+        for (int film = kFirstDryFilm; film < kFilms; ++film)
+            for (int p = 0; p < static_cast<int>(layer.canvas->pigments().size()); ++p)
+                if (const Plane* w = layer.canvas->film_plane(slot, film, p))
+                    sum += layer.opacity * (*w)[texel];
     return sum;
 }
 
@@ -229,31 +231,31 @@ TileOut<std::uint8_t, 3> srgb8_of(const TileLook& look) {
 
 }  // namespace
 
-AtlasMap<std::uint8_t> compose_srgb8(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map,
                                      const Substrate& substrate, const ComposeOptions& options) {
     std::array<std::uint8_t, 3> background;
     for (int b = 0; b < 3; ++b) background[b] = encode8(substrate.reflectance[b]);
     return compose<std::uint8_t, 3>(
-        canvas, map, background, options,
-        [&](std::uint32_t slot) { return srgb8_of(look_of_tile(canvas, slot, substrate)); },
+        stack, map, background, options,
+        [&](std::uint32_t slot) { return srgb8_of(look_of_tile(stack, slot, substrate)); },
         SrgbCode{});
 }
 
 void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots,
-                   const Canvas& canvas, const atlas::TexelMap& map, const Substrate& substrate,
+                   const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                    const ComposeOptions& options) {
     refresh<std::uint8_t, 3>(
         image, slots, map, options,
-        [&](std::uint32_t slot) { return srgb8_of(look_of_tile(canvas, slot, substrate)); },
+        [&](std::uint32_t slot) { return srgb8_of(look_of_tile(stack, slot, substrate)); },
         SrgbCode{});
 }
 
-AtlasMap<float> compose_linear(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map,
                                const Substrate& substrate, const ComposeOptions& options) {
     return compose<float, 3>(
-        canvas, map, substrate.reflectance, options,
+        stack, map, substrate.reflectance, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(canvas, slot, substrate);
+            const TileLook look = look_of_tile(stack, slot, substrate);
             TileOut<float, 3> out;
             for (int t = 0; t < kN; ++t)
                 for (int b = 0; b < 3; ++b) out[t][b] = look.colour[b][t];
@@ -262,12 +264,12 @@ AtlasMap<float> compose_linear(const Canvas& canvas, const atlas::TexelMap& map,
         FloatCode{});
 }
 
-AtlasMap<float> compose_height(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
                                const ComposeOptions& options) {
     return compose<float, 1>(
-        canvas, map, {0.0f}, options,
+        stack, map, {0.0f}, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(canvas, slot, Substrate{});
+            const TileLook look = look_of_tile(stack, slot, Substrate{});
             TileOut<float, 1> out;
             for (int t = 0; t < kN; ++t) out[t][0] = look.height[t];
             return out;
@@ -275,18 +277,18 @@ AtlasMap<float> compose_height(const Canvas& canvas, const atlas::TexelMap& map,
         FloatCode{});
 }
 
-AtlasMap<std::uint8_t> compose_orm8(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map,
                                     const Substrate& substrate, const ComposeOptions& options) {
     const std::array<std::uint8_t, 3> background{255, unit8(substrate.roughness),
                                                  unit8(substrate.metallic)};
     return compose<std::uint8_t, 3>(
-        canvas, map, background, options,
+        stack, map, background, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(canvas, slot, substrate);
+            const TileLook look = look_of_tile(stack, slot, substrate);
             TileOut<std::uint8_t, 3> out;
             for (int t = 0; t < kN; ++t) {
                 // Ink hides the substrate's metal as it hides its microfacets.
-                const float film = substrate.metallic > 0 ? film_on(canvas, slot, t) : 0;
+                const float film = substrate.metallic > 0 ? film_on(stack, slot, t) : 0;
                 out[t] = {255, unit8(look.roughness[t]),
                           unit8(substrate.metallic * std::exp(-4 * film))};
             }

@@ -154,23 +154,47 @@ void lay_film(std::array<Texels, kBands>& r, TileLook& look, const TileFilm& fil
     blend_roughness(look.roughness.data(), rough.data(), thickness.data(), part.data());
 }
 
-}  // namespace
+/// What one user layer has on a tile.
+struct TileLayer {
+    std::array<TileFilm, kFilms> films;
+    std::size_t n_films = 0;
+    const Plane* water = nullptr;
+    float opacity = 1;
+    std::span<const Pigment> pigments;
+};
 
-TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
-                       std::span<const Pigment> pigments, const Substrate& substrate) {
+TileLayer layer_of(const Canvas& canvas, std::uint32_t slot, float opacity) {
+    TileLayer layer{.films = {}, .opacity = opacity, .pigments = canvas.pigments()};
+    for (int film = 0; film < kFilms; ++film) {
+        if (!canvas.has_film(slot, film)) continue;
+        TileFilm& to = layer.films[layer.n_films++];
+        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+            to.pigments[p] = canvas.film_plane(slot, film, p);
+        to.inside = film == kSoakedFilm;
+    }
+    layer.water = canvas.liquid(slot, Liquid::film);
+    return layer;
+}
+
+using Reflectances = std::array<Texels, kBands>;
+
+/// Reflectances and look of the bare substrate, below the boundary.
+void begin_look(Reflectances& r, TileLook& look, const Substrate& substrate) {
     constexpr Interface kInterface{};
-    const auto k2 = static_cast<float>(kInterface.k2);
-    TileLook look;
     look.height.fill(0);
     look.roughness.fill(substrate.roughness);
-    alignas(64) std::array<Texels, kBands> r;
     const Bands bare = bands_of_rgb(substrate.reflectance);
     for (int b = 0; b < kBands; ++b)
         r[b].fill(static_cast<float>(saunderson_inverse(
             static_cast<double>(bare[b]),
-            {.k1 = 0, .k2 = static_cast<double>(k2 * substrate.interface)}, false)));
-    for (const TileFilm& film : films)
-        if (!empty(film)) lay_film(r, look, film, pigments);
+            {.k1 = 0, .k2 = static_cast<double>(static_cast<float>(kInterface.k2) * substrate.interface)},
+            false)));
+}
+
+/// Colour and gloss under the boundary of glaze and water.
+void end_look(Reflectances& r, TileLook& look, const Plane* water, const Substrate& substrate) {
+    constexpr Interface kInterface{};
+    const auto k2 = static_cast<float>(kInterface.k2);
     alignas(64) Texels wet{};
     if (water) {
         const float grain = std::max(2 * substrate.relief, 1e-7f);
@@ -185,20 +209,82 @@ TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
     }
     into_gamut(look.colour[0].data(), look.colour[1].data(), look.colour[2].data());
     gloss(look.roughness.data(), wet.data(), substrate.interface, substrate.roughness);
+}
+
+void lay_layer(Reflectances& r, TileLook& look, const TileLayer& layer) {
+    const std::span<const TileFilm> films(layer.films.data(), layer.n_films);
+    const auto lay_all = [&](Reflectances& to) {
+        for (const TileFilm& film : films)
+            if (!empty(film)) lay_film(to, look, film, layer.pigments);
+    };
+    if (layer.opacity >= 1) {
+        lay_all(r);
+        return;
+    }
+    alignas(64) Reflectances with = r;
+    alignas(64) Texels part, height = look.height, roughness = look.roughness;
+    part.fill(layer.opacity);
+    lay_all(with);
+    for (int b = 0; b < kBands; ++b) blend(r[b].data(), with[b].data(), part.data());
+    blend(height.data(), look.height.data(), part.data());
+    blend(roughness.data(), look.roughness.data(), part.data());
+    look.height = height;
+    look.roughness = roughness;
+}
+
+}  // namespace
+
+TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
+                       std::span<const Pigment> pigments, const Substrate& substrate) {
+    TileLook look;
+    alignas(64) Reflectances r;
+    begin_look(r, look, substrate);
+    for (const TileFilm& film : films)
+        if (!empty(film)) lay_film(r, look, film, pigments);
+    end_look(r, look, water, substrate);
     return look;
 }
 
 TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate) {
-    std::array<TileFilm, kFilms> films;
-    std::size_t n = 0;
-    for (int film = 0; film < kFilms; ++film) {
-        if (!canvas.has_film(slot, film)) continue;
-        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
-            films[n].pigments[p] = canvas.film_plane(slot, film, p);
-        films[n++].inside = film == kSoakedFilm;
-    }
-    return look_of_films(std::span(films.data(), n), canvas.liquid(slot, Liquid::film), canvas.pigments(),
+    const TileLayer layer = layer_of(canvas, slot, 1);
+    return look_of_films(std::span(layer.films.data(), layer.n_films), layer.water, layer.pigments,
                          substrate);
+}
+
+TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate) {
+    TileLook look;
+    alignas(64) Reflectances r;
+    begin_look(r, look, substrate);
+    Plane sum;
+    const Plane* water = nullptr;
+    for (const LayerView& view : stack.layers) {
+        if (!(view.opacity > 0) || !view.canvas->touched(slot)) continue;
+        const TileLayer layer = layer_of(*view.canvas, slot, view.opacity);
+        lay_layer(r, look, layer);
+        if (!layer.water) continue;
+        if (!water) sum.fill(0);
+        water = &sum;
+        add_scaled(sum.data(), layer.water->data(), view.opacity);
+    }
+    end_look(r, look, water, substrate);
+    return look;
+}
+
+bool Stack::touched(std::uint32_t slot) const {
+    return std::any_of(layers.begin(), layers.end(),
+                       [slot](const LayerView& v) { return v.canvas->touched(slot); });
+}
+
+std::vector<std::uint32_t> Stack::touched_slots() const {
+    if (layers.size() == 1) return layers[0].canvas->touched_slots();
+    std::vector<std::uint32_t> slots;
+    for (const LayerView& v : layers) {
+        const std::vector<std::uint32_t> more = v.canvas->touched_slots();
+        slots.insert(slots.end(), more.begin(), more.end());
+    }
+    std::sort(slots.begin(), slots.end());
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+    return slots;
 }
 
 }  // namespace tuft::ink

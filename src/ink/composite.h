@@ -52,6 +52,34 @@ TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
 /// and the liquid on top.
 TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate);
 
+/// One user layer to be seen.
+struct LayerView {
+    const Canvas* canvas = nullptr;  ///< of the same texel map as all others
+    float opacity = 1;               ///< 0–1
+};
+
+/// User layers, the lowest first; those that are not to be seen are left out.
+struct Stack {
+    std::vector<LayerView> layers;
+
+    Stack(const Canvas& canvas) : layers{{&canvas}} {}
+    explicit Stack(std::vector<LayerView> views) : layers(std::move(views)) {}
+
+    bool touched(std::uint32_t slot) const;
+    std::vector<std::uint32_t> touched_slots() const;  ///< of any layer, ascending
+};
+
+/// The look of a slot with its layers over each other, each of opacity o: in each band
+///
+///     R ← R + o (R_with − R),
+///
+/// R_with as above with all films of the layer over R; height and roughness likewise. Colours
+/// are mixed, not film amounts scaled: a film hides exponentially, so half the amount of a
+/// black ink is still black, while half the opacity is to look half covered. Opacity 1 gives
+/// the same bits as the films of all layers in one canvas would. The water on top is the sum
+/// over the layers, o times each.
+TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate);
+
 /// A map over the whole atlas, rows from v = 0 upwards, channels interleaved.
 template <class T>
 struct AtlasMap {
@@ -82,23 +110,23 @@ struct ComposeOptions {
 
 /// Base colour, sRGB-encoded 8 bit (3 channels). Texels far from any chart have the
 /// substrate's colour.
-AtlasMap<std::uint8_t> compose_srgb8(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map,
                                      const Substrate& substrate,
                                      const ComposeOptions& options = {});
 /// Base colour, linear RGB.
-AtlasMap<float> compose_linear(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map,
                                const Substrate& substrate, const ComposeOptions& options = {});
 /// Height of the film, micrometres (1 channel).
-AtlasMap<float> compose_height(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
                                const ComposeOptions& options = {});
 /// glTF occlusion (255), roughness, metallic in R, G, B, 8 bit linear.
-AtlasMap<std::uint8_t> compose_orm8(const Canvas& canvas, const atlas::TexelMap& map,
+AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map,
                                     const Substrate& substrate, const ComposeOptions& options = {});
 
 /// Brings the tiles of `slots` and the gutter texels that depend on them up to date in a map
 /// made by `compose_srgb8` with the same arguments.
 void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots,
-                   const Canvas& canvas, const atlas::TexelMap& map, const Substrate& substrate,
+                   const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                    const ComposeOptions& options = {});
 
 /// sRGB transfer curve (IEC 61966-2-1), linear [0, 1] to encoded [0, 1] and back.

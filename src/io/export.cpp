@@ -37,11 +37,11 @@ std::vector<MapFile> map_files(const ModelMaps& maps, const ExportOptions& optio
 
 }  // namespace
 
-ModelMaps make_maps(const ink::Canvas& canvas, const atlas::TexelMap& texels,
+ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels,
                     const ink::Substrate& substrate, const ink::ComposeOptions& options) {
-    return {.base_colour = compose_srgb8(canvas, texels, substrate, options),
-            .orm = compose_orm8(canvas, texels, substrate, options),
-            .height = compose_height(canvas, texels, options)};
+    return {.base_colour = compose_srgb8(stack, texels, substrate, options),
+            .orm = compose_orm8(stack, texels, substrate, options),
+            .height = compose_height(stack, texels, options)};
 }
 
 ink::AtlasMap<std::uint8_t> normal_map(const ink::AtlasMap<float>& height, double texel_size) {

@@ -21,8 +21,8 @@ struct ModelMaps {
     ink::AtlasMap<float> height;              ///< micrometres; may be empty
 };
 
-/// All maps of a canvas; `options.seams` makes their gutters continue over seams.
-ModelMaps make_maps(const ink::Canvas& canvas, const atlas::TexelMap& texels,
+/// All maps of what is seen of a canvas or of layers; `options.seams` makes their gutters continue over seams.
+ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels,
                     const ink::Substrate& substrate, const ink::ComposeOptions& options = {});
 
 /// Tangent-space normals of a height map (micrometres over texels of `texel_size` metres):

@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 namespace tuft::io {
 namespace {
 
-constexpr Packing kTiles{.element = 4, .lag = 1, .level = 1};
 constexpr int kBusyMilliseconds = 2000;
 
 constexpr const char* kSchema = R"(
@@ -142,54 +141,6 @@ void settle_old_journal(const fs::path& path) {
         // Not a database any more: the journal is of no use to anybody.
     }
     fs::remove(journal, ec);
-}
-
-/// Projects of format 1 have only the open film.
-bool has_films(SQLite::Database& db) { return db.tableExists("films"); }
-
-/// The films of a tile besides the open one, whose `open` numbers come first.
-void store_films(SQLite::Database& db, const ink::TileSnapshot& tile, std::size_t open) {
-    if (!has_films(db))
-        db.exec("CREATE TABLE films(slot INTEGER NOT NULL, film INTEGER NOT NULL, "
-                "planes INTEGER NOT NULL, amounts BLOB NOT NULL, PRIMARY KEY(slot, film)); "
-                "PRAGMA user_version = " + std::to_string(kProjectFormat) + ";");
-    SQLite::Statement s(db, "INSERT INTO films(slot, film, planes, amounts) VALUES(?, ?, ?, ?)");
-    const float* from = tile.amounts.data() + open;
-    for (const ink::FilmPlanes& f : tile.under) {
-        const std::size_t count = std::popcount(f.planes) * atlas::kTileTexels;
-        const std::vector<char> blob = pack(from, count, kTiles);
-        s.bind(1, static_cast<std::int64_t>(tile.slot));
-        s.bind(2, static_cast<int>(f.film));
-        s.bind(3, static_cast<int>(f.planes));
-        s.bindNoCopy(4, blob.data(), static_cast<int>(blob.size()));
-        s.exec();
-        s.reset();
-        from += count;
-    }
-}
-
-void load_films(SQLite::Database& db, ink::TileSnapshot& tile, const std::string& what) {
-    SQLite::Statement s(db, "SELECT film, planes, amounts FROM films WHERE slot = ? ORDER BY film");
-    s.bind(1, static_cast<std::int64_t>(tile.slot));
-    while (s.executeStep()) {
-        const std::int64_t film = s.getColumn(0).getInt64(), planes = s.getColumn(1).getInt64();
-        if (film < 0 || film > ink::kFilms || planes <= 0 || planes > 255)
-            throw Error(what + " has a film that cannot be");
-        tile.under.push_back({static_cast<std::uint8_t>(film), static_cast<std::uint8_t>(planes)});
-        const std::size_t count = std::popcount(tile.under.back().planes) * atlas::kTileTexels;
-        tile.amounts.resize(tile.amounts.size() + count);
-        const SQLite::Column blob = s.getColumn(2);
-        unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()),
-               tile.amounts.data() + tile.amounts.size() - count, count, kTiles, what);
-    }
-}
-
-/// A pigment as an ink of its own, which has a text form already.
-std::string pigment_text(const ink::Pigment& pigment) {
-    ink::Ink alone;
-    alone.name = pigment.name;
-    alone.parts.push_back({pigment, 1.0});
-    return ink::ink_toml(alone);
 }
 
 }  // namespace
@@ -347,71 +298,37 @@ std::size_t Project::n_strokes() const {
     });
 }
 
-void Project::save_canvas(const ink::Canvas& canvas, std::uint64_t stroke_id) {
+void Project::save_canvases(std::span<const stroke::LayerTexels> layers, std::uint64_t stroke_id) {
     state_->change([&](SQLite::Database& db) {
-        db.exec("DELETE FROM tiles; DELETE FROM pigments;");
-        if (has_films(db)) db.exec("DELETE FROM films;");
-        SQLite::Statement pigment(db, "INSERT INTO pigments(plane, name, toml) VALUES(?, ?, ?)");
-        for (std::size_t p = 0; p < canvas.pigments().size(); ++p) {
-            pigment.bind(1, static_cast<std::int64_t>(p));
-            pigment.bind(2, canvas.pigments()[p].name);
-            pigment.bind(3, pigment_text(canvas.pigments()[p]));
-            pigment.exec();
-            pigment.reset();
-        }
-        SQLite::Statement tile(db, "INSERT INTO tiles(slot, planes, amounts) VALUES(?, ?, ?)");
-        for (const std::uint32_t slot : canvas.touched_slots()) {
-            const ink::TileSnapshot snapshot = canvas.snapshot(slot);
-            const std::size_t open = std::popcount(snapshot.planes) * atlas::kTileTexels;
-            const std::vector<char> blob = pack(snapshot.amounts.data(), open, kTiles);
-            tile.bind(1, static_cast<std::int64_t>(slot));
-            tile.bind(2, static_cast<int>(snapshot.planes));
-            tile.bindNoCopy(3, blob.data(), static_cast<int>(blob.size()));
-            tile.exec();
-            tile.reset();
-            if (!snapshot.under.empty()) store_films(db, snapshot, open);
-        }
-        put_meta(db, "tiles_slots", std::to_string(canvas.n_slots()));
+        const auto [slots, hash] = store_canvases(db, layers);
+        put_meta(db, "tiles_slots", std::to_string(slots));
         put_meta(db, "tiles_stroke", std::to_string(stroke_id));
-        put_meta(db, "tiles_hash", std::to_string(canvas.hash()));
+        put_meta(db, "tiles_hash", std::to_string(hash));
+    });
+}
+
+void Project::save_canvas(const ink::Canvas& canvas, std::uint64_t stroke_id) {
+    const stroke::LayerTexels first{.canvas = &canvas};
+    save_canvases(std::span(&first, 1), stroke_id);
+}
+
+std::optional<SavedCanvases> Project::load_canvases(std::size_t n_slots) const {
+    return state_->run([&](SQLite::Database& db) -> std::optional<SavedCanvases> {
+        if (get_meta(db, "tiles_slots") != std::to_string(n_slots)) return std::nullopt;
+        SavedCanvases saved;
+        saved.stroke_id = std::strtoull(get_meta(db, "tiles_stroke").c_str(), nullptr, 10);
+        std::uint64_t hash = 0;
+        saved.layers = tuft::io::load_canvases(db, state_->path, n_slots, hash);
+        // What does not add up is made again from the strokes.
+        if (get_meta(db, "tiles_hash") != std::to_string(hash)) return std::nullopt;
+        return saved;
     });
 }
 
 std::optional<SavedCanvas> Project::load_canvas(std::size_t n_slots) const {
-    return state_->run([&](SQLite::Database& db) -> std::optional<SavedCanvas> {
-        if (get_meta(db, "tiles_slots") != std::to_string(n_slots)) return std::nullopt;
-        SavedCanvas saved{.canvas = ink::Canvas(n_slots), .stroke_id = 0};
-        saved.stroke_id = std::strtoull(get_meta(db, "tiles_stroke").c_str(), nullptr, 10);
-        SQLite::Statement pigment(db, "SELECT toml FROM pigments ORDER BY plane");
-        while (pigment.executeStep())
-            saved.canvas.add_pigment(
-                ink::parse_ink(pigment.getColumn(0).getString(), state_->path.string())
-                    .parts.at(0)
-                    .pigment);
-        SQLite::Statement tile(db, "SELECT slot, planes, amounts FROM tiles ORDER BY slot");
-        const bool films = has_films(db);
-        while (tile.executeStep()) {
-            const std::int64_t slot = tile.getColumn(0).getInt64();
-            const int planes = tile.getColumn(1).getInt();
-            if (slot < 0 || slot >= static_cast<std::int64_t>(n_slots) || planes < 0 ||
-                planes > 255)
-                damaged(state_->path, "a tile lies outside the atlas");
-            ink::TileSnapshot snapshot{.slot = static_cast<std::uint32_t>(slot),
-                                       .planes = static_cast<std::uint8_t>(planes),
-                                       .amounts = {}};
-            snapshot.amounts.resize(std::popcount(snapshot.planes) * atlas::kTileTexels);
-            const SQLite::Column blob = tile.getColumn(2);
-            const std::string what =
-                state_->path.string() + ": the project is damaged: tile " + std::to_string(slot);
-            unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()),
-                   snapshot.amounts.data(), snapshot.amounts.size(), kTiles, what);
-            if (films) load_films(db, snapshot, what);
-            saved.canvas.restore(snapshot);
-        }
-        // What does not add up is made again from the strokes.
-        if (get_meta(db, "tiles_hash") != std::to_string(saved.canvas.hash())) return std::nullopt;
-        return saved;
-    });
+    std::optional<SavedCanvases> saved = load_canvases(n_slots);
+    if (!saved) return std::nullopt;
+    return SavedCanvas{std::move(saved->layers.front().canvas), saved->stroke_id};
 }
 
 bool is_project(const fs::path& path) {

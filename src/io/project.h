@@ -18,8 +18,9 @@
 /// its atlas, the presets used, the journal and a picture of the texels.
 namespace tuft::io {
 
-inline constexpr int kProjectFormat = 2;  ///< highest format version this program reads
-inline constexpr int kFirstFormat = 1;    ///< of projects without dry films, soaked ink and water
+inline constexpr int kProjectFormat = 3;  ///< highest format version this program reads: layers
+inline constexpr int kFilmsFormat = 2;    ///< of projects with dry films, soaked ink or water
+inline constexpr int kFirstFormat = 1;    ///< of projects without any of these
 
 /// A preset's name and TOML text.
 using PresetText = std::pair<std::string, std::string>;
@@ -35,6 +36,12 @@ struct ProjectModel {
 /// Texels as they were after stroke `stroke_id`, to be shown without a replay.
 struct SavedCanvas {
     ink::Canvas canvas;
+    std::uint64_t stroke_id = 0;
+};
+
+/// The same of all layers.
+struct SavedCanvases {
+    std::vector<stroke::LayerCanvas> layers;
     std::uint64_t stroke_id = 0;
 };
 
@@ -76,10 +83,12 @@ class Project {
     std::size_t n_strokes() const;
 
     /// Stores all painted tiles in place of those stored before.
-    void save_canvas(const ink::Canvas& canvas, std::uint64_t stroke_id);
+    void save_canvases(std::span<const stroke::LayerTexels> layers, std::uint64_t stroke_id);
+    void save_canvas(const ink::Canvas& canvas, std::uint64_t stroke_id);  ///< of the first layer
     /// The stored tiles for a texel map of `n_slots` slots; nothing when none were stored
     /// or they were made for another map.
-    std::optional<SavedCanvas> load_canvas(std::size_t n_slots) const;
+    std::optional<SavedCanvases> load_canvases(std::size_t n_slots) const;
+    std::optional<SavedCanvas> load_canvas(std::size_t n_slots) const;  ///< of the first layer
 
   private:
     struct State;

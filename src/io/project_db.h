@@ -63,4 +63,17 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
                    std::span<const stroke::Stroke> strokes);
 std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path);
 
+/// Texels (project_tiles.cpp). The caller opens the transaction.
+struct StoredTexels {
+    std::size_t n_slots = 0;
+    std::uint64_t hash = 0;  ///< of one layer as its canvas has it
+};
+StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerTexels> layers);
+/// The first layer, also when it has no texels, and the others that have any.
+std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::filesystem::path& path,
+                                               std::size_t n_slots, std::uint64_t& hash);
+
+/// Marks the project as one of `format`, unless it is of a higher one.
+void raise_format(SQLite::Database& db, int format);
+
 }  // namespace tuft::io

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "stroke/entry_json.h"
 
 namespace tuft::stroke {
 
@@ -12,7 +13,7 @@ namespace {
 constexpr double kLongestString = 1.0;    // metres
 constexpr double kStrongestFilter = 100;
 constexpr double kLongestWait = 86400;    // seconds
-constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry"};
+constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer"};
 
 nlohmann::json json_of(const Settings& s) {
     return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
@@ -75,6 +76,8 @@ std::string entry_json(const Stroke& entry) {
     nlohmann::json j = json_of(entry.settings);
     if (entry.action != Action::stroke) j["action"] = name_of(entry.action);
     if (entry.action == Action::dry) j["seconds"] = entry.seconds;
+    if (entry.action == Action::layer) j["edit"] = json_of(entry.edit);
+    if (entry.layer != kFirstLayer) j["layer"] = entry.layer;
     return j.dump();
 }
 
@@ -82,10 +85,16 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     const nlohmann::json j = parsed(json);
     entry.settings = settings_of(j);
     entry.action = Action::stroke;
+    if (const auto layer = j.find("layer"); layer != j.end()) {
+        if (!layer->is_number_unsigned() || layer->get<std::uint64_t>() >= kNone)
+            throw Error("the layer of a journal's entry cannot be read");
+        entry.layer = layer->get<std::uint32_t>();
+    }
     const auto action = j.find("action");
     if (action == j.end()) return;
     if (!action->is_string()) throw Error("the action of a journal's entry cannot be read");
     entry.action = action_of(action->get<std::string>());
+    if (entry.action == Action::layer) entry.edit = layer_edit_of(j.value("edit", nlohmann::json::object()));
     const auto seconds = j.find("seconds");
     if (seconds == j.end()) return;
     if (!seconds->is_number()) throw Error("the seconds of a journal's entry cannot be read");
@@ -97,10 +106,12 @@ std::string name_of(Action action) { return kActions[static_cast<int>(action)]; 
 
 Action action_of(const std::string& name) {
     for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape,
-                           Action::dry})
+                           Action::dry, Action::layer})
         if (name == name_of(a)) return a;
-    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape and dry");
+    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry and layer");
 }
+
+bool has_brush(Action action) { return action != Action::dry && action != Action::layer; }
 
 const Stroke& Journal::append(Stroke stroke) {
     stroke.id = next_id_++;

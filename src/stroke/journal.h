@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "stroke/layers.h"
 #include "stroke/trace.h"
 
 /// The document: what the hand did, in order. Texels are made from it.
@@ -35,7 +36,8 @@ void check_settings(const Settings& settings);
 void check_seconds(double seconds);
 
 /// An entry of the journal: a stroke, or an action between strokes. An action has no samples;
-/// it names a brush, and for a dip the ink. Drying leaves the brush as it is.
+/// it names a brush, and for a dip the ink. Drying and changes of layers leave the brush as it
+/// is and need not name one.
 struct Stroke {
     std::uint64_t id = 0;     ///< unique in its journal, never used again
     Trace trace;              ///< with the names of its brush and ink filled in
@@ -43,15 +45,20 @@ struct Stroke {
     bool hidden = false;      ///< kept, but not painted
     Action action = Action::stroke;
     double seconds = 0;       ///< of `Action::dry`; 0: until all is dry
+    std::uint32_t layer = kFirstLayer;  ///< that is painted on
+    LayerEdit edit = {};      ///< of `Action::layer`
 };
 
 /// The settings of an entry as above, with the entry's action and seconds as further keys.
 std::string entry_json(const Stroke& entry);
 void read_entry_json(const std::string& json, Stroke& entry);
 
-/// "stroke", "dip", "rinse", "reshape", "dry"; and back, throwing `Error` for any other word.
+/// "stroke", "dip", "rinse", "reshape", "dry", "layer"; and back, throwing `Error` for any other word.
 std::string name_of(Action action);
 Action action_of(const std::string& name);
+
+/// Whether an entry with this action has a brush in it.
+bool has_brush(Action action);
 
 /// Strokes in the order in which they are painted, with undo and redo.
 class Journal {

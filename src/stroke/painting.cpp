@@ -111,6 +111,9 @@ const BrushInHand* Painting::held(const std::string& brush) const {
 
 // A brush that is not held is fresh; the entry says so, for replays that hold it.
 void Painting::settle(Stroke& entry) const {
+    if (entry.action == Action::layer && entry.edit.what == LayerChange::add && entry.edit.layer.id == 0)
+        entry.edit.layer.id = layers_.next_id;
+    if (!has_brush(entry.action)) return;
     const BrushInHand* last = held(entry.trace.brush);
     if (!last) entry.settings.dip = "each";
     if (last && entry.action != Action::stroke && entry.trace.ink.empty()) entry.trace.ink = last->dipped;
@@ -142,9 +145,9 @@ BrushInHand Painting::take_up(const Stroke& entry) {
 }
 
 // The entry is done: the brush is as it is now, and undo knows what it and the tiles were.
-void Painting::put_down(std::uint64_t id, const std::string& brush, BrushInHand after,
-                        std::vector<ink::TileSnapshot> before) {
-    Undo undo{.stroke_id = id, .before = std::move(before), .brush = brush};
+void Painting::put_down(std::uint64_t id, const std::string& brush, BrushInHand after, LayerTiles before) {
+    Undo undo{.stroke_id = id, .brush = brush};
+    undo.before.push_back(std::move(before));
     if (const auto found = held_.find(brush); found != held_.end()) {
         undo.brush_before = std::move(found->second);
         undo.bytes += sizeof(BrushInHand);
@@ -154,8 +157,10 @@ void Painting::put_down(std::uint64_t id, const std::string& brush, BrushInHand 
 }
 
 void Painting::keep_undo(Undo undo) {
-    for (const ink::TileSnapshot& tile : undo.before)
-        undo.bytes += sizeof(ink::TileSnapshot) + tile.amounts.size() * sizeof(float);
+    for (const LayerTiles& of_layer : undo.before)
+        for (const ink::TileSnapshot& tile : of_layer.tiles)
+            undo.bytes += sizeof(ink::TileSnapshot) + tile.amounts.size() * sizeof(float);
+    if (undo.canvas) undo.bytes += undo.canvas->canvas.memory_bytes();
     undo_bytes_ += undo.bytes;
     undo_.push_back(std::move(undo));
     while (undo_bytes_ > options_.undo_bytes && undo_.size() > 1) {
@@ -165,10 +170,8 @@ void Painting::keep_undo(Undo undo) {
 }
 
 void Painting::act(const Stroke& entry) {
-    if (entry.action == Action::dry) {
-        dry(entry);
-        return;
-    }
+    if (entry.action == Action::dry) return dry(entry);
+    if (entry.action == Action::layer) return edit_layers(entry);
     BrushInHand brush = take_up(entry);
     switch (entry.action) {
         case Action::dip:
@@ -181,6 +184,7 @@ void Painting::act(const Stroke& entry) {
             break;
         case Action::reshape: brush::reshape(brush.tuft); break;
         case Action::dry:
+        case Action::layer:
         case Action::stroke: break;
     }
     put_down(entry.id, entry.trace.brush, std::move(brush), {});
@@ -188,20 +192,30 @@ void Painting::act(const Stroke& entry) {
 
 // Undo takes back the tiles; no brush has a part in it.
 void Painting::dry(const Stroke& entry) {
-    std::vector<ink::TileSnapshot> before;
-    for (const std::uint32_t slot : canvas_.touched_slots()) before.push_back(canvas_.snapshot(slot));
-    ink::dry_all(canvas_, model_->texels);
-    keep_undo({.stroke_id = entry.id, .before = std::move(before)});
+    Undo undo{.stroke_id = entry.id};
+    for (const Layer& layer : layers_.layers) {
+        ink::Canvas& canvas = this->canvas(layer.id);
+        LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = layer.id, .tiles = {}});
+        for (const std::uint32_t slot : canvas.touched_slots()) before.tiles.push_back(canvas.snapshot(slot));
+        ink::dry_all(canvas, model_->texels);
+    }
+    keep_undo(std::move(undo));
 }
 
 void Painting::begin(Stroke stroke) {
+    check_layer(stroke);
+    begin_hand(std::move(stroke));
+}
+
+void Painting::begin_hand(Stroke stroke) {
     cancel();
     settle(stroke);
     BrushInHand brush = take_up(stroke);
     const ink::Ink& ink = this->ink(brush.dipped);
     const double texel = model_->texels.texel_size;
     const double spacing = stroke.settings.spacing * texel;
-    hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, *model_, canvas_, spacing, texel);
+    ink::Canvas& canvas = this->canvas(stroke.layer);
+    hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, *model_, canvas, spacing, texel);
 }
 
 void Painting::extend(std::span<const brush::Pose> poses) {
@@ -287,7 +301,7 @@ StrokeReport Painting::finish_hand() {
     if (h.report.touched()) h.report.nearest = 0;
     const std::string name = h.stroke.trace.brush;
     put_down(h.stroke.id, name, {std::move(h.tuft), h.reservoir, h.dipped, h.stroke.trace.ink},
-             h.stamper.take_before());
+             {h.stroke.layer, h.stamper.take_before()});
     StrokeReport report = std::move(h.report);
     hand_.reset();
     return report;
@@ -303,7 +317,8 @@ StrokeReport Painting::end() {
 
 void Painting::cancel() {
     if (!hand_) return;
-    for (const ink::TileSnapshot& tile : hand_->stamper.take_before()) canvas_.restore(tile);
+    ink::Canvas& canvas = this->canvas(hand_->stroke.layer);
+    for (const ink::TileSnapshot& tile : hand_->stamper.take_before()) canvas.restore(tile);
     hand_.reset();
 }
 
@@ -327,7 +342,7 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
     }
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     const std::vector<brush::Pose> poses = poses_of(stroke);
-    begin(stroke);
+    begin_hand(stroke);
     try {
         for (std::size_t i = 0; i < poses.size(); i += kPosesPerReport) {
             const std::size_t n = std::min(kPosesPerReport, poses.size() - i);
@@ -343,6 +358,7 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
 }
 
 StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
+    check_layer(stroke);
     settle(stroke);
     StrokeReport report = draw(stroke, progress);
     report.stroke_id = journal_.append(std::move(stroke)).id;
@@ -377,11 +393,10 @@ std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const Pr
 }
 
 void Painting::adopt(std::vector<Stroke> strokes, ink::Canvas canvas) {
-    if (canvas.n_slots() != model_->texels.n_slots())
-        throw Error("the stored texels belong to another atlas");
-    canvas_ = std::move(canvas);
-    held_.clear();
-    for (Stroke& stroke : strokes) journal_.restore(std::move(stroke));
+    const std::uint64_t last = strokes.empty() ? 0 : strokes.back().id;
+    std::vector<LayerCanvas> canvases;
+    canvases.push_back({kFirstLayer, std::move(canvas)});
+    adopt(std::move(strokes), std::move(canvases), last);
 }
 
 bool Painting::undo() {
@@ -389,14 +404,17 @@ bool Painting::undo() {
     if (!journal_.can_undo()) return false;
     const std::uint64_t id = journal_.strokes().back().id;
     const bool hidden = journal_.strokes().back().hidden;
+    const bool table_only = journal_.strokes().back().action == Action::layer &&
+                            journal_.strokes().back().edit.what != LayerChange::remove;
     journal_.undo();
     if (hidden) return true;
     if (undo_.empty() || undo_.back().stroke_id != id) {
-        repaint_all();
+        if (table_only) set_layers(layers_after(journal_.strokes()));
+        else repaint_all();
         return true;
     }
     Undo& last = undo_.back();
-    for (const ink::TileSnapshot& tile : last.before) canvas_.restore(tile);
+    take_back_layers(last);
     if (last.brush_before) held_.insert_or_assign(last.brush, std::move(*last.brush_before));
     else if (!last.brush.empty()) held_.erase(last.brush);
     undo_bytes_ -= last.bytes;
@@ -412,7 +430,10 @@ bool Painting::redo() {
 }
 
 void Painting::repaint_all() {
+    for (const LayerTexels& layer : canvases()) touch_look(layer.layer);
     canvas_.clear();
+    upper_.clear();
+    layers_ = {};
     held_.clear();
     undo_.clear();
     undo_bytes_ = 0;

@@ -59,6 +59,13 @@ struct PaintingOptions {
     bool record_forces = false;
 };
 
+/// The layers that these entries of a journal make. Throws `Error` where one cannot be.
+LayerTable layers_after(std::span<const Stroke> entries);
+
+/// Whether texels stored after entry `stroke_id` show all these entries, but for changes of the
+/// layers since, so that `Painting::adopt` takes them.
+bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id);
+
 /// A model being painted: its journal and the texels made from it. The model must
 /// outlive it. All strokes take one path, whether they come from a file, a project or a
 /// hand that moves right now: sample → resample → contact → brush → footprint → ink.
@@ -109,6 +116,10 @@ class Painting {
     /// Takes over a stored journal together with the texels it once made. Throws `Error`
     /// when they were made for another texel map. The brushes are not held then.
     void adopt(std::vector<Stroke> strokes, ink::Canvas canvas);
+    /// The same with the texels of every layer as they were after entry `stroke_id`. Throws
+    /// `Error` also when something else than changes of layers came after it, or when layers are
+    /// missing: then it must be replayed.
+    void adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id);
 
     /// Takes the last stroke back, or paints the last one taken back again; false when
     /// there is none. Costs a copy of the tiles it touched, or a replay of everything
@@ -118,20 +129,38 @@ class Painting {
 
     const Journal& journal() const { return journal_; }
     const Model& model() const { return *model_; }
+    /// The texels of the layer that every painting begins with.
     const ink::Canvas& canvas() const { return canvas_; }
     ink::Canvas& canvas() { return canvas_; }
+    /// The same of any layer; throws `Error` when there is none of this id. All layers have the
+    /// same pigments in the same planes once they have been asked for here.
+    ink::Canvas& canvas(std::uint32_t layer);
+    /// Of all layers, the lowest first.
+    std::vector<LayerTexels> canvases() const;
+    /// The layers now. They are changed by entries with `Action::layer` (see `LayerEdit`), which
+    /// costs no texel; undo and redo go over them as over strokes.
+    const LayerTable& layers() const { return layers_; }
+    /// What is to be seen: the visible layers, or those of `show_only`.
+    ink::Stack stack() const;
+    /// Shows these layers alone, whatever the table says; empty: as it says. Not kept.
+    void show_only(std::vector<std::uint32_t> layers);
+    /// Hash of the texels of all layers; of one layer as its canvas has it.
+    std::uint64_t hash() const;
     const ink::Substrate& substrate() const { return substrate_; }
     void use_substrate(const ink::Substrate& substrate) { substrate_ = substrate; }
     /// How maps are made of this painting: gutters continued over the seams. The plan behind
     /// it is made at the first call (0.3–1 s) and belongs to the painting.
     ink::ComposeOptions compose_options() const;
-    std::vector<std::uint32_t> take_dirty() { return canvas_.take_dirty(); }
+    /// Slots whose look changed since the last call, ascending.
+    std::vector<std::uint32_t> take_dirty();
 
   private:
     struct Hand;  // the stroke in work
     struct Undo {
         std::uint64_t stroke_id = 0;
-        std::vector<ink::TileSnapshot> before;
+        std::vector<LayerTiles> before;
+        std::optional<LayerTable> layers;         ///< before an edit of them
+        std::optional<LayerCanvas> canvas;        ///< that the edit took away
         std::string brush;                        ///< empty: none had a part in it
         std::optional<BrushInHand> brush_before;  ///< nothing: it was not held
         std::size_t bytes = 0;
@@ -143,10 +172,15 @@ class Painting {
     StrokeReport finish_hand();
     void act(const Stroke& entry);
     void dry(const Stroke& entry);
+    void edit_layers(const Stroke& entry);
+    void take_back_layers(Undo& undo);
+    void set_layers(LayerTable table);
+    void check_layer(const Stroke& entry) const;
+    void touch_look(std::uint32_t layer);
+    void begin_hand(Stroke stroke);
     void settle(Stroke& entry) const;
     BrushInHand take_up(const Stroke& entry);
-    void put_down(std::uint64_t id, const std::string& brush, BrushInHand after,
-                  std::vector<ink::TileSnapshot> before);
+    void put_down(std::uint64_t id, const std::string& brush, BrushInHand after, LayerTiles before);
     void keep_undo(Undo undo);
     void repaint_all();
     std::vector<brush::Pose> poses_of(const Stroke& stroke);
@@ -154,7 +188,11 @@ class Painting {
     const Model* model_;
     PaintingOptions options_;
     ink::Substrate substrate_;
-    ink::Canvas canvas_;
+    ink::Canvas canvas_;                              ///< of kFirstLayer
+    std::map<std::uint32_t, ink::Canvas> upper_;      ///< of the other layers
+    LayerTable layers_;
+    std::vector<std::uint32_t> shown_;                ///< of `show_only`
+    std::vector<std::uint32_t> changed_;              ///< slots whose look changed, not their films
     Journal journal_;
     std::map<std::string, brush::Preset> brushes_;
     std::map<std::string, ink::Ink> inks_;

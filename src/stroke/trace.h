@@ -42,6 +42,7 @@ enum class Action {
     rinse,    ///< washes it: no ink left, hair straight and together
     reshape,  ///< combs it: hair straight and together, ink stays
     dry,      ///< waits while the ink on the model flows and dries
+    layer,    ///< changes the table of layers; no brush has a part in it
 };
 
 /// Something done with the brush between two strokes.
@@ -58,6 +59,7 @@ struct Trace {
     bool placed = false;                 ///< the file says where; else the placement is only a default
     std::vector<TraceSample> samples;    ///< time never falls
     std::string brush, ink;              ///< preset names; empty: as the command line says
+    std::string layer;                   ///< name of the layer; empty: as the command line says
     std::uint64_t seed = 0;
     std::string label;                   ///< free text for people: a character, a stroke's name
     bool pressed = true;                 ///< false: pressures were made up, the device gave none

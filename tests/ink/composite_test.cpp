@@ -153,6 +153,44 @@ TEST(Composite, FilmsLieOverEachOther) {
     }
 }
 
+// Layers over each other as Kubelka and Munk say, in either order, with colours mixed by opacity.
+TEST(Composite, LayersLieOverEachOtherInTheirOrder) {
+    const std::vector<Pigment> pigments = pigments_of({"cinnabar", "indigo"});
+    std::array<Canvas, 2> canvas{Canvas(1), Canvas(1)};
+    const std::array<Plane, 2> w{random_plane(1), random_plane(2)};
+    for (int i = 0; i < 2; ++i) {
+        for (const Pigment& p : pigments) canvas[i].add_pigment(p);
+        canvas[i].touch(0, i) = w[i];
+    }
+    const Substrate paper = load_substrate("rice-paper");
+    for (const float opacity : {1.0f, 0.3f}) {
+        for (const int lower : {0, 1}) {
+            const Stack stack({{&canvas[lower], 1}, {&canvas[1 - lower], opacity}});
+            const TileLook look = look_of_tile(stack, 0, paper);
+            for (int t = 0; t < kN; ++t) {
+                Reference reference(paper);
+                const auto film = [&](int i) {
+                    return std::vector<double>{i == 0 ? w[0][t] : 0.0, i == 1 ? w[1][t] : 0.0};
+                };
+                reference.lay(pigments, film(lower));
+                reference.lay(pigments, film(1 - lower), static_cast<double>(opacity));
+                const Rgb expected = reference.seen();
+                // As for single films above.
+                for (int c = 0; c < 3; ++c) EXPECT_NEAR(look.colour[c][t], expected[c], 4e-6) << t;
+            }
+        }
+    }
+    // A layer of two films fades as one thing: what it hides shows through it only by its opacity.
+    canvas[0].touch_film(0, kFirstDryFilm, 1).fill(50);
+    canvas[0].touch(0, 0).fill(50);
+    canvas[1].touch(0, 0).fill(50);
+    canvas[1].touch(0, 1).fill(0);
+    const auto faded = [&](const Canvas& c) { return look_of_tile(Stack(std::vector<LayerView>{{&c, 0.5f}}), 0, paper); };
+    for (int t = 0; t < kN; t += 17)
+        for (int c = 0; c < 3; ++c)  // fifty film units hide anything to 1e-6
+            EXPECT_NEAR(faded(canvas[0]).colour[c][t], faded(canvas[1]).colour[c][t], 4e-6);
+}
+
 TEST(Composite, SplittingAFilmChangesNothing) {
     const std::vector<Pigment> pigments = pigments_of({"cinnabar", "shell-white"});
     const Plane red = random_plane(1), white = random_plane(2);

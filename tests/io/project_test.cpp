@@ -171,7 +171,7 @@ TEST(Project, FilmsAndLiquidComeBackWithTheTiles) {
     }
     Project project = Project::create(folder / "a.tuft", sample_model());
     project.save_canvas(canvas, 3);
-    EXPECT_EQ(project.format(), kProjectFormat) << "older programs do not know films";
+    EXPECT_EQ(project.format(), kFilmsFormat) << "older programs do not know films";
     auto saved = project.load_canvas(20);
     ASSERT_TRUE(saved);
     EXPECT_TRUE(saved->canvas.same_contents(canvas));
@@ -180,6 +180,54 @@ TEST(Project, FilmsAndLiquidComeBackWithTheTiles) {
     saved = Project::open(folder / "a.tuft").load_canvas(20);
     ASSERT_TRUE(saved);
     EXPECT_TRUE(saved->canvas.same_contents(canvas));
+}
+
+TEST(Project, LayersComeBackWithTheirTiles) {
+    const Folder folder("project_layers");
+    ink::Canvas first(20), gold(20), empty(20);
+    const ink::Pigment carbon = ink::load_ink("carbon").parts[0].pigment;
+    first.add_pigment(carbon);
+    first.add_pigment(ink::load_ink("cinnabar").parts[0].pigment);
+    gold.add_pigment(carbon);  // has met no cinnabar yet
+    first.touch(4, 1).fill(0.5f);
+    gold.touch(4, 0).fill(2);
+    gold.touch_film(5, ink::kFirstDryFilm, 0).fill(0.25f);
+    gold.touch_liquid(5, ink::Liquid::film).fill(1);
+    Project project = Project::create(folder / "a.tuft", sample_model());
+    // In any order; 3 is empty, 2 lies lowest.
+    const std::vector<stroke::LayerTexels> all{{2, &gold}, {1, &first}, {3, &empty}};
+    project.save_canvases(all, 7);
+    EXPECT_EQ(project.format(), kProjectFormat) << "older programs do not know layers";
+    auto saved = Project::open(folder / "a.tuft").load_canvases(20);
+    ASSERT_TRUE(saved);
+    EXPECT_EQ(saved->stroke_id, 7u);
+    ASSERT_EQ(saved->layers.size(), 2u);
+    EXPECT_EQ(saved->layers[1].layer, 2u);
+    EXPECT_TRUE(saved->layers[0].canvas.same_contents(first));
+    gold.add_pigment(first.pigments()[1]);  // all know all, when they come back
+    EXPECT_TRUE(saved->layers[1].canvas.same_contents(gold));
+    // The first layer can go, and all but it.
+    project.save_canvases(std::span(all).first(1), 8);
+    saved = project.load_canvases(20);
+    ASSERT_TRUE(saved);
+    EXPECT_TRUE(saved->layers[0].canvas.touched_slots().empty());
+    project.save_canvas(first, 9);
+    saved = project.load_canvases(20);
+    ASSERT_TRUE(saved);
+    EXPECT_EQ(saved->layers.size(), 1u);
+    EXPECT_TRUE(saved->layers[0].canvas.same_contents(first));
+
+    stroke::Stroke entry{.id = 10};
+    entry.action = stroke::Action::layer;
+    entry.edit = stroke::add_on_top({}, "gold & 金");
+    stroke::Stroke on_it{.id = 11};
+    on_it.layer = 2;
+    on_it.trace.samples.resize(1);
+    project.append(std::vector{entry, on_it});
+    const std::vector<stroke::Stroke> back = project.strokes();
+    ASSERT_EQ(back.size(), 2u);
+    EXPECT_EQ(back[0].edit, entry.edit);
+    EXPECT_EQ(back[1].layer, 2u);
 }
 
 TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
@@ -335,7 +383,7 @@ TEST(Project, ForeignFilesAreNamedAsSuch) {
     EXPECT_NE(fault(folder / "o.tuft").find("not a tuft project"), std::string::npos);
     bytes[63] = 9;  // user_version
     write_file(folder / "n.tuft", bytes.data(), bytes.size());
-    EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to 2)"),
+    EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to 3)"),
               std::string::npos);
     EXPECT_THROW(Project::create(folder / "no/where/a.tuft", sample_model()), Error);
 }

@@ -1,0 +1,249 @@
+#include "stroke/layers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+const Model& model() {
+    static const Model m = sheet();
+    return m;
+}
+
+Stroke on(std::uint32_t layer, int row = 0, const std::string& ink = "carbon") {
+    Stroke s = line("wolf-small", 3e-3, make_frame({0, 0.004 * row, 0}, {0, 0, 1}, {1, 0, 0}));
+    s.trace.ink = ink;
+    s.layer = layer;
+    s.settings.spacing = 3;  // coarse is enough here, and quick
+    return s;
+}
+
+Stroke edit(const LayerEdit& e) {
+    Stroke s;
+    s.action = Action::layer;
+    s.trace.flat = false;
+    s.edit = e;
+    return s;
+}
+
+std::uint32_t add(Painting& p, const std::string& name) {
+    p.paint(edit(add_on_top(p.layers(), name)));
+    return p.layers().layers.back().id;
+}
+
+void set(Painting& p, std::uint32_t id, const std::function<void(Layer&)>& how) {
+    Layer layer = *p.layers().find(id);
+    how(layer);
+    p.paint(edit(changed(p.layers(), layer)));
+}
+
+std::vector<std::uint8_t> picture(const Painting& p) {
+    return ink::compose_srgb8(p.stack(), model().texels, p.substrate()).texels;
+}
+
+TEST(Layers, OneOverAnEmptyOneIsASingleLayerToTheBit) {
+    Painting single(model()), two(model()), below(model());
+    single.paint(on(kFirstLayer));
+    two.paint(on(add(two, "gold")));
+    below.paint(on(kFirstLayer));
+    add(below, "gold");
+    EXPECT_TRUE(two.canvas(2).same_contents(single.canvas()));
+    EXPECT_TRUE(below.canvas().same_contents(single.canvas()));
+    const auto linear = [](const Painting& p) {
+        return ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
+    };
+    EXPECT_EQ(linear(two), linear(single));
+    EXPECT_EQ(linear(below), linear(single));
+    const auto height = [](const Painting& p) { return ink::compose_height(p.stack(), model().texels).texels; };
+    EXPECT_EQ(height(two), height(single));
+    EXPECT_EQ(single.hash(), single.canvas().hash()) << "as without layers";
+}
+
+TEST(Layers, AHiddenOneAndOneWithoutOpacityContributeNothing) {
+    Painting p(model());
+    p.paint(on(kFirstLayer));
+    const auto before = picture(p);
+    const std::uint32_t gold = add(p, "gold");
+    p.paint(on(gold, 1, "cinnabar"));
+    const auto both = picture(p);
+    EXPECT_NE(both, before);
+    set(p, gold, [](Layer& l) { l.visible = false; });
+    EXPECT_EQ(picture(p), before);
+    set(p, gold, [](Layer& l) { l.visible = true, l.opacity = 0; });
+    EXPECT_EQ(picture(p), before);
+    p.show_only({gold});
+    EXPECT_TRUE(p.stack().layers.empty()) << "shown, but without opacity";
+    set(p, gold, [](Layer& l) { l.opacity = 1; });
+    p.show_only({});
+    EXPECT_EQ(picture(p), both);
+}
+
+// What a change alters is told, so that only that is drawn anew.
+TEST(Layers, AChangeOfTheLookIsDirtyWhereTheLayerHasInk) {
+    Painting p(model());
+    p.paint(on(kFirstLayer, -3));
+    const std::uint32_t gold = add(p, "gold");
+    p.take_dirty();
+    p.paint(on(gold, 3));
+    const std::vector<std::uint32_t> touched = p.canvas(gold).touched_slots();
+    EXPECT_EQ(p.take_dirty(), touched);
+    set(p, gold, [](Layer& l) { l.visible = false; });
+    EXPECT_EQ(p.take_dirty(), touched);
+    EXPECT_TRUE(p.take_dirty().empty());
+    p.paint(edit(removed(gold)));
+    EXPECT_EQ(p.take_dirty(), touched);
+    p.undo();
+    EXPECT_EQ(p.take_dirty(), touched);
+}
+
+TEST(Layers, ALockedOneRefusesTheHandAndNothingChanges) {
+    Painting p(model());
+    const std::uint32_t gold = add(p, "gold");
+    set(p, gold, [](Layer& l) { l.locked = true; });
+    const std::uint64_t before = p.hash();
+    EXPECT_THROW(p.paint(on(gold)), Error);
+    EXPECT_THROW(p.begin(on(gold)), Error);
+    EXPECT_THROW(p.paint(on(7)), Error) << "no such layer";
+    EXPECT_EQ(p.hash(), before);
+    EXPECT_EQ(p.journal().strokes().size(), 2u);
+    EXPECT_TRUE(p.paint(on(kFirstLayer)).touched());
+}
+
+// A session with every kind of change.
+std::vector<Stroke> session() {
+    LayerTable t;
+    std::vector<Stroke> entries;
+    const auto then = [&](const LayerEdit& e) {
+        apply(t, e);
+        entries.push_back(edit(e));
+    };
+    entries.push_back(on(1, 0));
+    then(add_on_top(t, "gold"));
+    entries.push_back(on(2, 0, "cinnabar"));
+    then(changed(t, {.id = 2, .name = "金", .visible = true, .opacity = 0.4, .locked = true}));
+    then(add_on_top(t, "top"));
+    then(moved(t, 3, 0));
+    entries.push_back(on(3, 1, "indigo"));
+    then(moved(t, 1, 2));
+    then(removed(1));
+    entries.push_back(on(3, 2));
+    then(changed(t, {.id = 3, .name = "top", .visible = false}));
+    then(removed(2));
+    return entries;
+}
+
+TEST(Layers, UndoAndRedoGoOverEveryChange) {
+    for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
+        Painting p(model(), {.undo_bytes = undo_bytes});
+        for (const char* name : {"carbon", "cinnabar", "indigo"})  // a canvas never forgets a pigment
+            ink::mix_of(p.canvas(), p.ink(name));
+        std::vector<LayerTable> tables;
+        std::vector<std::vector<std::uint8_t>> pictures;
+        const std::vector<Stroke> entries = session();
+        for (const Stroke& s : entries) {
+            tables.push_back(p.layers());
+            pictures.push_back(picture(p));
+            p.paint(s);
+        }
+        const LayerTable last = p.layers();
+        const auto end = picture(p);
+        for (std::size_t i = entries.size(); i-- > 0;) {
+            ASSERT_TRUE(p.undo());
+            EXPECT_EQ(p.layers(), tables[i]) << i;
+            EXPECT_EQ(picture(p), pictures[i]) << i;
+        }
+        while (p.redo()) {}
+        EXPECT_EQ(p.layers(), last);
+        EXPECT_EQ(picture(p), end);
+    }
+}
+
+TEST(Layers, AReplayIsTheSameToTheBitForAnyThreadCount) {
+    std::uint64_t hash = 0;
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        Painting p(model());
+        for (const Stroke& s : session()) p.paint(s);
+        if (threads == 1) hash = p.hash();
+        EXPECT_EQ(p.hash(), hash);
+        Painting again(model());
+        again.replay(p.journal().strokes());
+        EXPECT_EQ(again.hash(), hash);
+        EXPECT_EQ(again.layers(), p.layers());
+    }
+    set_thread_count(0);
+}
+
+// Stored texels serve also when the layers were changed after them.
+TEST(Layers, ChangesAfterTheStoredTexelsNeedNoReplay) {
+    Painting p(model());
+    for (const Stroke& s : session()) p.paint(s);
+    Painting at(model());
+    std::vector<Stroke> strokes = p.journal().strokes();
+    const std::uint64_t stored = strokes[6].id;
+    at.replay({strokes.begin(), strokes.begin() + 7});
+    const auto stored_texels = [&] {
+        std::vector<LayerCanvas> out;
+        for (const LayerTexels& l : at.canvases()) out.push_back({l.layer, *l.canvas});
+        return out;
+    };
+    EXPECT_FALSE(fits(strokes, stored)) << "a stroke came after them";
+    EXPECT_THROW(Painting(model()).adopt(strokes, stored_texels(), stored), Error);
+    strokes.resize(9);  // up to the removal of layer 1
+    ASSERT_TRUE(fits(strokes, stored));
+    Painting adopted(model()), replayed(model());
+    adopted.adopt(strokes, stored_texels(), stored);
+    replayed.replay(strokes);
+    EXPECT_EQ(adopted.layers(), replayed.layers());
+    EXPECT_EQ(picture(adopted), picture(replayed));
+    ASSERT_TRUE(adopted.undo());  // the removal, by what it kept
+    EXPECT_EQ(adopted.layers().layers.size(), 3u);
+    while (adopted.undo()) replayed.undo();
+    EXPECT_EQ(adopted.layers(), LayerTable{});
+}
+
+TEST(Layers, EntriesComeBackFromTheirText) {
+    for (const Stroke& s : session()) {
+        Stroke back;
+        read_entry_json(entry_json(s), back);
+        EXPECT_EQ(back.layer, s.layer);
+        EXPECT_EQ(back.action, s.action);
+        EXPECT_EQ(back.edit.what, s.edit.what);
+        if (s.edit.what != LayerChange::remove && s.action == Action::layer) EXPECT_EQ(back.edit, s.edit);
+    }
+    EXPECT_EQ(entry_json(on(kFirstLayer)).find("layer"), std::string::npos) << "as without layers";
+}
+
+TEST(Layers, NonsenseIsRefused) {
+    LayerTable t;
+    const LayerTable before = t;
+    EXPECT_THROW(apply(t, removed(1)), Error) << "the last";
+    EXPECT_THROW(apply(t, removed(2)), Error);
+    EXPECT_THROW(apply(t, add_on_top(t, "Layer 1")), Error);
+    EXPECT_THROW(apply(t, add_on_top(t, "")), Error);
+    EXPECT_THROW(apply(t, add_on_top(t, "\xff\xfe")), Error);
+    EXPECT_THROW(apply(t, add_on_top(t, std::string(300, 'a'))), Error);
+    EXPECT_THROW(apply(t, {LayerChange::add, {.id = 1, .name = "again"}, 0}), Error);
+    EXPECT_THROW(apply(t, {LayerChange::add, {.id = 5, .name = "high"}, 2}), Error);
+    EXPECT_THROW(apply(t, {LayerChange::change, {.opacity = 1.5}, 0}), Error);
+    EXPECT_THROW(apply(t, {LayerChange::change, {.opacity = std::nan("")}, 0}), Error);
+    EXPECT_EQ(t, before);
+    Stroke s;
+    for (const char* text :
+         {R"({"action":"layer"})", R"({"action":"layer","edit":{"what":"melt","id":1}})",
+          R"({"action":"layer","edit":{"what":"remove","id":-1}})", R"({"layer":"one"})", R"({"layer":-3})",
+          R"({"action":"layer","edit":{"what":"add","id":2,"name":7,"visible":true,"opacity":1,"locked":false,"place":0}})"})
+        EXPECT_THROW(read_entry_json(text, s), Error) << text;
+    for (std::size_t i = 1; i < kMaxLayers; ++i) apply(t, add_on_top(t, std::to_string(i)));
+    EXPECT_THROW(apply(t, add_on_top(t, "one more")), Error);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
