@@ -63,6 +63,10 @@ void add_surface(CLI::App* app, Surface& s, bool with_unit = true) {
     add_store(app, s);
 }
 
+void add_layers(CLI::App* app, std::vector<std::string>& layers) {
+    app->add_option("--layers", layers, "show these layers only, hidden ones too: NAME,...")->delimiter(',');
+}
+
 void add_view(CLI::App* app, View& v) {
     app->add_option_function<std::string>(
            "--size",
@@ -75,6 +79,7 @@ void add_view(CLI::App* app, View& v) {
            },
            "size of the picture, WIDTHxHEIGHT")
         ->type_name("WxH");
+    add_layers(app, v.layers);
     app->add_option_function<std::string>(
            "--view",
            [&v](const std::string& text) {
@@ -109,11 +114,12 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     app.get_formatter()->column_width(34);
 
     Paint paint;
-    auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model");
-    p->add_option("MODEL", paint.model, "mesh: PLY, OBJ, STL, OFF, GLB or glTF")->required();
+    auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
+    p->add_option("MODEL", paint.model, "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project")->required();
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
     p->add_option("--brush", paint.brush, "brush for strokes that name none ('tuft brush' lists them)");
     p->add_option("--ink", paint.ink, "ink for strokes that name none");
+    p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
     p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
     p->add_option("--spine", paint.spine, "how the tuft bends: rod (live solve) or table (query table)")
         ->check(CLI::IsMember({"rod", "table"}));
@@ -186,7 +192,18 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     e->add_option("PROJECT", exported.project, "project file (.tuft)")->required();
     e->add_option("-o,--output", exported.output,
                   ".glb, .gltf, .obj (model); .png, .exr (base colour map)")->required();
+    add_layers(e, exported.layers);
     add_common(e, exported.common);
+
+    LayerWork layer;
+    auto* l = app.add_subcommand("layer", "change a project's layers");
+    l->add_option("PROJECT", layer.project, "project file (.tuft)")->required();
+    l->add_option("WHAT", layer.what, "add, remove, show, hide, lock, unlock, opacity, rename or move")
+        ->required()
+        ->check(CLI::IsMember({"add", "remove", "show", "hide", "lock", "unlock", "opacity", "rename", "move"}));
+    l->add_option("NAME", layer.name, "name of the layer")->required();
+    l->add_option("VALUE", layer.value, "opacity (0 to 1), new name, or place (1 is the lowest)");
+    add_common(l, layer.common);
 
     Render render;
     auto* d = app.add_subcommand("render", "draw a picture of a model or a project");
@@ -253,6 +270,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     else if (d->parsed()) command = render;
     else if (b->parsed()) command = brush;
     else if (h->parsed()) command = habit;
+    else if (l->parsed()) command = layer;
     else command = bench;
     return true;
 }

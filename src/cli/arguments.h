@@ -28,7 +28,9 @@ struct Common {
     bool quiet = false;
 };
 
+/// What to see of a painting, and from where.
 struct View {
+    std::vector<std::string> layers;  ///< names of those to be seen; empty: the visible ones
     int width = 1280, height = 720;
     double azimuth = 30, elevation = 25;
     double zoom = 1;
@@ -40,6 +42,7 @@ struct Paint {
     std::filesystem::path model;
     std::vector<std::filesystem::path> strokes;
     std::string brush, ink;         ///< empty: as the stroke file says, else the default
+    std::string layer;              ///< name; empty: as the stroke file says, else the first one
     std::string spine = "rod";      ///< rod | table
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";  ///< exact | vertices
@@ -78,6 +81,14 @@ struct Replay {
 
 struct Export {
     std::filesystem::path project, output;
+    std::vector<std::string> layers;  ///< as in `View`
+    Common common;
+};
+
+/// `tuft layer PROJECT WHAT NAME [VALUE]`
+struct LayerWork {
+    std::filesystem::path project;
+    std::string what, name, value;
     Common common;
 };
 
@@ -111,7 +122,7 @@ struct Bench {
     Common common;
 };
 
-using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench>;
+using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench, LayerWork>;
 
 /// Reads the command line. Prints help or version and returns false with `status` set
 /// when there is nothing to run; a wrong command line gives one line on standard error

@@ -15,5 +15,6 @@ int run(const Render& arguments);
 int run(const Brush& arguments);
 int run(const Habit& arguments);
 int run(const Bench& arguments);
+int run(const LayerWork& arguments);
 
 }  // namespace tuft::cli

@@ -21,6 +21,7 @@ int inspect_project(const Inspect& a) {
     const io::Project project = io::Project::open(a.file);
     const io::ProjectModel model = project.model();
     const std::vector<stroke::Stroke> strokes = project.strokes();
+    const stroke::LayerTable layers = stroke::layers_after(strokes);
     const atlas::AtlasReport quality = atlas::measure(model.mesh, model.atlas);
     if (a.common.json) {
         nlohmann::json j{{"project", a.file.string()},
@@ -30,12 +31,20 @@ int inspect_project(const Inspect& a) {
                          {"triangles", model.mesh.n_triangles()},
                          {"size_mm", vector_json(model.mesh.bounds.size())},
                          {"atlas", to_json(model.atlas, quality)},
+                         {"layers", nlohmann::json::array()},
                          {"strokes", nlohmann::json::array()}};
+        for (const stroke::Layer& l : layers.layers)  // the lowest first
+            j["layers"].push_back({{"id", l.id},
+                                   {"name", l.name},
+                                   {"visible", l.visible},
+                                   {"opacity", l.opacity},
+                                   {"locked", l.locked}});
         for (const stroke::Stroke& s : strokes)
             j["strokes"].push_back({{"id", s.id},
                                     {"action", stroke::name_of(s.action)},
                                     {"dip", s.settings.dip},
                                     {"label", s.trace.label},
+                                    {"layer", s.layer},
                                     {"brush", s.trace.brush},
                                     {"ink", s.trace.ink},
                                     {"samples", s.trace.samples.size()},
@@ -48,6 +57,10 @@ int inspect_project(const Inspect& a) {
     fmt::print("{} triangles, {:.1f} x {:.1f} x {:.1f} mm; atlas {} x {}, {} charts, texel {:.3f} mm\n",
                model.mesh.n_triangles(), size.x, size.y, size.z, model.atlas.size, model.atlas.size,
                model.atlas.n_charts, model.atlas.texel_size / kMillimetre);
+    if (layers != stroke::LayerTable{})
+        for (auto l = layers.layers.rbegin(); l != layers.layers.rend(); ++l)
+            fmt::print("  layer   {:>4}  {}, opacity {:g}{}{}\n", l->id, l->name, l->opacity,
+                       l->visible ? "" : ", hidden", l->locked ? ", locked" : "");
     for (const stroke::Stroke& s : strokes)
         fmt::print("  {:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", stroke::name_of(s.action), s.id, s.trace.brush,
                    s.trace.ink, s.trace.samples.size(), s.trace.label, s.hidden ? " (hidden)" : "");

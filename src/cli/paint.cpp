@@ -34,11 +34,11 @@ std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
     return csv;
 }
 
-// What was painted: the journal without the actions of the brush, one entry per report.
-std::vector<const stroke::Stroke*> painted_strokes(const stroke::Journal& journal) {
+// What was painted: the journal from `first` on without actions, one entry per report.
+std::vector<const stroke::Stroke*> painted_strokes(const stroke::Journal& journal, std::size_t first) {
     std::vector<const stroke::Stroke*> strokes;
-    for (const stroke::Stroke& s : journal.strokes())
-        if (s.action == stroke::Action::stroke) strokes.push_back(&s);
+    for (std::size_t i = first; i < journal.strokes().size(); ++i)
+        if (journal.strokes()[i].action == stroke::Action::stroke) strokes.push_back(&journal.strokes()[i]);
     return strokes;
 }
 
@@ -64,12 +64,21 @@ int run(const Paint& a) {
     const auto start = Clock::now();
 
     std::vector<stroke::Stroke> strokes = load_strokes(a, console);
-    const stroke::Model model = load_model(a.model, a.surface, console);
+    const bool goes_on = is_project_file(a.model);
+    const std::unique_ptr<OpenProject> before = goes_on ? open_project(a.model, console) : nullptr;
+    const stroke::Model model = before ? std::move(before->model) : load_model(a.model, a.surface, console);
     place_strokes(strokes, model, a.place_mm, console);
-    const double prepared = seconds_since(start);
 
     stroke::Painting painting(model, {.substrate = a.surface.substrate,
                                       .record_forces = !a.forces.empty()});
+    if (before) {
+        painting.use_substrate(before->substrate);
+        use_presets(before->file, painting);
+        show_strokes(before->file, painting, console);
+    }
+    strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);
+    const std::size_t n_before = painting.journal().strokes().size();
+    const double prepared = seconds_since(start);
     // Unknown names are found before any paint flows.
     for (const stroke::Stroke& s : strokes) {
         if (!stroke::has_brush(s.action)) continue;
@@ -77,8 +86,17 @@ int run(const Paint& a) {
         painting.ink(s.trace.ink);
     }
     std::optional<io::Project> project;
-    if (!a.project.empty())
-        project = start_project(a.project, a.model.string(), a.surface.unit, painting, strokes);
+    std::error_code no_matter;
+    if (before && (a.project.empty() || std::filesystem::equivalent(a.project, a.model, no_matter))) {
+        project = std::move(before->file);
+        put_presets(*project, painting, strokes);
+    } else if (!a.project.empty()) {
+        std::vector<stroke::Stroke> all = painting.journal().strokes();
+        all.insert(all.end(), strokes.begin(), strokes.end());
+        project = start_project(a.project, before ? before->source : a.model.string(),
+                                before ? before->unit : a.surface.unit, painting, all);
+        project->append(painting.journal().strokes());
+    }
     const auto painting_start = Clock::now();
     double first_stamp = 0;
     std::vector<stroke::StrokeReport> reports;
@@ -102,9 +120,10 @@ int run(const Paint& a) {
         project->save_canvases(painting.canvases(), painting.journal().strokes().back().id);
     const double painted = seconds_since(painting_start);
     console.clear();
-    const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal());
+    const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal(), n_before);
     note_misses(reports, done, console);
 
+    show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
     if (!a.forces.empty()) {
         const std::string csv = forces_csv(reports);

@@ -13,10 +13,6 @@
 namespace tuft::cli {
 namespace {
 
-bool is_project_file(const std::filesystem::path& path) {
-    return path.extension() == ".tuft" || io::is_project(path);
-}
-
 std::filesystem::path numbered(const std::filesystem::path& path, int index, int count) {
     const int digits = static_cast<int>(std::to_string(count - 1).size());
     return path.parent_path() /
@@ -74,6 +70,7 @@ int run(const Replay& a) {
         out.append(painting.journal().strokes());
         if (!strokes.empty()) out.save_canvases(painting.canvases(), strokes.back().id);
     }
+    show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
     console.clear();
     if (a.common.json) {
@@ -99,6 +96,7 @@ int run(const Export& a) {
     painting.use_substrate(project->substrate);
     use_presets(project->file, painting);
     show_strokes(project->file, painting, console);
+    show_layers(painting, a.layers);
     const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
     if (extension == ".png") {
@@ -134,6 +132,7 @@ int run(const Render& a) {
         painting->use_substrate(project->substrate);
         use_presets(project->file, *painting);
         show_strokes(project->file, *painting, console);
+        show_layers(*painting, a.view.layers);
     } else {
         bare = load_bare(a.file, a.unit, console);
     }

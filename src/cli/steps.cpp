@@ -235,6 +235,11 @@ io::Project start_project(const fs::path& path, const std::string& source, const
                .mesh = *model.mesh,
                .atlas = model.atlas,
                .substrate = ink::substrate_toml(painting.substrate())});
+    put_presets(project, painting, strokes);
+    return project;
+}
+
+void put_presets(io::Project& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes) {
     std::set<std::string> brushes, inks;
     for (const stroke::Stroke& s : strokes) {
         if (!stroke::has_brush(s.action)) continue;
@@ -243,7 +248,23 @@ io::Project start_project(const fs::path& path, const std::string& source, const
         if (inks.insert(s.trace.ink).second)
             project.put_ink({s.trace.ink, ink::ink_toml(painting.ink(s.trace.ink))});
     }
-    return project;
+}
+
+bool is_project_file(const fs::path& path) {
+    return path.extension() == ".tuft" || io::is_project(path);
+}
+
+void show_layers(stroke::Painting& painting, const std::vector<std::string>& names) {
+    std::vector<std::uint32_t> ids;
+    std::vector<std::string> all;
+    for (const stroke::Layer& layer : painting.layers().layers) all.push_back(layer.name);
+    for (const std::string& name : names) {
+        const stroke::Layer* layer = painting.layers().find(name);
+        if (!layer)
+            throw UsageError(fmt::format("there is no layer '{}'; there are {}", name, fmt::join(all, ", ")));
+        ids.push_back(layer->id);
+    }
+    if (!ids.empty()) painting.show_only(std::move(ids));
 }
 
 std::unique_ptr<OpenProject> open_project(const fs::path& path, Console& console) {

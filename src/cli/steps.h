@@ -33,6 +33,9 @@ void check_extension(const std::filesystem::path& path, const std::vector<std::s
 /// Strokes of InkML files in order, with brush and ink filled in where the file names none.
 std::vector<stroke::Stroke> load_strokes(const Paint& arguments, Console& console);
 
+/// Has only the layers of these names seen; throws `UsageError` for a name that is not there.
+void show_layers(stroke::Painting& painting, const std::vector<std::string>& names);
+
 /// Puts flat strokes that have no place of their own, or all of them when `place_mm` is given,
 /// onto the model: upright at the nearest point to the place, else at its front (-y side).
 void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
@@ -57,6 +60,8 @@ void write_picture(const std::filesystem::path& path, const render::Image& image
 
 /// A new project with the model and the presets of these strokes; strokes are appended
 /// to it as they are finished.
+/// Stores the presets that these entries use.
+void put_presets(io::Project& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes);
 io::Project start_project(const std::filesystem::path& path, const std::string& source,
                           const std::string& unit, stroke::Painting& painting,
                           const std::vector<stroke::Stroke>& strokes);
@@ -68,6 +73,7 @@ struct OpenProject {
     ink::Substrate substrate;
     stroke::Model model;
 };
+bool is_project_file(const std::filesystem::path& path);
 std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, Console& console);
 /// Lets the painting use the presets stored in the project.
 void use_presets(const io::Project& project, stroke::Painting& painting);

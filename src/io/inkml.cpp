@@ -27,7 +27,7 @@ constexpr int kMaxNesting = 64;  // groups in groups, references to references
 struct Marks {
     stroke::Placement placement;
     bool placed = false;
-    std::string brush, ink, label;
+    std::string brush, ink, label, layer;
     std::uint64_t seed = 0;
 };
 
@@ -304,6 +304,8 @@ class Reader {
                 marks.ink = text;
             else if (type == "label")
                 marks.label = text;
+            else if (type == "layer")
+                marks.layer = name_of(node, text, "layer");
             else if (type == "origin") {
                 marks.placement.origin = kMillimetre * vector_of(node, text);
                 marks.placed = true;
@@ -324,6 +326,15 @@ class Reader {
                     fail(node, "tuft:seed is not a whole number");
             }
         }
+    }
+
+    std::string name_of(const xml_node& node, std::string_view text, const char* of_what) const {
+        try {
+            stroke::check_name(text, of_what);
+        } catch (const Error& e) {
+            fail(node, e.what());
+        }
+        return std::string(text);
     }
 
     static bool is_care(std::string_view type) {
@@ -452,6 +463,7 @@ class Reader {
         d.trace.placed = state.marks.placed;
         d.trace.brush = state.marks.brush;
         d.trace.ink = state.marks.ink;
+        d.trace.layer = state.marks.layer;
         d.trace.seed = state.marks.seed;
         d.trace.label = state.marks.label;
         d.trace.pressed = d.has_pressure;

@@ -43,6 +43,7 @@ struct InkmlOptions {
 ///     tuft:ink      preset name          tuft:right   "x y z" direction of +x
 ///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
 ///     tuft:label    any text             tuft:laying  wrap | project
+///     tuft:layer    name of a layer
 ///
 /// and, on a `trace` only, what is done with the brush before it, in the order written:
 /// tuft:dip (an ink's name, or empty: the trace's own), tuft:rinse, tuft:reshape, tuft:dry

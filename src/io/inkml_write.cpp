@@ -70,7 +70,7 @@ std::string vector_text(const Vec3& v, int decimals) {
 }
 
 bool same_place(const Trace& a, const Trace& b) {
-    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink &&
+    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer &&
            a.placement.origin == b.placement.origin && a.placement.right == b.placement.right &&
            a.placement.down == b.placement.down && a.placement.laying == b.placement.laying;
 }
@@ -151,6 +151,7 @@ std::string inkml_text(std::span<const Trace> traces, const std::string& title) 
         out += "  <traceGroup>\n";
         add_annotation(out, "    ", "brush", first.brush);
         add_annotation(out, "    ", "ink", first.ink);
+        add_annotation(out, "    ", "layer", first.layer);
         if (first.flat) {
             add_annotation(out, "    ", "origin",
                            vector_text(first.placement.origin / kMillimetre, 7));

@@ -66,6 +66,10 @@ LayerTable layers_after(std::span<const Stroke> entries);
 /// layers since, so that `Painting::adopt` takes them.
 bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id);
 
+/// Gives each stroke the layer that its trace names (or `name` where it names none; empty: the
+/// one it has), before it an entry that adds the layer on top where it is not there yet.
+std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable table, const std::string& name = {});
+
 /// A model being painted: its journal and the texels made from it. The model must
 /// outlive it. All strokes take one path, whether they come from a file, a project or a
 /// hand that moves right now: sample → resample → contact → brush → footprint → ink.

@@ -21,6 +21,24 @@ bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id) {
     return entries.empty() && stroke_id == 0;
 }
 
+std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable table, const std::string& name) {
+    std::vector<Stroke> out;
+    for (Stroke& s : strokes) {
+        const std::string& wanted = s.trace.layer.empty() ? name : s.trace.layer;
+        if (!wanted.empty() && !table.find(wanted)) {
+            Stroke entry;
+            entry.action = Action::layer;
+            entry.trace.flat = false;
+            entry.edit = add_on_top(table, wanted);
+            apply(table, entry.edit);
+            out.push_back(std::move(entry));
+        }
+        if (!wanted.empty()) s.layer = table.find(wanted)->id;
+        out.push_back(std::move(s));
+    }
+    return out;
+}
+
 ink::Canvas& Painting::canvas(std::uint32_t layer) {
     if (!layers_.find(layer)) throw Error("there is no layer " + std::to_string(layer));
     if (layer == kFirstLayer) return canvas_;

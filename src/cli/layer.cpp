@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/steps.h"
+#include "core/error.h"
+
+/// `tuft layer`: what a project's layers are, changed by entries of its journal.
+namespace tuft::cli {
+namespace {
+
+double number_of(const LayerWork& a) {
+    double x = 0;
+    const char* end = a.value.data() + a.value.size();
+    const auto [last, error] = std::from_chars(a.value.data(), end, x);
+    if (a.value.empty() || error != std::errc{} || last != end)
+        throw UsageError("'tuft layer PROJECT " + a.what + " NAME VALUE' needs a number, not '" + a.value + "'");
+    return x;
+}
+
+stroke::LayerEdit edit_of(const LayerWork& a, const stroke::LayerTable& table) {
+    if (a.what == "add") return stroke::add_on_top(table, a.name);
+    const stroke::Layer* found = table.find(a.name);
+    if (!found) throw Error(a.project.string(), "has no layer '" + a.name + "'");
+    if (a.what == "remove") return stroke::removed(found->id);
+    stroke::Layer layer = *found;
+    if (a.what == "show" || a.what == "hide") layer.visible = a.what == "show";
+    if (a.what == "lock" || a.what == "unlock") layer.locked = a.what == "lock";
+    if (a.what == "opacity") layer.opacity = number_of(a);
+    if (a.what == "rename") layer.name = a.value;
+    if (a.what == "move") {
+        const double place = number_of(a), n = static_cast<double>(table.layers.size());
+        if (!(place >= 1 && place <= n && place == std::floor(place)))
+            throw UsageError(fmt::format("a layer's place is 1 (the lowest) to {}", table.layers.size()));
+        return stroke::moved(table, layer.id, static_cast<std::uint32_t>(place) - 1);
+    }
+    return stroke::changed(table, layer);
+}
+
+}  // namespace
+
+int run(const LayerWork& a) {
+    io::Project project = io::Project::open(a.project);
+    const std::vector<stroke::Stroke> entries = project.strokes();
+    stroke::LayerTable table = stroke::layers_after(entries);
+    stroke::Stroke entry;
+    for (const stroke::Stroke& s : entries) entry.id = std::max(entry.id, s.id);
+    ++entry.id;
+    entry.action = stroke::Action::layer;
+    entry.trace.flat = false;
+    entry.edit = edit_of(a, table);
+    stroke::apply(table, entry.edit);
+    project.append(entry);
+    if (a.common.json) {
+        nlohmann::json j{{"project", a.project.string()}, {"layers", nlohmann::json::array()}};
+        for (const stroke::Layer& l : table.layers)
+            j["layers"].push_back({{"id", l.id},
+                                   {"name", l.name},
+                                   {"visible", l.visible},
+                                   {"opacity", l.opacity},
+                                   {"locked", l.locked}});
+        std::cout << j.dump(2) << '\n';
+        return 0;
+    }
+    for (auto l = table.layers.rbegin(); l != table.layers.rend(); ++l)
+        fmt::print("{}{}{}, opacity {:g}\n", l->name, l->visible ? "" : " (hidden)", l->locked ? " (locked)" : "",
+                   l->opacity);
+    return 0;
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,114 @@
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace tuft::test {
+namespace {
+
+using nlohmann::json;
+
+class LayersOfAProject : public Program {
+  protected:
+    void paint(const std::string& more) {
+        write("s.inkml", stroke_file());
+        write("t.inkml", stroke_file("0 6 0"));
+        const Ran ran = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") +
+                             " --atlas-size 256 --project " + path("p.tuft") + " --json " + more);
+        ASSERT_EQ(ran.status, 0) << ran.err;
+        painted_ = json::parse(ran.out);
+    }
+    json layers() { return json::parse(tuft("inspect " + path("p.tuft") + " --json").out)["layers"]; }
+    std::string replayed() {
+        return json::parse(tuft("replay " + path("p.tuft") + " --json").out)["canvas_hash"];
+    }
+    std::string map(const std::string& more = "") {
+        EXPECT_EQ(tuft("export " + path("p.tuft") + " -o " + path("m.png") + " " + more).status, 0);
+        return read(path("m.png"));
+    }
+    json painted_;
+};
+
+TEST_F(LayersOfAProject, AreMadeByPaintingAndChangedByName) {
+    paint("");
+    EXPECT_EQ(layers().size(), 1u);
+    const std::string below = map();
+    const Ran gold = tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") +
+                          " --layer gold --ink cinnabar --json");
+    ASSERT_EQ(gold.status, 0) << gold.err;
+    EXPECT_EQ(json::parse(gold.out)["strokes"].size(), 1u) << "what was painted now";
+    ASSERT_EQ(layers().size(), 2u);
+    EXPECT_EQ(layers()[1]["name"], "gold");
+    EXPECT_EQ(replayed(), json::parse(gold.out)["canvas_hash"]);
+    const std::string both = map();
+    EXPECT_NE(both, below);
+    const auto change = [&](const std::string& what) {
+        const Ran ran = tuft("layer " + path("p.tuft") + " " + what);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+    };
+    change("hide gold");
+    EXPECT_EQ(map(), below);
+    EXPECT_EQ(map("--layers 'Layer 1',gold"), both);
+    change("show gold");
+    change("opacity gold 0.5");
+    EXPECT_NE(map(), both);
+    EXPECT_EQ(layers()[1]["opacity"], 0.5);
+    change("move gold 1");
+    EXPECT_EQ(layers()[0]["name"], "gold");
+    change("rename gold leaf");
+    change("lock leaf");
+    const Ran refused = tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") + " --layer leaf");
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_EQ(refused.error_lines(), 1) << refused.err;
+    EXPECT_NE(refused.err.find("'leaf' is locked"), std::string::npos) << refused.err;
+    change("unlock leaf");
+    change("remove leaf");
+    EXPECT_EQ(map(), below);
+    EXPECT_EQ(layers().size(), 1u);
+}
+
+TEST_F(LayersOfAProject, AreNamedInTheStrokeFile) {
+    std::string ink = stroke_file();
+    ink.insert(ink.find("<annotation type=\"tuft:brush\""), "<annotation type=\"tuft:layer\">gold &amp; 金</annotation>");
+    write("g.inkml", ink);
+    const Ran ran = tuft("paint " + model("sheet.ply") + " --strokes " + path("g.inkml") + " --atlas-size 256 --project " +
+                         path("p.tuft"));
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    ASSERT_EQ(layers().size(), 2u);
+    EXPECT_EQ(layers()[1]["name"], "gold & 金");
+}
+
+TEST_F(LayersOfAProject, WhatCannotBeIsOneLine) {
+    paint("");
+    const auto refused = [&](const std::string& arguments, int status) {
+        const Ran ran = tuft(arguments);
+        EXPECT_EQ(ran.status, status) << arguments << ran.err;
+        EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+    };
+    refused("layer " + path("p.tuft") + " hide gold", 1);
+    refused("layer " + path("p.tuft") + " remove 'Layer 1'", 1);
+    refused("layer " + path("p.tuft") + " opacity 'Layer 1' 2", 1);
+    refused("layer " + path("p.tuft") + " opacity 'Layer 1' much", 2);
+    refused("layer " + path("p.tuft") + " move 'Layer 1' 5", 2);
+    refused("layer " + path("p.tuft") + " melt 'Layer 1'", 2);
+    refused("layer " + path("none.tuft") + " hide gold", 1);
+    refused("export " + path("p.tuft") + " -o " + path("m.png") + " --layers gold", 2);
+    EXPECT_EQ(layers().size(), 1u);
+}
+
+// Every change is in the file when the command ends, however it ends: a kill of the painting
+// after it loses nothing of it.
+TEST_F(LayersOfAProject, EveryFinishedChangeSurvivesAKill) {
+    paint("");
+    const std::string script = "export TUFT_DATA='" TUFT_SOURCE "'\nP='" + path("p.tuft") + "'\nT='" TUFT_PROGRAM "'\n" +
+                               "$T layer $P add gold >/dev/null || exit 1\n"
+                               "$T paint $P --strokes '" + path("t.inkml") + "' --layer gold >/dev/null & pid=$!\n"
+                               "sleep 0.05; kill -KILL $pid 2>/dev/null; wait $pid 2>/dev/null\n"
+                               "$T layer $P opacity gold 0.25 >/dev/null || exit 1\n";
+    ASSERT_EQ(std::system(("bash '" + write("kill.sh", script) + "' 2>/dev/null").c_str()), 0);
+    ASSERT_EQ(layers().size(), 2u);
+    EXPECT_EQ(layers()[1]["opacity"], 0.25);
+    EXPECT_EQ(tuft("replay " + path("p.tuft")).status, 0);
+}
+
+}  // namespace
+}  // namespace tuft::test
