@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSeamSpacing = 0.7;  // texels between samples of a seam
 constexpr double kSeamSearch = 2.0;   // texels from a seam to the nearest texel
+constexpr double kStep = 3;           // texels between the points of a way over a piece
 const double kCreaseCos = std::cos(20 * 0.017453292519943295);
 
 Frame frame_of(const Piece& piece) {
@@ -68,9 +69,17 @@ struct Meeting {
     std::uint32_t i, j;
     double distance2;  ///< to the middle between the centres
     Vec3 point, normal_i, normal_j;
+    std::uint8_t texel_i, texel_j;  ///< beside the point, on either side
 
     auto key() const { return std::tie(i, j, distance2, point.x, point.y, point.z); }
 };
+
+void put_in_order(Meeting& m) {
+    if (m.i < m.j) return;
+    std::swap(m.i, m.j);
+    std::swap(m.normal_i, m.normal_j);
+    std::swap(m.texel_i, m.texel_j);
+}
 
 void set_distance(Meeting& m, const std::vector<Piece>& pieces) {
     const Vec3 middle = 0.5 * (Vec3(pieces[m.i].centre) + Vec3(pieces[m.j].centre));
@@ -124,12 +133,10 @@ void meet_inside_charts(const TexelMap& map, const std::vector<Piece>& pieces, s
             const double reach = std::max(map.reach[slot], map.reach[other.slot]);
             if (glm::dot(pa - pb, pa - pb) > reach * reach) continue;
             Vec3 na(map.normal(slot, t)), nb(map.normal(other.slot, other.texel));
-            Meeting m{i, j, 0, border_point(pa, na, pb, nb, reach), na, nb};
+            Meeting m{i,  j, 0, border_point(pa, na, pb, nb, reach), na, nb, static_cast<std::uint8_t>(t),
+                      other.texel};
             if (glm::dot(na, nb) > kCreaseCos) m.normal_i = m.normal_j = glm::normalize(na + nb);
-            if (m.i > m.j) {
-                std::swap(m.i, m.j);
-                std::swap(m.normal_i, m.normal_j);
-            }
+            put_in_order(m);
             set_distance(m, pieces);
             keep_best(found, m);
         }
@@ -159,25 +166,64 @@ void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const T
                   0,
                   s.position,
                   s.a.normal,
-                  s.b.normal};
+                  s.b.normal,
+                  a.texel,
+                  b.texel};
         if (m.i == m.j) continue;
-        if (m.i > m.j) {
-            std::swap(m.i, m.j);
-            std::swap(m.normal_i, m.normal_j);
-        }
+        put_in_order(m);
         set_distance(m, pieces);
         keep_best(found, m);
     }
 }
 
-/// The motion i → j of a meeting: hop = log_i(q) − R log_j(q), R from carrying j's tangent
-/// over the normals on both sides of the border to i.
-PieceEdge edge_of(const Meeting& m, const std::vector<Piece>& pieces) {
-    const Frame fi = frame_of(pieces[m.i]), fj = frame_of(pieces[m.j]);
-    const Vec3 at_border =
-        parallel_transport(parallel_transport(fj.t, fj.n, m.normal_j), m.normal_j, m.normal_i);
-    const Vec2 turn = carried_direction(fi, at_border, m.normal_i);
-    const Vec2 li = log_map(fi, m.point, m.normal_i), lj = log_map(fj, m.point, m.normal_j);
+/// Where a way from a piece's centre ends: place in the centre's frame and that frame carried
+/// along.
+struct Way {
+    Vec2 place{0};
+    Frame frame;
+
+    void step(const Vec3& p, const Vec3& n) {
+        // On a faceted or noisy surface the normals lean away from the way and the projection
+        // along them is too short; no step is shorter than the straight line in space.
+        const Vec2 step = log_map(frame, p, n);
+        const double chord = glm::length(p - frame.origin), length = glm::length(step);
+        place += length > 0 && length < chord ? (chord / length) * step : step;
+        const Vec3 t = parallel_transport(frame.t, frame.n, n);
+        frame = {p, t, glm::cross(n, t), n};
+    }
+};
+
+/// From the centre to the border in steps of a few texels straight over the atlas, so that
+/// bumps between are walked over; in one where the piece has a gap on the way.
+Way way_to_border(const TexelMap& map, const Piece& piece, std::uint8_t texel, const Vec3& point,
+                  const Vec3& normal) {
+    Way way{.frame = frame_of(piece)};
+    const Frame start = way.frame;
+    const Vec2 from(piece.centre_texel % kTile, piece.centre_texel / kTile);
+    const Vec2 to(texel % kTile, texel / kTile);
+    const int n = static_cast<int>(std::ceil(glm::length(to - from) / kStep));
+    for (int k = 1; k < n; ++k) {
+        const Vec2 at = glm::round(from + (double(k) / n) * (to - from));
+        const int t = static_cast<int>(at.y) * kTile + static_cast<int>(at.x);
+        const Vec3 m = Vec3(map.normal(piece.slot, t));
+        if (map.tiles[piece.slot].piece[t] != piece.index ||
+            glm::dot(m, way.frame.n) < kLogMapMinCos) {
+            way = {.frame = start};
+            break;
+        }
+        way.step(Vec3(map.position(piece.slot, t)), glm::normalize(m));
+    }
+    way.step(point, normal);
+    return way;
+}
+
+/// The motion i → j of a meeting: hop = log_i(q) − R log_j(q), R from carrying both tangents
+/// to the border and j's over the normals on both sides of it.
+PieceEdge edge_of(const TexelMap& map, const Meeting& m, const std::vector<Piece>& pieces) {
+    const Way i = way_to_border(map, pieces[m.i], m.texel_i, m.point, m.normal_i);
+    const Way j = way_to_border(map, pieces[m.j], m.texel_j, m.point, m.normal_j);
+    const Vec2 turn = carried_direction(i.frame, j.frame.t, m.normal_j);
+    const Vec2 li = i.place, lj = j.place;
     return {m.j, static_cast<float>(li.x - (turn.x * lj.x - turn.y * lj.y)),
             static_cast<float>(li.y - (turn.y * lj.x + turn.x * lj.y)), static_cast<float>(turn.x),
             static_cast<float>(turn.y)};
@@ -187,14 +233,14 @@ PieceEdge inverse(const PieceEdge& e, std::uint32_t from) {
     return {from, -(e.c * e.hop_u + e.s * e.hop_v), -(e.c * e.hop_v - e.s * e.hop_u), e.c, -e.s};
 }
 
-void store_edges(std::vector<Meeting>& meetings, PieceGraph& graph) {
+void store_edges(const TexelMap& map, std::vector<Meeting>& meetings, PieceGraph& graph) {
     std::sort(meetings.begin(), meetings.end(),
               [](const Meeting& a, const Meeting& b) { return a.key() < b.key(); });
     const auto same = [](const Meeting& a, const Meeting& b) { return a.i == b.i && a.j == b.j; };
     meetings.erase(std::unique(meetings.begin(), meetings.end(), same), meetings.end());
     std::vector<PieceEdge> forward(meetings.size());
     parallel_for(meetings.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) forward[k] = edge_of(meetings[k], graph.pieces);
+        for (std::size_t k = begin; k < end; ++k) forward[k] = edge_of(map, meetings[k], graph.pieces);
     });
     graph.edge_start.assign(graph.n_pieces() + 1, 0);
     for (const Meeting& m : meetings) {
@@ -335,7 +381,7 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
             std::vector<Meeting>().swap(m);
         }
     }
-    store_edges(all, graph);
+    store_edges(map, all, graph);
     report(progress, "piece graph", 1);
     return graph;
 }

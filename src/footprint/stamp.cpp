@@ -15,9 +15,20 @@ constexpr double kFacingAway = atlas::kLogMapMinCos;  // normals beyond this are
 constexpr float kAgree = 0.25f;  // of a hop: neighbours that differ by more went other ways
 constexpr float kSlack = 1.1f;   // of a piece's radius: the log map stretches it a little
 constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // pieces that surely face the stamp
+constexpr float kUpwind = 0.2f;       // cosine to the source of neighbours that lead on
+constexpr float kNearSource = 0.5f;   // squared distance over hop below which hops are added up
+constexpr float kLeastStretch = 0.6f; // and its inverse: beyond, the ways to both differ
 constexpr float kDetour = 2;  // piece radii round the picture in which ways to it are looked for
 
 enum : std::uint8_t { kOpen, kFinal, kOutside };
+
+/// Signed angle from p to q, |p||q| = `lengths`, within 5e-5 of itself below 62°; beyond, not a
+/// number. By the tangent of its half and a Padé approximant: the same bits in every library.
+float angle(const Vec2f& p, const Vec2f& q, float lengths) {
+    const float t = (p.x * q.y - p.y * q.x) / (p.x * q.x + p.y * q.y + lengths), t2 = t * t;
+    if (!(t2 < 0.36f)) return std::numeric_limits<float>::quiet_NaN();
+    return 2 * t * (105 + 55 * t2) / (105 + t2 * (90 + 9 * t2));
+}
 
 /// What the walk needs to know of a stamp.
 struct Reach {
@@ -51,6 +62,7 @@ struct Walk {
     /// What one settled neighbour says of a piece's place.
     struct Hint {
         float weight, hop2, u, v, c, s;
+        const atlas::PieceEdge* edge;
     };
 
     /// Place of a piece: mean of what its settled neighbours say, those in radial direction and
@@ -71,7 +83,7 @@ struct Walk {
             const float hh = hu * hu + hv * hv, pp = pu * pu + pv * pv, hp = hu * pu + hv * pv;
             const float cos2 = hh * pp > 0 ? hp * hp / (hh * pp) : 1.0f;
             const float weight = (cos2 * cos2 + 1e-4f) / std::sqrt(hh + 1e-20f);
-            hints[count] = {weight, hh, pu, pv, ci, si};
+            hints[count] = {weight, hh, pu, pv, ci, si, &e};
             if (weight > hints[best].weight) best = count;
             ++count;
         }
@@ -90,12 +102,71 @@ struct Walk {
         }
         const float turn = std::sqrt(c * c + s * s), away = std::sqrt(u * u + v * v);
         const float straight = total * glm::length(piece.centre - reach.origin);
-        const float stretch = away > 0 && away < 0.999f * straight ? straight / away : 1.0f;
-        n.u = stretch * u / total;
-        n.v = stretch * v / total;
+        const float longer = away > 0 && away < 0.999f * straight ? straight / away : 1.0f;
+        n.u = longer * u / total;
+        n.v = longer * v / total;
         if (!(turn > 0)) return;
         n.c = c / turn;
         n.s = s / turn;
+        if (longer == 1) swing_in(std::span(hints.data(), count), piece, n);
+    }
+
+    /// Carries distance and angle on from two settled neighbours with the source between them
+    /// (geodesic polar coordinates, Melvær and Reimers 2012): the circles of their distances meet
+    /// in the unfolded source, and angles at it are in proportion to angles at the origin. Where the
+    /// surface curves, adding up hops would turn the piece by the curvature that they enclose.
+    void swing_in(std::span<const Hint> hints, const atlas::Piece& piece, PlanScratch::Node& n) {
+        const float d = std::sqrt(n.u * n.u + n.v * n.v);
+        if (!(d > 0)) return;
+        // Towards the source, in the piece's frame.
+        const float sx = -(n.c * n.u + n.s * n.v) / d, sy = -(n.c * n.v - n.s * n.u) / d;
+        const Hint *left = nullptr, *right = nullptr;
+        float left_cos = kUpwind, right_cos = kUpwind;
+        for (const Hint& h : hints) {
+            const float du = h.u - n.u, dv = h.v - n.v;
+            if (du * du + dv * dv > kAgree * kAgree * h.hop2) continue;
+            const float x = h.edge->hop_u, y = h.edge->hop_v, length = std::sqrt(h.hop2);
+            const float cos = (x * sx + y * sy) / length;
+            const bool is_left = sx * y - sy * x > 0;
+            if (is_left && cos > left_cos) {
+                left = &h;
+                left_cos = cos;
+            } else if (!is_left && cos > right_cos) {
+                right = &h;
+                right_cos = cos;
+            }
+        }
+        if (!left || !right) return;
+        const PlanScratch::Node &a = scratch.nodes[left->edge->to], &b = scratch.nodes[right->edge->to];
+        const Vec2f pa{left->edge->hop_u, left->edge->hop_v}, pb{right->edge->hop_u, right->edge->hop_v};
+        const Vec2f ab = pb - pa;
+        const float da2 = a.u * a.u + a.v * a.v, db2 = b.u * b.u + b.v * b.v, l2 = glm::dot(ab, ab);
+        if (!(l2 > 0) || std::min(da2, db2) < kNearSource * l2) return;
+        const float x = (da2 - db2 + l2) / (2 * l2);
+        const float y2 = da2 / l2 - x * x;
+        if (!(y2 > 0)) return;
+        // The source lies beyond the line a–b from here.
+        const Vec2f across{-ab.y, ab.x};
+        const float side = glm::dot(across, pa) > 0 ? 1.0f : -1.0f;
+        const Vec2f source = pa + x * ab + side * std::sqrt(y2) * across;
+        const Vec2f ra = pa - source, rb = pb - source;
+        const float da = std::sqrt(da2), db = std::sqrt(db2), far = glm::length(source);
+        const float here = angle(ra, rb, da * db);
+        const float stretch = angle({a.u, a.v}, {b.u, b.v}, da * db) / here;
+        if (!(stretch > kLeastStretch && stretch < 1 / kLeastStretch)) return;
+        const float turned = stretch * angle(ra, -source, da * far);
+        if (!(std::abs(turned) < 1)) return;
+        const float x2 = turned * turned;
+        const float sin = turned * (1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42)));
+        const float cos = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56)));
+        const float eu = (cos * a.u - sin * a.v) / da, ev = (sin * a.u + cos * a.v) / da;
+        if (far < 0.999f * glm::length(piece.centre - reach.origin)) return;
+        n.u = far * eu;
+        n.v = far * ev;
+        const float ex = -source.x / far, ey = -source.y / far;
+        n.c = eu * ex + ev * ey;
+        n.s = ev * ex - eu * ey;
+        n.stretch = stretch;
     }
 
     bool faces_away(const atlas::Piece& piece) const {
@@ -277,6 +348,19 @@ void list_pieces(const atlas::PieceGraph& graph, const Footprint& footprint, con
     jobs.discrepancy /= std::max(footprint.radius, 1e-12);
 }
 
+/// Stretches the picture's axes across the radial direction.
+void stretch_frame(PieceFrame& f, const PlanScratch::Node& at) {
+    const float d2 = at.u * at.u + at.v * at.v;
+    if (!(d2 > 0)) return;
+    const float more = at.stretch - 1;
+    const float tt = more * at.v * at.v / d2, tr = -more * at.u * at.v / d2, rr = more * at.u * at.u / d2;
+    for (int k = 0; k < 3; ++k) {
+        const float u = f.tu[k], v = f.tv[k];
+        f.tu[k] = u + tt * u + tr * v;
+        f.tv[k] = v + tr * u + rr * v;
+    }
+}
+
 /// Gives each piece the frame it needs when they have their own.
 void place_pieces(const atlas::PieceGraph& graph, const Footprint& footprint,
                   const PlanScratch& scratch, StampJobs& jobs) {
@@ -285,6 +369,7 @@ void place_pieces(const atlas::PieceGraph& graph, const Footprint& footprint,
         const PieceFrame& old = jobs.frames[k];
         PieceFrame f = picture_frame(frame_of(graph.pieces[scratch.reached[k]]), Vec2(at.u, at.v),
                                      Vec2(at.c, at.s), footprint);
+        if (at.stretch != 1) stretch_frame(f, at);
         f.piece = old.piece;
         f.first_row = old.first_row;
         f.last_row = old.last_row;
