@@ -7,6 +7,7 @@
 
 #include "atlas/log_map.h"
 #include "footprint/picture.h"
+#include "footprint/sweep.h"
 
 namespace tuft::footprint {
 namespace {
@@ -253,14 +254,21 @@ PieceFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn
     return f;
 }
 
+/// Sub-poses for no point to go further than `sub_pose` between them; 0: nothing moves.
+double poses_wanted(const Footprint& footprint, const Motion& motion, double texel_size,
+                    const StampOptions& options) {
+    const double travel = glm::length(motion.shift) + std::abs(motion.turn) * footprint.radius;
+    if (!(travel > 0)) return 0;
+    const double step = options.sub_pose * texel_size;
+    return step > 0 ? std::ceil(travel / step) : 1;
+}
+
 /// Poses of the picture at the middles of equal parts of the motion. At a part σ before
 /// its end a texel at (u, v) sees the picture's point x = R(σ turn) ((u, v) + σ shift).
 std::vector<SubPose> spread_poses(const Footprint& footprint, const Motion& motion,
                                   double texel_size, const StampOptions& options) {
-    const double travel = glm::length(motion.shift) + std::abs(motion.turn) * footprint.radius;
-    if (!(travel > 0)) return {SubPose{}};
-    const double step = options.sub_pose * texel_size;
-    const double wanted = step > 0 ? std::ceil(travel / step) : 1;
+    const double wanted = poses_wanted(footprint, motion, texel_size, options);
+    if (!(wanted > 0)) return {SubPose{}};
     const int n =
         static_cast<int>(std::clamp(wanted, 1.0, double(std::max(options.max_sub_poses, 1))));
     std::vector<SubPose> poses(n);
@@ -269,8 +277,8 @@ std::vector<SubPose> spread_poses(const Footprint& footprint, const Motion& moti
         const double rest = 1 - (k + 0.5) / n;
         const double c = std::cos(rest * motion.turn), s = std::sin(rest * motion.turn);
         const Vec2 p = zero + rest * motion.shift / footprint.cell;
-        poses[k] = {static_cast<float>(c), static_cast<float>(s),
-                    static_cast<float>(c * p.x - s * p.y - zero.x),
+        const auto cos = static_cast<float>(c), sin = static_cast<float>(s);
+        poses[k] = {cos, -sin, sin, cos, static_cast<float>(c * p.x - s * p.y - zero.x),
                     static_cast<float>(s * p.x + c * p.y - zero.y)};
     }
     return poses;
@@ -386,6 +394,7 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.frames.clear();
     jobs.tiles.clear();
     jobs.sub_poses.clear();
+    jobs.gain = 1;
     jobs.discrepancy = 0;
     jobs.piecewise = false;
     jobs.mapping = options.mapping;
@@ -420,7 +429,10 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     if (scratch.reached.empty()) return jobs;
 
     jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
-    jobs.sub_poses = spread_poses(footprint, motion, surface.texels.texel_size, options);
+    const double texel_size = surface.texels.texel_size;
+    const bool swept = motion.turn == 0 && options.prefix_sums > 0 &&
+                       poses_wanted(footprint, motion, texel_size, options) >= options.prefix_sums;
+    if (!swept) jobs.sub_poses = spread_poses(footprint, motion, texel_size, options);
     list_pieces(surface.pieces, footprint, motion, scratch, jobs);
     if (jobs.discrepancy > std::min(options.enter, options.leave))
         place_pieces(surface.pieces, footprint, scratch, jobs);
@@ -429,6 +441,10 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     const Vec2f hi = walk.reach.hi / float(footprint.cell) - to_cells + 2.0f;
     jobs.reach_lo = {lo.x, lo.y};
     jobs.reach_hi = {hi.x, hi.y};
+    if (swept) {
+        sweep(footprint, motion.shift, jobs, scratch.sweep);
+        return jobs;
+    }
     jobs.width = footprint.width - 1;
     jobs.height = footprint.height - 1;
     pack_picture(footprint, jobs.pairs);

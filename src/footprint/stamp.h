@@ -45,6 +45,7 @@ struct StampOptions {
     double leave = 0.010;   ///< and below which one frame serves all again
     double sub_pose = 1.0;  ///< longest way of any point between sub-poses, texels
     int max_sub_poses = 64;
+    int prefix_sums = 12;   ///< straight ways of so many sub-poses and more are integrated at once
     Isa isa = best_isa();
 };
 
@@ -62,15 +63,17 @@ struct TileJob {
     std::uint32_t first = 0, count = 0;  ///< in `StampJobs::frames`
 };
 
-/// A pose of the picture within the stamp: cell coordinates are turned and moved.
+/// A pose of the picture within the stamp: the cell coordinates (fu, fv) of a texel lead to the
+/// place (xu fu + xv fv + du, yu fu + yv fv + dv) of the packed picture.
 struct SubPose {
-    float c = 1, s = 0, du = 0, dv = 0;
+    float xu = 1, xv = 0, yu = 0, yv = 1, du = 0, dv = 0;
 };
 
 /// A planned stamp: its picture packed for the kernel and the tiles it may touch.
 struct StampJobs {
     int width = 0, height = 0;  ///< of the picture less one: squares between four cells
     std::vector<std::uint16_t> pairs;             ///< see `pack_picture`
+    float gain = 1;                               ///< what full cells of it stand for
     std::vector<SubPose> sub_poses;               ///< evenly spread over the motion
     std::array<float, 2> reach_lo{}, reach_hi{};  ///< cells: the picture in all its sub-poses
     PieceFrame stamp_frame;                       ///< serves all pieces when not piecewise
@@ -83,6 +86,13 @@ struct StampJobs {
     Isa isa = Isa::baseline;
 
     bool empty() const { return tiles.empty(); }
+};
+
+/// Memory of `sweep`.
+struct SweepScratch {
+    std::vector<std::uint8_t> line;
+    std::vector<float> lines, sums;
+    Footprint swept;
 };
 
 /// Memory of the walk over the pieces; one per thread, any stamp after any other.
@@ -98,6 +108,7 @@ struct PlanScratch {
     std::vector<std::pair<float, std::uint32_t>> heap;
     std::vector<std::uint32_t> reached;
     BlockTally tally;
+    SweepScratch sweep;
 };
 
 /// Room to unpack a tile into; one per thread.

@@ -110,10 +110,10 @@ struct Rows {
     // The last coordinates inside: below the number of cells.
     const float last_x = static_cast<float>(jobs.width) * (1 - 1e-6f);
     const float last_y = static_cast<float>(jobs.height) * (1 - 1e-6f);
-    const float c = pose.c, s = pose.s, du = pose.du, dv = pose.dv;
+    const float xu = pose.xu, xv = pose.xv, yu = pose.yu, yv = pose.yv, du = pose.du, dv = pose.dv;
 #pragma omp simd
     for (int t = rows.begin; t < rows.end; ++t) {
-        const float x = c * fu[t] - s * fv[t] + du, y = s * fu[t] + c * fv[t] + dv;
+        const float x = xu * fu[t] + xv * fv[t] + du, y = yu * fu[t] + yv * fv[t] + dv;
         const float xp = x > 0.0f ? x : 0.0f, yp = y > 0.0f ? y : 0.0f;
         const float xi = xp < last_x ? xp : last_x, yi = yp < last_y ? yp : last_y;
         // A factor, not a selection: that would become a branch around the gather.
@@ -167,7 +167,7 @@ struct Rows {
     const float whole = 255.0f * static_cast<float>(jobs.sub_poses.size());
 #pragma omp simd
     for (int t = covered.begin; t < covered.end; ++t) sum[t] += full[t] != 0 ? whole : 0.0f;
-    const float scale = 1.0f / (255.0f * static_cast<float>(jobs.sub_poses.size()));
+    const float scale = jobs.gain / (255.0f * static_cast<float>(jobs.sub_poses.size()));
     int any = 0;
 #pragma omp simd reduction(| : any)
     for (int t = 0; t < kTileTexels; ++t) {
