@@ -3,6 +3,7 @@
 // Relief from screen derivatives after Mikkelsen 2010, "Bump mapping unparametrized surfaces".
 #version 330 core
 #include "common/light.glsl"
+#include "common/ramp.glsl"
 in vec3 v_position;
 in vec3 v_normal;
 in vec2 v_uv;
@@ -15,14 +16,6 @@ uniform float u_relief;              // exaggeration of the ink's height
 uniform float u_height_range;        // micrometres at the ramp's end
 uniform vec4 u_section;              // plane: what lies on its positive side is cut away; zero: none
 out vec4 f_colour;
-
-// Five-step ramp from dark blue to pale yellow, even in lightness.
-vec3 ramp(float t) {
-    vec3 c0 = vec3(0.13, 0.12, 0.30), c1 = vec3(0.18, 0.37, 0.55), c2 = vec3(0.16, 0.60, 0.55), c3 = vec3(0.55, 0.79, 0.32),
-         c4 = vec3(0.99, 0.91, 0.40);
-    float x = clamp(t, 0.0, 1.0) * 4.0;
-    return x < 1.0 ? mix(c0, c1, x) : x < 2.0 ? mix(c1, c2, x - 1.0) : x < 3.0 ? mix(c2, c3, x - 2.0) : mix(c3, c4, x - 3.0);
-}
 
 vec3 relief_normal(vec3 n, float height) {
     vec3 px = dFdx(v_position), py = dFdy(v_position);
@@ -48,20 +41,11 @@ void main() {
         return;
     }
     if (u_shading == 3) {
-        // Bare parts are grey; a film shows from a twentieth of a micrometre on.
-        float height = texel.a * 25.5;
-        vec3 shown = mix(vec3(0.80), ramp(height / u_height_range), smoothstep(0.02, 0.15, height));
-        f_colour = vec4(shown * facing, 1.0);
+        f_colour = vec4(height_colour(texel.a * 25.5, u_height_range) * facing, 1.0);
         return;
     }
     vec3 base = texel.rgb;
-    if (u_shading == 4) {
-        vec2 t = v_uv * u_atlas_size;
-        vec2 cell = floor(t), wide = floor(t / 16.0);
-        float width = max(fwidth(t.x), fwidth(t.y));
-        float fine = mod(cell.x + cell.y, 2.0), coarse = mod(wide.x + wide.y, 2.0);
-        base *= mix(mix(0.72, 1.0, fine), 0.86, smoothstep(0.35, 0.9, width)) * mix(0.85, 1.0, coarse);
-    }
+    if (u_shading == 4) base *= texel_pattern(v_uv, u_atlas_size);
     if (u_relief > 0.0) n = relief_normal(n, texel.a * 25.5e-6 * u_relief);
     float fresnel = u_shading == 1 ? 0.0 : mix(coat_fresnel(dot(n, to_eye)), 0.02, smoothstep(0.4, 0.8, u_roughness));
     vec3 light = (1.0 - fresnel) * base * irradiance(n);

@@ -34,7 +34,7 @@ bool FileDialog::suits(const fs::path& file) const {
     if (purpose_ == Purpose::save) return e == ".tuft";
     if (purpose_ == Purpose::export_model) return e == ".glb" || e == ".gltf" || e == ".obj";
     if (purpose_ == Purpose::writing) return e == ".svg" || e == ".inkml";
-    return e == ".tuft" || e == ".ply" || e == ".obj" || e == ".stl" || e == ".off" || e == ".glb" || e == ".gltf";
+    return (e == ".tuft" && purpose_ != Purpose::revise) || e == ".ply" || e == ".obj" || e == ".stl" || e == ".off" || e == ".glb" || e == ".gltf";
 }
 
 void FileDialog::show(Purpose purpose, const fs::path& start) {
@@ -81,7 +81,7 @@ std::optional<fs::path> FileDialog::accept(Ui&) {
         name_[0] = 0;
         return std::nullopt;
     }
-    if (purpose_ == Purpose::open || purpose_ == Purpose::writing) {
+    if (purpose_ == Purpose::open || purpose_ == Purpose::writing || purpose_ == Purpose::revise) {
         if (!fs::exists(path, ec)) {
             fault_ = "There is no file of that name.";
             return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSize(ImVec2(std::min(ui.px(680), screen.x - 20), std::min(ui.px(470), screen.y - 20)));
-    const char* title = purpose_ == Purpose::open ? "Open a model or project" : purpose_ == Purpose::writing ? "Writing or drawing to place" : purpose_ == Purpose::save ? "Save project as" : "Export to";
+    const char* title = purpose_ == Purpose::open ? "Open a model or project" : purpose_ == Purpose::writing ? "Writing or drawing to place" : purpose_ == Purpose::revise ? "Revised model" : purpose_ == Purpose::save ? "Save project as" : "Export to";
     ImGui::Begin((std::string(ui.tr(title)) + "###files").c_str(), nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
@@ -156,7 +156,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui) {
     const bool entered = ImGui::InputTextWithHint("##name", ui.tr("file name"), name_, sizeof name_, ImGuiInputTextFlags_EnterReturnsTrue);
     ui.mark("file name");
     ImGui::SameLine();
-    const char* action = ask_replace_ ? "Replace" : purpose_ == Purpose::open || purpose_ == Purpose::writing ? "Open" : purpose_ == Purpose::save ? "Save" : "Export";
+    const char* action = ask_replace_ ? "Replace" : purpose_ == Purpose::open || purpose_ == Purpose::writing || purpose_ == Purpose::revise ? "Open" : purpose_ == Purpose::save ? "Save" : "Export";
     if ((ui.primary_button(action, 100, name_[0] != 0) || entered) && name_[0]) chosen = accept(ui);
     ImGui::SameLine();
     if (ui.button("Cancel", nullptr, 100)) shown_ = false;

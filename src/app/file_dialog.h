@@ -12,7 +12,7 @@ namespace tuft::app {
 /// Choosing a file to open, or a name to write to.
 class FileDialog {
   public:
-    enum class Purpose { open, save, export_model, writing };
+    enum class Purpose { open, save, export_model, writing, revise };
 
     void show(Purpose purpose, const std::filesystem::path& start);
     bool shown() const { return shown_; }

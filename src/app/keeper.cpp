@@ -14,9 +14,13 @@ void Keeper::attempt(const Action& action) {
     }
 }
 
-void Keeper::adopt(io::Project project) {
+void Keeper::take_presets(const io::Project& project) {
     for (const auto& [name, toml] : project.brushes()) brushes_[name] = toml;
     for (const auto& [name, toml] : project.inks()) inks_[name] = toml;
+}
+
+void Keeper::adopt(io::Project project) {
+    take_presets(project);
     project_ = std::move(project);
     pending_.clear();
 }

@@ -18,6 +18,8 @@ class Keeper {
   public:
     /// Goes on with a project that is open already.
     void adopt(io::Project project);
+    /// Takes the presets of another project, for strokes that come from it.
+    void take_presets(const io::Project& project);
     /// Writes everything to a new project at `path` and keeps that one from now on. On
     /// failure the old one stays, the reason is returned, else "".
     std::string start(const std::filesystem::path& path, const std::string& source, const std::string& unit,

@@ -54,24 +54,6 @@ Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
     return out;
 }
 
-Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& project, const ProgressFn& progress) {
-    Painter::Work work;
-    stroke::ModelOptions prepare;
-    prepare.repair.metres_per_unit =
-        io::metres_per_unit_of(in.path).value_or(metres_per(options.unit).value_or(kMillimetre));
-    prepare.unwrap.size = options.atlas_size;
-    prepare.progress = progress;
-    work.source = in.path.string();
-    work.unit = options.unit;
-    work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
-    work.painting = std::make_unique<stroke::Painting>(*work.model, stroke::PaintingOptions{.substrate = options.substrate});
-    work.texture = std::make_unique<Texture>(*work.painting, progress);
-    work.pixels = work.texture->pixels();
-    const std::string fault = work.keeper.start(project, work.source, work.unit, *work.painting);
-    if (!fault.empty()) throw Error("the work could not be kept: " + fault);
-    return work;
-}
-
 void use_presets(const io::Project& project, stroke::Painting& painting) {
     const std::string file = project.path().string();
     for (const auto& [name, toml] : project.brushes()) {
@@ -84,6 +66,35 @@ void use_presets(const io::Project& project, stroke::Painting& painting) {
         ink.name = name;
         painting.use_ink(ink);
     }
+}
+
+// Strokes of a former project, its presets and ground, on the new model.
+void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn& progress) {
+    const io::Project project = io::Project::open(former);
+    work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
+    use_presets(project, *work.painting);
+    work.keeper.take_presets(project);
+    for (const stroke::StrokeReport& report : work.painting->replay(project.strokes(), progress))
+        if (!report.touched()) work.misfits.push_back(report);
+}
+
+Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
+    Painter::Work work;
+    stroke::ModelOptions prepare;
+    prepare.repair.metres_per_unit =
+        io::metres_per_unit_of(in.path).value_or(metres_per(options.unit).value_or(kMillimetre));
+    prepare.unwrap.size = options.atlas_size;
+    prepare.progress = progress;
+    work.source = in.path.string();
+    work.unit = options.unit;
+    work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
+    work.painting = std::make_unique<stroke::Painting>(*work.model, stroke::PaintingOptions{.substrate = options.substrate});
+    if (!former.empty()) carry_strokes(former, work, progress);
+    work.texture = std::make_unique<Texture>(*work.painting, progress);
+    work.pixels = work.texture->pixels();
+    const std::string fault = work.keeper.start(project, work.source, work.unit, *work.painting);
+    if (!fault.empty()) throw Error("the work could not be kept: " + fault);
+    return work;
 }
 
 Painter::Work load_project(const fs::path& path, const fs::path& session, const ProgressFn& progress) {
@@ -154,7 +165,13 @@ void Opening::inspect(const fs::path& path) {
 
 void Opening::prepare(Inspected inspected, const OpenOptions& options, const fs::path& project) {
     start([inspected = std::move(inspected), options, project](Job& job) mutable {
-        job.result.work = prepare_model(std::move(inspected), options, project, job.progress());
+        job.result.work = prepare_model(std::move(inspected), options, {}, project, job.progress());
+    });
+}
+
+void Opening::revise(Inspected inspected, const OpenOptions& options, const fs::path& former, const fs::path& project) {
+    start([inspected = std::move(inspected), options, former, project](Job& job) mutable {
+        job.result.work = prepare_model(std::move(inspected), options, former, project, job.progress());
     });
 }
 

@@ -36,6 +36,8 @@ class Opening {
 
     void inspect(const std::filesystem::path& path);
     void prepare(Inspected inspected, const OpenOptions& options, const std::filesystem::path& project);
+    /// The same for a model that takes the place of another: paints the strokes of `former` on it.
+    void revise(Inspected inspected, const OpenOptions& options, const std::filesystem::path& former, const std::filesystem::path& project);
     /// `session`: where a copy goes when the project's own place cannot be written.
     void load(const std::filesystem::path& project, const std::filesystem::path& session);
     void cancel();

@@ -21,6 +21,19 @@ struct Overloaded : Fs... {
     using Fs::operator()...;
 };
 
+void shift(stroke::Stroke& stroke, const RigidMove& move) {
+    const auto moved = [&](const Vec3& p) { return move.to + move.rotation * (p - move.from); };
+    stroke::Placement& place = stroke.trace.placement;
+    if (stroke.trace.flat) {
+        place = {moved(place.origin), move.rotation * place.right, move.rotation * place.down, place.laying};
+        return;
+    }
+    for (stroke::TraceSample& s : stroke.trace.samples) {
+        s.position = moved(s.position);
+        s.rotation = glm::normalize(move.rotation * s.rotation);
+    }
+}
+
 }  // namespace
 
 Painter::Painter(Work work) : work_(std::move(work)), roughness_(work_.painting->substrate().roughness) {
@@ -65,6 +78,7 @@ Update Painter::take() {
     update_.fullness = out.fullness;
     update_.can_undo = out.can_undo;
     update_.can_redo = out.can_redo;
+    update_.undo_seconds = out.undo_seconds;
     update_.trouble = out.trouble;
     update_.project = out.project;
     out.waiting = queue_.size() + (working_ ? 1 : 0);
@@ -163,6 +177,7 @@ void Painter::publish(bool strokes_changed) {
     const stroke::BrushInHand* held = work_.painting->held(current_.brush);
     update_.fullness = held ? held->reservoir.fullness() : 1;
     update_.can_undo = painting.journal().can_undo();
+    update_.undo_seconds = undo_seconds_;
     update_.can_redo = painting.journal().can_redo();
     update_.project = work_.keeper.path();
     update_.trouble = work_.keeper.trouble();
@@ -261,6 +276,7 @@ void Painter::end() {
 
 void Painter::undo() {
     if (groups_.empty() || !work_.painting->journal().can_undo()) return;
+    const double start = now();
     for (std::size_t i = 0; i < groups_.back() && work_.painting->journal().can_undo(); ++i) {
         const std::uint64_t id = work_.painting->journal().strokes().back().id;
         work_.painting->undo();
@@ -268,6 +284,7 @@ void Painter::undo() {
     }
     undone_groups_.push_back(groups_.back());
     groups_.pop_back();
+    undo_seconds_ = now() - start;
     publish(true);
 }
 
@@ -287,12 +304,13 @@ void Painter::edit(const EditStroke& command) {
     if (command.hidden) at->hidden = *command.hidden;
     if (command.brush) at->trace.brush = *command.brush;
     if (command.ink) at->trace.ink = *command.ink;
+    if (command.move) shift(*at, *command.move);
     if (command.brush || command.ink) work_.keeper.prepare(*work_.painting, at->trace.brush, at->trace.ink);
     if (command.remove) strokes.erase(at);
     rewrite(std::move(strokes));
     if (command.remove) work_.keeper.remove(command.id);
     else if (command.hidden) work_.keeper.set_hidden(command.id, *command.hidden);
-    if (command.brush || command.ink) {
+    if (command.brush || command.ink || command.move) {
         // A stroke's row cannot change its presets: the file is written anew, whole or not at all.
         const std::string fault = work_.keeper.start(work_.keeper.path(), work_.source, work_.unit, *work_.painting);
         if (!fault.empty()) say(fault);
@@ -361,6 +379,8 @@ StrokeLine stroke_line(const stroke::Stroke& stroke) {
         lo_z = std::min(lo_z, points.back().z), hi_z = std::max(hi_z, points.back().z);
     }
     const double span = std::max({hi_x - lo_x, hi_y - lo_y, 1e-4});
+    if (!stroke.trace.flat)
+        for (std::size_t i = 0; i < n; ++i) line.places.emplace_back(samples[i * (samples.size() - 1) / std::max<std::size_t>(1, n - 1)].position);
     for (const Vec3& p : points)
         line.way.emplace_back(0.5 + (p.x - 0.5 * (lo_x + hi_x)) / span, 0.5 + (p.y - 0.5 * (lo_y + hi_y)) / span,
                               (hi_z - p.z) / std::max(1e-6, hi_z - lo_z));

@@ -51,11 +51,17 @@ struct ExportModel {
     std::filesystem::path path;
     bool height = true, orm = true;  ///< maps besides the base colour
 };
+/// p → to + rotation (p − from)
+struct RigidMove {
+    Vec3 from{0}, to{0};          ///< metres
+    Quat rotation{1, 0, 0, 0};
+};
 /// Changes a stroke that is already there; the rest is painted again.
 struct EditStroke {
     std::uint64_t id = 0;
     std::optional<bool> hidden;
     std::optional<std::string> brush, ink;
+    std::optional<RigidMove> move;
     bool remove = false;
 };
 using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
@@ -68,6 +74,7 @@ struct StrokeLine {
     std::string brush, ink, label;
     bool hidden = false;
     double length = 0;            ///< metres of the hand's way
+    std::vector<Vec3f> places;    ///< metres, model frame: where the hand was; empty for flat traces
     std::vector<Vec3f> way;       ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
 };
 
@@ -81,6 +88,7 @@ struct Update {
     std::size_t waiting = 0;      ///< commands not done yet
     std::string busy;             ///< long work being done, ""
     double fraction = 0;          ///< of it
+    double undo_seconds = 0;      ///< that the last undo took
     double fullness = 1;          ///< ink in the brush last painted with, of its capacity
     bool can_undo = false, can_redo = false;
     std::string trouble;          ///< why work is not being kept, ""
@@ -98,6 +106,7 @@ class Painter {
         render::MapPixels pixels;  ///< what the texture shows at the start, for the graphics card
         Keeper keeper;
         std::string source, unit = "mm";
+        std::vector<stroke::StrokeReport> misfits;  ///< of a revised model: strokes that touch it nowhere
     };
     explicit Painter(Work work);
     /// Finishes everything that was asked for first.
@@ -136,6 +145,7 @@ class Painter {
     Work work_;
     float roughness_ = 0.1f;
     BeginStroke current_;
+    double undo_seconds_ = 0;
     double asked_ = 0, last_publish_ = 0;
     std::vector<std::size_t> groups_, undone_groups_;  ///< strokes that one movement of the hand made
     std::vector<StrokeLine> lines_;

@@ -45,7 +45,7 @@ std::string print(const char* format, double a, double b = 0, double c = 0) {
 }  // namespace
 
 void open_dialog(Session& s) {
-    if (!s.inspected || !begin_dialog(s, "Open model", 520)) {
+    if (!s.inspected || !begin_dialog(s, s.revises.empty() ? "Open model" : "Revised model", 520)) {
         if (s.inspected) end_dialog();
         return;
     }
@@ -96,7 +96,7 @@ void open_dialog(Session& s) {
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, right));
     const bool cancelled = ui.button("Cancel", nullptr, 120);
     ImGui::SameLine();
-    const bool accepted = ui.primary_button("Unwrap and paint", 120, fits);
+    const bool accepted = ui.primary_button(s.revises.empty() ? "Unwrap and paint" : "Unwrap and repaint", 120, fits);
     end_dialog();
     if (accepted) accept_inspected(s);
     else if (cancelled) s.inspected.reset();
@@ -223,7 +223,7 @@ void keys_dialog(Session& s) {
         {"Arrow keys   \\", "Lean the brush, hold it upright"},
         {"B   L   C   T", "Brush, line, curve, place writing"},
         {"Enter   Backspace   Esc", "Curve: paint it, remove a point, drop it"},
-        {"X", "See through the brush"},
+        {"X   U", "See through the brush, atlas"},
         {"Ctrl + Z,  Ctrl + Shift + Z", "Undo, redo"},
         {"Esc while painting", "Take the stroke in hand back"},
     };

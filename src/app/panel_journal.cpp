@@ -28,6 +28,7 @@ void edit_row(Session& s, const StrokeLine& line) {
     if (ui.button("Delete", "Takes the stroke away and paints the others again", half))
         s.painter->post(EditStroke{.id = line.id, .remove = true});
     if (line.action != stroke::Action::stroke) return;
+    if (ui.choice("Move", s.shift_stroke, "Then drag it over the model with the left button", 2 * half + 8)) s.shift_stroke = !s.shift_stroke;
     std::string brush = line.brush, ink = line.ink;
     if (ui.combo("Change brush", brush, s.brushes)) s.painter->post(EditStroke{.id = line.id, .brush = brush});
     if (ui.combo("Change ink", ink, s.inks)) s.painter->post(EditStroke{.id = line.id, .ink = ink});
@@ -38,7 +39,10 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::PushID(static_cast<int>(line.id));
     const bool chosen = s.selected == line.id;
-    if (ImGui::Selectable("##row", chosen, 0, ImVec2(0, size))) s.selected = chosen ? 0 : line.id;
+    if (ImGui::Selectable("##row", chosen, 0, ImVec2(0, size))) {
+        s.selected = chosen ? 0 : line.id;
+        s.shift_stroke = false;
+    }
     s.ui.mark("stroke " + std::to_string(number));
     draw_way(line, ImVec2(at.x, at.y), size);
     char text[96];

@@ -14,6 +14,7 @@ void file_menu(Session& s) {
     if (s.ui.menu_item("Save as...", "Ctrl+S", false, ready))
         s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft");
     if (s.ui.menu_item("Export...", "Ctrl+E", false, ready)) s.show_export = true;
+    if (s.ui.menu_item("Revised model...", nullptr, false, ready)) s.files.show(FileDialog::Purpose::revise, s.painter->source());
     ImGui::Separator();
     if (s.ui.menu_item("Close model", nullptr, false, ready)) {
         close_model(s);
@@ -37,7 +38,7 @@ void view_menu(Session& s) {
     if (!s.ui.begin_menu("View")) return;
     Orbit& o = s.view.orbit;
     if (s.ui.menu_item("Frame all", "Home") && s.painter)
-        o.frame(s.painter->model().mesh->bounds, static_cast<double>(s.area.width) / s.area.height);
+        o.frame(s.painter->model().mesh->bounds);
     if (s.ui.menu_item("Front", "1")) o.look_from(StandardView::front);
     if (s.ui.menu_item("Back", "Ctrl+1")) o.look_from(StandardView::back);
     if (s.ui.menu_item("Right", "3")) o.look_from(StandardView::right);
@@ -46,6 +47,7 @@ void view_menu(Session& s) {
     if (s.ui.menu_item("Bottom", "Ctrl+7")) o.look_from(StandardView::bottom);
     ImGui::Separator();
     if (s.ui.menu_item("Parallel projection", "5", o.parallel)) o.parallel = !o.parallel;
+    if (s.ui.menu_item("Atlas beside the model", "U", s.view.atlas)) s.view.atlas = !s.view.atlas;
     if (s.ui.menu_item("See through the brush", "X", s.view.see_through)) s.view.see_through = !s.view.see_through;
     if (s.ui.menu_item("Side view of the tuft", nullptr, s.view.inset)) s.view.inset = !s.view.inset;
     ImGui::EndMenu();

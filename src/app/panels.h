@@ -25,6 +25,13 @@ void tuft_inset(Session& s);
 /// Marks on the model: where the tuft touches, planes of symmetry, the line being drawn.
 void view_marks(const Session& s, const render::GlCamera& camera);
 
+/// Marks on the atlas: its frame, figures, and where the cursor over the model is in it.
+void atlas_marks(const Session& s, const std::optional<Vec2>& cursor);
+/// Strokes that do not touch the revised model.
+void misfit_dialog(Session& s);
+/// The movement that takes a place of the surface with its normal to another.
+RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint& to);
+
 /// Micrometres at the end of the height view's colours: 1, 2 or 5 times a power of ten.
 double height_range(const Session& s);
 

@@ -143,9 +143,9 @@ void Script::report(Studio& studio, double now) {
     std::sort(delays.begin(), delays.end());
     const auto at = [&](double q) { return delays.empty() ? 0.0 : 1e3 * delays[static_cast<std::size_t>(q * static_cast<double>(delays.size() - 1))]; };
     std::printf("{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, \"delay_ms_p95\": %.1f, "
-                "\"strokes\": %zu, \"since_start\": %.3f}\n",
+                "\"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f}\n",
                 report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95),
-                studio.session().strokes.size(), now);
+                studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now);
     std::fflush(stdout);
     report_frames_ = 0;
     report_start_ = now;
@@ -177,7 +177,8 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     const std::string word = c.words.empty() ? "" : c.words[0];
     if (waiting_since_ < 0) waiting_since_ = now;
     const double waited = now - waiting_since_;
-    if (c.name == "open") add({.kind = Event::Kind::drop, .text = word}, 0);
+    if (c.name == "revise") revise_with(s, word);
+    else if (c.name == "open") add({.kind = Event::Kind::drop, .text = word}, 0);
     else if (c.name == "wait-ready") {
         if (waited > kLongestWait) fail(c, "waited too long");
         return settled(s) && !s.model_is_new && waited > 0 && frames_ > 1;

@@ -11,6 +11,7 @@
 /// model's view (40%,55%); a third number is a pen's pressure.
 ///
 ///   open FILE               as if it was dropped on the window
+///   revise FILE             as if it was chosen as the revised model
 ///   wait-ready              until nothing runs in the background
 ///   wait SECONDS
 ///   move PLACE              cursor
@@ -22,7 +23,7 @@
 ///   click LABEL             the button, entry or menu of that English name
 ///   set NAME VALUE          texels (of the model asked about), brush, ink, shading, light, parallel, azimuth, elevation, zoom,
 ///                           pressure, writing-width (mm), string, radial, mirror, carry, tool, language, theme, scale, section,
-///                           see-through, draw-every (frames of which one is drawn, for tests)
+///                           see-through, atlas, draw-every (frames of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL
@@ -36,7 +37,7 @@ namespace {
 
 // Least and most words after the command.
 const std::map<std::string, std::pair<int, int>> kCommands{
-    {"open", {1, 1}}, {"wait-ready", {0, 0}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
+    {"open", {1, 1}}, {"revise", {1, 1}}, {"wait-ready", {0, 0}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
     {"stroke", {2, 10000}}, {"key", {1, 1}}, {"type", {1, 1}}, {"scroll", {1, 1}}, {"click", {1, 1}}, {"set", {2, 2}},
     {"undo", {0, 0}}, {"redo", {0, 0}}, {"save", {1, 1}}, {"export", {1, 1}}, {"close", {0, 0}}, {"screenshot", {1, 1}},
     {"expect", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"report", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};

@@ -46,6 +46,7 @@ void open_path(Session& s, const fs::path& path) {
     s.pictures.rest();
     s.inspected.reset();
     s.is_sample = false;
+    s.revises.clear();
     s.files.close();
     std::error_code ec;
     if (fs::is_regular_file(path, ec) && (path.extension() == ".tuft" || io::is_project(path)))
@@ -59,9 +60,21 @@ void open_sample(Session& s, const fs::path& path) {
     s.is_sample = true;
 }
 
+void revise_with(Session& s, const fs::path& path) {
+    if (!s.painter) return;
+    if (!s.last.trouble.empty()) return say(s, "The project must be on disk first: " + s.last.trouble);
+    const OpenOptions same{.unit = s.open_options.unit, .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate};
+    const fs::path former = s.last.project;
+    open_path(s, path);
+    s.open_options = same;
+    s.revises = former;
+}
+
 bool close_dialog(Session& s) {
     if (s.files.shown()) s.files.close();
     else if (s.show_keys) s.show_keys = false;
+    else if (s.show_misfits) s.show_misfits = false;
+    else if (s.shift_stroke) s.shift_stroke = false;
     else if (s.show_settings) s.show_settings = false;
     else if (s.show_export) s.show_export = false;
     else if (s.opening.running()) s.opening.cancel();
@@ -74,7 +87,8 @@ bool close_dialog(Session& s) {
 void accept_inspected(Session& s) {
     if (!s.inspected) return;
     const fs::path project = s.note.new_project(s.inspected->path.stem().string());
-    s.opening.prepare(std::move(*s.inspected), s.open_options, project);
+    if (s.revises.empty()) s.opening.prepare(std::move(*s.inspected), s.open_options, project);
+    else s.opening.revise(std::move(*s.inspected), s.open_options, s.revises, project);
     s.inspected.reset();
 }
 
@@ -85,6 +99,8 @@ void close_model(Session& s) {
     s.painter.reset();  // finishes and keeps what is in work
     s.strokes.clear();
     s.selected = 0;
+    s.misfits.clear();
+    s.show_misfits = s.shift_stroke = false;
     s.tuft = {};
     s.curve = {};
     if (empty && is_unnamed(project)) {
@@ -101,17 +117,23 @@ void poll_session(Session& s) {
         s.inspected = std::move(result.inspected);
         s.open_options.unit = s.inspected->summary.unit.unit;
         if (s.inspected->unit_fixed) s.open_options.unit = "m";
-        s.open_options.atlas_size = 2048;
+        if (s.revises.empty()) s.open_options.atlas_size = 2048;
         if (s.is_sample) accept_inspected(s);
     }
     if (result.work) {
+        const std::vector<stroke::StrokeReport> misfits = std::move(result.work->misfits);
+        const bool revised = !s.revises.empty();
         // Unnamed work that is left for other work is offered again at the next start.
         if (s.painter && !s.strokes.empty() && is_unnamed(s.last.project)) remember_project(s.last.project);
         close_model(s);
         s.painter = start_painter(s, std::move(*result.work));
         s.model_is_new = true;
         s.symmetry.centre = s.painter->model().mesh->bounds.centre();
-        say(s, "");
+        say(s, revised ? "The strokes are painted on the revised model; the former project is as it was." : "");
+        s.revises.clear();
+        s.misfits.clear();
+        for (const stroke::StrokeReport& m : misfits) s.misfits.push_back({.stroke = m.stroke_id, .distance = m.nearest});
+        s.show_misfits = !s.misfits.empty();
     }
     if (s.painter) {
         Update u = s.painter->take();

@@ -21,6 +21,14 @@
 namespace tuft::app {
 
 enum class ModelView { glaze, clay, flat, height, texels, charts, stretch };
+/// A stroke that does not touch a revised model any more.
+struct Misfit {
+    std::uint64_t stroke = 0;
+    std::size_t number = 0;       ///< in the journal, from 1
+    std::string brush, ink;
+    double distance = 0;          ///< metres from the tuft to the model, at the nearest
+};
+
 enum class Tool { brush, line, curve, writing };
 enum class Keymap { blender, maya };
 
@@ -34,6 +42,9 @@ struct ViewState {
     double section_at = 0.5;      ///< part of the model's size that stays
     bool see_through = false;     ///< tuft
     bool inset = true;            ///< side view of the tuft
+    bool atlas = false;           ///< the atlas beside the model
+    Vec2 atlas_centre{0.5};       ///< uv in the middle of it
+    double atlas_zoom = 1;        ///< 1: all of it is seen
 };
 
 /// Which part of the window the model has, pixels.
@@ -57,6 +68,10 @@ struct Session {
     std::unique_ptr<Painter> painter;
     std::optional<Inspected> inspected;    ///< waits for the person's yes
     OpenOptions open_options;
+    std::filesystem::path revises;         ///< project whose strokes what is being opened shall carry
+    std::vector<Misfit> misfits;
+    bool show_misfits = false, shift_stroke = false;  ///< the chosen stroke is being moved
+    std::optional<mesh::SurfacePoint> shift_from, shift_to;
     bool is_sample = false;                ///< what is being opened; nothing is asked then
     bool model_is_new = false;             ///< the scene must take it over
     SessionNote note;
@@ -65,7 +80,7 @@ struct Session {
     Pictures pictures;
 
     ViewState view;
-    Area area;
+    Area area, atlas_area;
     Tool tool = Tool::brush;
     std::vector<std::string> brushes, inks, substrates;
     std::string brush = "wolf-medium", ink = "carbon";
@@ -105,6 +120,8 @@ void open_sample(Session& s, const std::filesystem::path& path);
 bool close_dialog(Session& s);
 /// Takes writing into the hand to be placed.
 void open_writing(Session& s, const std::filesystem::path& path);
+/// Looks at a model that shall take the place of the one in work, with its strokes.
+void revise_with(Session& s, const std::filesystem::path& path);
 /// Goes on from the dialog of a model that was looked at.
 void accept_inspected(Session& s);
 /// Takes over what threads have finished.

@@ -67,11 +67,17 @@ void Studio::layout(int width, int height) {
     const int left = s.wanted.left_handed ? journal : tools;
     s.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
               std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
+    s.atlas_area = {};
+    if (!s.view.atlas || !s.painter) return;
+    s.atlas_area = s.area;
+    s.area.width /= 2;
+    s.atlas_area.x += s.area.width + 1;
+    s.atlas_area.width -= s.area.width + 1;
 }
 
 bool Studio::dialog_open() const {
     const Session& s = session_;
-    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.files.shown();
+    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_misfits || s.files.shown();
 }
 
 void Studio::panels(int height) {
@@ -79,12 +85,13 @@ void Studio::panels(int height) {
     menu_bar(s);
     if (s.painter) {
         const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
-        const auto right = static_cast<float>(s.area.x + s.area.width);
+        const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
         tool_panel(s, top, bottom, s.wanted.left_handed ? right : 0);
         journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
         status_bar(s, bottom);
         tuft_inset(s);
         view_marks(s, camera());
+        atlas_marks(s, atlas_cursor());
     } else {
         welcome(s);
     }
@@ -95,9 +102,11 @@ void Studio::panels(int height) {
     export_dialog(s);
     settings_dialog(s);
     keys_dialog(s);
+    misfit_dialog(s);
     if (const auto path = s.files.draw(s.ui)) {
         if (s.files.purpose() == FileDialog::Purpose::open) open_path(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::save) save_as(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::revise) revise_with(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::writing) open_writing(s, *path);
         else if (s.painter)
             s.painter->post(ExportModel{*path, s.export_choice.relief, s.export_choice.roughness});
@@ -122,7 +131,7 @@ void Studio::take_model() {
         s.view.orbit.azimuth = fresh.azimuth;
         s.view.orbit.elevation = fresh.elevation;
         s.view.orbit.roll = 0;
-        s.view.orbit.frame(m.mesh->bounds, static_cast<double>(s.area.width) / s.area.height);
+        s.view.orbit.frame(m.mesh->bounds);
         s.model_is_new = false;
         strokes_seen_ = s.strokes.size();
     }
@@ -157,7 +166,7 @@ void Studio::update_tuft(double now) {
     s.pressed = s.last.tuft && !s.last.tuft->branches.empty();
     if (s.pressed) {
         s.tuft = *s.last.tuft;
-    } else if (s.tool != Tool::writing && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
+    } else if (s.tool != Tool::writing && !s.shift_stroke && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
         if (!preview_ || preview_brush_ != s.brush) {
             preview_ = brush::make_tuft(brush::load_preset(s.brush));
             preview_brush_ = s.brush;
@@ -201,6 +210,7 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
     f.x = s.area.x;
     f.y = height - s.area.y - s.area.height;
     view_->draw(*scene_, f);
+    draw_atlas(f.look.options, framebuffer, height);
 }
 
 void Studio::keep_picture() {

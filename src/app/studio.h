@@ -35,7 +35,7 @@ class Studio {
     std::vector<double> take_delays() { return std::exchange(delays_, {}); }
 
   private:
-    enum class Drag { none, turn, pan, zoom };
+    enum class Drag { none, turn, pan, zoom, atlas };
 
     void layout(int width, int height);
     void panels(int height);
@@ -64,6 +64,14 @@ class Studio {
     void update_tuft(double now);
     void show_colours();
     void draw_scene(unsigned framebuffer, int height);
+    void draw_atlas(const render::DrawOptions& options, unsigned framebuffer, int height);
+    std::optional<Vec2> atlas_cursor() const;
+    bool in_atlas(const Event& event) const;
+    void atlas_press(const Event& event);
+    void atlas_wheel(const Event& event);
+    void look_at_uv(const Vec2& uv);
+    bool shift_press(const Event& event);
+    void shift_release(const Event& event);
     void keep_picture();
     Aim aim_of(const Event& event) const;
     render::GlCamera camera() const;

@@ -49,6 +49,7 @@ void Studio::handle(const Event& e) {
         case Event::Kind::hover_end: cursor_inside_ = false; return;
         case Event::Kind::scroll:
             if (!s.painter || ImGui::GetIO().WantCaptureMouse) return;
+            if (in_atlas(e)) return atlas_wheel(e);
             if (s.curve.over >= 0) return curve_wheel(e);
             if (s.tool == Tool::writing && !s.writing.empty() && !(e.modifiers & (kAlt | kControl))) return writing_wheel(e);
             last_turn_ = now_;
@@ -68,12 +69,14 @@ void Studio::handle(const Event& e) {
 void Studio::press(const Event& e) {
     Session& s = session_;
     if (!s.painter || ImGui::GetIO().WantCaptureMouse || dialog_open() || hand_ || s.curve.grabbed >= 0) return;
+    if (in_atlas(e)) return atlas_press(e);
     const bool shift = e.modifiers & kShift, control = e.modifiers & kControl, alt = e.modifiers & kAlt;
     if (s.keymap == Keymap::maya && alt)
         drag_ = e.button == 0 ? Drag::turn : e.button == 2 ? Drag::pan : Drag::zoom;
     else if (e.button == 0 && alt) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     else if (e.button != 0 && s.keymap == Keymap::blender) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     if (drag_ != Drag::none || e.button != 0) return;
+    if (shift_press(e)) return;
     if (s.tool == Tool::writing) return lay_writing();
     if (s.tool == Tool::line || s.tool == Tool::curve) return curve_press(e);
     try {
@@ -93,9 +96,17 @@ void Studio::move(const Event& e) {
         return;
     }
     if (s.curve.grabbed >= 0) return curve_drag(e);
+    if (s.shift_from) {
+        if (const auto to = aim_at(*s.painter->model().query, aim_of(e))) s.shift_to = to;
+        return;
+    }
     const double dx = kTurnPixels * (e.x - cursor_.x), dy = kTurnPixels * (e.y - cursor_.y);
+    if (drag_ == Drag::atlas) {
+        const double side = s.view.atlas_zoom * std::min(s.atlas_area.width, s.atlas_area.height);
+        s.view.atlas_centre += Vec2(-(e.x - cursor_.x), e.y - cursor_.y) / side;
+    }
     if (drag_ == Drag::turn) s.view.orbit.turn(dx, dy);
-    else if (drag_ == Drag::pan) s.view.orbit.pan(dx, dy, s.area.height);
+    else if (drag_ == Drag::pan) s.view.orbit.pan(dx, dy, std::min(s.area.width, s.area.height));
     else if (drag_ == Drag::zoom) s.view.orbit.zoom(0.03 * (dx - dy), s.view.orbit.target);
 }
 
@@ -107,6 +118,7 @@ void Studio::release(const Event& e) {
         hand_.reset();
         s.hand_down = false;
     }
+    if (e.button == 0 && s.shift_from) shift_release(e);
     if (e.button == 0 && s.curve.grabbed >= 0) curve_release(e);
     drag_ = Drag::none;
 }
@@ -145,7 +157,7 @@ void Studio::key(const Event& e) {
         case GLFW_KEY_E:
             if (control) s.show_export = true;
             break;
-        case GLFW_KEY_HOME: o.frame(s.painter->model().mesh->bounds, static_cast<double>(s.area.width) / s.area.height); break;
+        case GLFW_KEY_HOME: o.frame(s.painter->model().mesh->bounds); break;
         case GLFW_KEY_PERIOD:
         case GLFW_KEY_KP_DECIMAL:
             if (const auto hit = aim_at(*s.painter->model().query, aim_of(cursor_))) o.target = hit->position;
@@ -169,6 +181,7 @@ void Studio::key(const Event& e) {
         case GLFW_KEY_L: s.tool = Tool::line; break;
         case GLFW_KEY_C: s.tool = Tool::curve; break;
         case GLFW_KEY_T: s.tool = Tool::writing; break;
+        case GLFW_KEY_U: s.view.atlas = !s.view.atlas; break;
         case GLFW_KEY_X: s.view.see_through = !s.view.see_through; break;
         default: break;
     }

@@ -40,7 +40,8 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "section") {
         s.view.section = number > 0;
         s.view.section_at = std::clamp(number, 0.02, 1.0);
-    } else if (name == "draw-every") draw_every_ = static_cast<std::size_t>(std::clamp(number, 1.0, 1000.0));
+    } else if (name == "atlas") s.view.atlas = on;
+    else if (name == "draw-every") draw_every_ = static_cast<std::size_t>(std::clamp(number, 1.0, 1000.0));
     else if (name == "see-through") s.view.see_through = on;
     else if (name == "language") s.wanted.language = one_of({"english", "chinese"}) ? Language::chinese : Language::english, s.restyle = true;
     else if (name == "theme") s.wanted.theme = one_of({"dark", "light"}) ? Theme::light : Theme::dark, s.restyle = true;

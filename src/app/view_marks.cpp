@@ -120,6 +120,25 @@ void ghost_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
         }
 }
 
+// The chosen stroke where it lies; while it is moved, where it would lie.
+void shift_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    const auto line = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == s.selected; });
+    if (line == s.strokes.end() || line->places.size() < 2) return;
+    const mesh::SurfaceQuery& query = *s.painter->model().query;
+    std::vector<ImVec2> points;
+    for (const Vec3f& place : line->places) {
+        Vec3 p(place);
+        if (s.shift_from && s.shift_to) {
+            const RigidMove m = shift_between(*s.shift_from, *s.shift_to);
+            p = m.to + m.rotation * (p - m.from);
+        }
+        const auto on = query.closest_point(p);
+        if (on) points.push_back(on_screen(s, c, on->position));
+    }
+    draw->AddPolyline(points.data(), static_cast<int>(points.size()), IM_COL32(20, 20, 24, 150), 0, s.ui.px(3.5f));
+    draw->AddPolyline(points.data(), static_cast<int>(points.size()), s.shift_from ? IM_COL32(255, 150, 30, 255) : s.ui.accent, 0, s.ui.px(1.6f));
+}
+
 struct Stop {
     unsigned colour;
     float at;
@@ -128,7 +147,10 @@ struct Stop {
 // Colours from left to right with a text at each end, in the lower right above the scale.
 void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, const char* low, const char* high) {
     const float width = s.ui.px(190), height = s.ui.px(10);
-    const ImVec2 at(static_cast<float>(s.area.x + s.area.width) - s.ui.px(20) - width, static_cast<float>(s.area.y + s.area.height) - s.ui.px(98));
+    // In a narrow view the tuft's inset takes the room below.
+    const bool narrow = static_cast<float>(s.area.width) < s.ui.px(460);
+    const ImVec2 at(narrow ? static_cast<float>(s.area.x) + s.ui.px(20) : static_cast<float>(s.area.x + s.area.width) - s.ui.px(20) - width,
+                    narrow ? static_cast<float>(s.area.y) + s.ui.px(20) : static_cast<float>(s.area.y + s.area.height) - s.ui.px(98));
     draw->AddRectFilled(ImVec2(at.x - s.ui.px(10), at.y - s.ui.px(10)), ImVec2(at.x + width + s.ui.px(10), at.y + height + s.ui.px(28)),
                         IM_COL32(24, 24, 26, 190), s.ui.px(5));
     for (std::size_t i = 1; i < stops.size(); ++i)
@@ -168,6 +190,7 @@ void view_marks(const Session& s, const render::GlCamera& c) {
     if (!s.tuft.branches.empty()) s.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
     curve_marks(s, c, draw);
     ghost_marks(s, c, draw);
+    shift_marks(s, c, draw);
     axis_cross(s, c, draw);
     scale_bar(s, c, draw);
     legends(s, draw);

@@ -24,9 +24,9 @@ Axes axes_of(const Orbit& o) {
 
 }  // namespace
 
-void Orbit::frame(const Box& box, double aspect) {
+void Orbit::frame(const Box& box) {
     target = box.centre();
-    distance = 0.56 * box.diagonal() / (std::tan(0.5 * field_of_view) * std::min(1.0, aspect));
+    distance = 0.56 * box.diagonal() / std::tan(0.5 * field_of_view);
 }
 
 void Orbit::look_from(StandardView view) {
@@ -42,8 +42,8 @@ void Orbit::turn(double dx, double dy) {
     elevation = std::clamp(elevation + 0.007 * (c * dy - s * dx), -kQuarter, kQuarter);
 }
 
-void Orbit::pan(double dx, double dy, int height) {
-    const double metres_per_pixel = 2 * distance * std::tan(0.5 * field_of_view) / std::max(1, height);
+void Orbit::pan(double dx, double dy, int side) {
+    const double metres_per_pixel = 2 * distance * std::tan(0.5 * field_of_view) / std::max(1, side);
     const Axes a = axes_of(*this);
     target += metres_per_pixel * (-dx * a.right + dy * a.up);
 }
@@ -63,12 +63,14 @@ render::GlCamera Orbit::camera(int width, int height, const Box& scene) const {
     c.right = a.right;
     c.up = a.up;
     c.forward = a.forward;
-    c.field_of_view = field_of_view;
+    // The angle spans the picture's shorter side.
+    const double tall = static_cast<double>(height) / std::max(1, std::min(width, height));
+    c.field_of_view = 2 * std::atan(tall * std::tan(0.5 * field_of_view));
     c.width = width;
     c.height = height;
     if (parallel) {
         const double reach = scene.diagonal() + glm::distance(target, scene.centre());
-        c.parallel_height = 2 * distance * std::tan(0.5 * field_of_view);
+        c.parallel_height = 2 * tall * distance * std::tan(0.5 * field_of_view);
         c.eye = target - reach * c.forward;
         c.near = 0;
         c.far = 2 * reach;

@@ -14,16 +14,15 @@ struct Orbit {
     double azimuth = 0.5;     ///< radians; 0 looks along +y
     double elevation = 0.5;   ///< radians
     double roll = 0;          ///< radians, of the head to the right
-    double field_of_view = 0.55;
+    double field_of_view = 0.55;  ///< radians over the shorter side of the picture
     bool parallel = false;    ///< orthographic
 
-    /// Places the camera so that the whole box is seen; `free`: part of the picture not
-    /// covered by panels, in width and height.
-    void frame(const Box& box, double aspect);
+    /// Places the camera so that the whole box is seen.
+    void frame(const Box& box);
     void look_from(StandardView view);
     void turn(double dx_pixels, double dy_pixels);
     /// Moves the target in the picture plane, so that what is under the cursor stays there.
-    void pan(double dx_pixels, double dy_pixels, int height);
+    void pan(double dx_pixels, double dy_pixels, int shorter_side);
     /// Moves nearer (steps > 0); what lies at `towards` keeps its place in the picture.
     void zoom(double steps, const Vec3& towards);
     render::GlCamera camera(int width, int height, const Box& scene) const;

@@ -100,7 +100,7 @@ void fill_buffer(GLenum kind, GLuint buffer, const std::vector<T>& values, GLenu
 }  // namespace
 
 struct GlScene::State {
-    GLuint mesh_program = 0, solid_program = 0, backdrop_program = 0;
+    GLuint mesh_program = 0, solid_program = 0, backdrop_program = 0, atlas_program = 0;
     GLuint mesh_array = 0, mesh_buffer = 0, mesh_index = 0;
     GLuint cluster_array = 0, cluster_index = 0;
     std::vector<Cluster> clusters;
@@ -115,6 +115,7 @@ GlScene::GlScene() : state_(std::make_unique<State>()) {
     s.mesh_program = make_program("mesh/mesh");
     s.solid_program = make_program("brush/brush");
     s.backdrop_program = make_program("backdrop/backdrop");
+    s.atlas_program = make_program("atlas/atlas");
     for (GLuint* array : {&s.mesh_array, &s.cluster_array, &s.solid_array, &s.empty_array}) glGenVertexArrays(1, array);
     for (GLuint* buffer : {&s.mesh_buffer, &s.mesh_index, &s.cluster_index, &s.solid_buffer, &s.solid_index, &s.colour_buffer})
         glGenBuffers(1, buffer);
@@ -124,7 +125,7 @@ GlScene::GlScene() : state_(std::make_unique<State>()) {
 
 GlScene::~GlScene() {
     State& s = *state_;
-    for (const GLuint program : {s.mesh_program, s.solid_program, s.backdrop_program}) glDeleteProgram(program);
+    for (const GLuint program : {s.mesh_program, s.solid_program, s.backdrop_program, s.atlas_program}) glDeleteProgram(program);
     for (const GLuint array : {s.mesh_array, s.cluster_array, s.solid_array, s.empty_array}) glDeleteVertexArrays(1, &array);
     for (const GLuint buffer : {s.mesh_buffer, s.mesh_index, s.cluster_index, s.solid_buffer, s.solid_index, s.colour_buffer})
         glDeleteBuffers(1, &buffer);
@@ -291,6 +292,35 @@ void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOpti
     } else {
         draw_clusters(c, part);
     }
+    glBindVertexArray(0);
+    glDisable(GL_SCISSOR_TEST);
+}
+
+void GlScene::draw_atlas(const AtlasWindow& window, const DrawOptions& options) {
+    State& s = *state_;
+    const PixelRect& part = window.part;
+    if (part.empty()) return;
+    glViewport(part.x, part.y, part.width, part.height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(part.x, part.y, part.width, part.height);
+    glClearColor(window.backdrop.x, window.backdrop.y, window.backdrop.z, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glDisable(GL_DEPTH_TEST);
+    glUseProgram(s.atlas_program);
+    const auto at = [&](const char* name) { return glGetUniformLocation(s.atlas_program, name); };
+    glUniform4f(at("u_window"), static_cast<float>(window.centre.x), static_cast<float>(window.centre.y),
+                static_cast<float>(0.5 * part.width / window.pixels_per_side), static_cast<float>(0.5 * part.height / window.pixels_per_side));
+    glUniform1i(at("u_shading"), static_cast<int>(options.shading));
+    glUniform1f(at("u_atlas_size"), static_cast<float>(s.texture_size));
+    glUniform1f(at("u_height_range"), options.height_range);
+    glUniform1i(at("u_texture"), 0);
+    glUniform1i(at("u_triangle_colours"), 1);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_BUFFER, s.colour_texture);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, s.texture);
+    glBindVertexArray(s.mesh_array);
+    glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
     glBindVertexArray(0);
     glDisable(GL_SCISSOR_TEST);
 }

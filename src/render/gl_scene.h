@@ -71,6 +71,15 @@ class GlScene {
     void draw_backdrop(const GlCamera& camera, const Vec3f& low, const Vec3f& high, const PixelRect& part);
     /// Draws what of the model may be seen in a part of the picture, nothing outside it.
     void draw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, const PixelRect& part);
+    /// Draws the atlas flat into a part of the picture: `centre` in uv lies in its middle,
+    /// `pixels_per_side` is the whole atlas. What needs light is shown as flat colour.
+    struct AtlasWindow {
+        PixelRect part;
+        Vec2 centre{0.5};
+        double pixels_per_side = 512;
+        Vec3f backdrop{0.1f};       ///< sRGB-encoded
+    };
+    void draw_atlas(const AtlasWindow& window, const DrawOptions& options);
     void draw_solid(const GlCamera& camera, const GlLight& light, const GlSolid& solid, float opacity);
 
   private:

@@ -126,6 +126,28 @@ TEST_F(StudioProgram, ALineFollowsItsControlPointsAndIsUndoneAsOne) {
     EXPECT_EQ(tuft("replay '" + path("after.tuft") + "'")["canvas_hash"], stored_hash(path("after.tuft")));
 }
 
+TEST_F(StudioProgram, AStrokeMovedInTheMiddleReplaysToTheSameTexels) {
+    const Ran ran = studio(kBowl + kTwoStrokes + "click \"stroke 1\"\nwait 0.1\nclick Move\nmove 50%,59%\npress\nmove 52%,57%\nmove 54%,56%\nrelease\nwait-ready\n"
+                                                 "expect strokes 2\nexpect kept\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = io::Project::open(path("work.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 2u);
+    EXPECT_EQ(strokes[0].id, 1u);
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
+}
+
+TEST_F(StudioProgram, ARevisedModelCarriesTheStrokesAndNamesThoseThatDoNotFit) {
+    const Ran ran = studio(kBowl + kTwoStrokes + "save work.tuft\nwait-ready\nrevise " TUFT_SOURCE "/models/torus.ply\nwait-ready\nset texels 512\n"
+                                                 "click \"Unwrap and repaint\"\nwait-ready\nexpect model\nexpect strokes 2\nwait 0.2\nnames\n"
+                                                 "save revised.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const nlohmann::json truth = tuft("replay '" + path("revised.tuft") + "'");
+    EXPECT_EQ(truth["canvas_hash"], stored_hash(path("revised.tuft")));
+    // The dialog is there exactly when a replay finds a stroke that touches nothing.
+    EXPECT_EQ(ran.out.find("Keep them") != std::string::npos, truth["missed"] > 0) << truth.dump();
+    EXPECT_EQ(io::Project::open(path("work.tuft")).strokes().size(), 2u);
+}
+
 TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
     const std::string script = kBowl + kTwoStrokes + "screenshot ready.png\nmove 47%,58%\npress\nmove 50%,59%\nwait 100\n";
     const std::string line = command(script, "--headless --size 860x520");
