@@ -15,7 +15,13 @@ class Display {
     /// Takes what happened since the last call, waiting up to `wait` seconds for something.
     virtual void poll(EventQueue& events, double wait) = 0;
     virtual void present() = 0;
+    /// What went wrong since the last call and is worth a message, "" if nothing.
+    virtual std::string take_trouble() { return ""; }
     virtual bool closed() const = 0;
+    /// The graphics driver was reset: everything in its memory is gone.
+    virtual bool lost() const;
+    /// Makes a new OpenGL context, current on this thread, in place of the old one.
+    virtual void renew() = 0;
     virtual void set_title(const std::string&) {}
     virtual int width() const = 0;
     virtual int height() const = 0;

@@ -153,6 +153,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui) {
     }
     const float buttons = ui.px(2 * 100 + 16);
     ImGui::SetNextItemWidth(std::max(ui.px(80), ImGui::GetContentRegionAvail().x - buttons));
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputTextWithHint("##name", ui.tr("file name"), name_, sizeof name_, ImGuiInputTextFlags_EnterReturnsTrue);
     ui.mark("file name");
     ImGui::SameLine();

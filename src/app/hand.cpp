@@ -17,6 +17,10 @@ double part(double dt, double constant) { return 1.0 - std::exp(-dt / std::max(c
 
 }  // namespace
 
+double pen_depth(const HandSettings& s, double pressure) {
+    return std::pow(std::clamp((pressure - s.pen_least) / std::max(1e-3, s.pen_full - s.pen_least), 0.0, 1.0), s.pen_gamma);
+}
+
 std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, const Aim& aim) {
     double from = 0;
     for (int i = 0; i < 64; ++i) {
@@ -45,7 +49,7 @@ brush::Pose Hand::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal,
 }
 
 double Hand::goal_pressure(const Aim& aim) const {
-    if (aim.pressure >= 0) return std::pow(std::min(1.0, aim.pressure), settings_.pen_gamma);
+    if (aim.pressure >= 0) return pen_depth(settings_, aim.pressure);
     const double slow = 1.0 - settings_.speed_effect * std::min(1.0, speed_ / settings_.fast);
     const double rested = settings_.dwell_effect * std::min(1.0, rest_ / settings_.dwell);
     return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);

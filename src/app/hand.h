@@ -18,9 +18,13 @@ struct HandSettings {
     double dwell = 0.8;           ///< seconds
     double smoothing = 0.03;      ///< seconds of the low-pass on position
     double string = 0;            ///< metres of the string on which the brush is drawn behind the cursor
-    double pen_gamma = 1;         ///< exponent on a pen's pressure
+    double pen_least = 0, pen_full = 1;  ///< a pen's pressure where the brush begins to sink, and where it is at its deepest
+    double pen_gamma = 1;         ///< exponent in between
     Vec2 tilt{0};                 ///< radians, lean of the holder to the right and upwards in the view
 };
+
+/// Part of the working depth, 0–1, for a pen's pressure: ((p − least) / (full − least)) ^ gamma, cut.
+double pen_depth(const HandSettings& settings, double pressure);
 
 /// Where the cursor points at one moment.
 struct Aim {

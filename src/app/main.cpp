@@ -71,6 +71,14 @@ void loop(app::Display& display, const Options& options) {
     std::string title;
     while (!display.closed() && !session.quit && !(script && script->finished())) {
         display.poll(events, !events.empty() ? 0 : script ? script->patience(studio) : studio.patience());
+        if (display.lost() || (script && script->take_loss())) {
+            studio.drop_graphics();
+            ImGui_ImplOpenGL3_Shutdown();
+            display.renew();
+            ImGui_ImplOpenGL3_Init("#version 330");
+            studio.make_graphics();
+        }
+        if (std::string trouble = display.take_trouble(); !trouble.empty()) app::say(session, std::move(trouble));
         const double now = display.now();
         if (script) script->before_frame(studio, events, now);
         studio.frame(events, display.width(), display.height(), display.framebuffer(), now);

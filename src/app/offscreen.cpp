@@ -15,6 +15,10 @@ double Display::now() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+bool Display::lost() const {
+    return epoxy_has_gl_extension("GL_ARB_robustness") && glGetGraphicsResetStatusARB() != GL_NO_ERROR;
+}
+
 namespace {
 
 class Offscreen : public Display {
@@ -23,6 +27,15 @@ class Offscreen : public Display {
         display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
         if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
             throw Error("no OpenGL without a display on this machine");
+        make_context();
+    }
+    void renew() override {
+        target_.reset();
+        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglDestroyContext(display_, context_);
+        make_context();
+    }
+    void make_context() {
         const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
         context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
@@ -31,7 +44,7 @@ class Offscreen : public Display {
             throw Error("no OpenGL 3.3 without a display on this machine");
         }
         target_ = std::make_unique<render::GlTarget>();
-        target_->resize(width, height, 0);
+        target_->resize(width_, height_, 0);
     }
     ~Offscreen() override {
         target_.reset();

@@ -4,8 +4,6 @@
 #include <chrono>
 #include <set>
 
-#include "io/export.h"
-
 namespace tuft::app {
 namespace {
 
@@ -68,6 +66,7 @@ bool Painter::idle() const {
 Update Painter::take() {
     const std::lock_guard lock(mutex_);
     Update out = std::move(update_);
+    update_.pixels.reset();
     update_.tiles.clear();
     update_.strokes.reset();
     update_.messages.clear();
@@ -126,6 +125,13 @@ void Painter::perform(Command& command) {
                                   work_.keeper.start(c.path, work_.source, work_.unit, *work_.painting);
                               say(fault.empty() ? "Saved as " + c.path.string() : fault);
                               publish();
+                          },
+                          [this](SendTexture&) {
+                              publish();
+                              render::MapPixels pixels = work_.texture->pixels();
+                              const std::lock_guard lock(mutex_);
+                              update_.pixels = std::move(pixels);
+                              update_.tiles.clear();
                           },
                           [this](ExportModel& c) { export_model(c); }, [this](EditStroke& c) { edit(c); }},
                command);
@@ -204,6 +210,7 @@ void Painter::care(const CareForBrush& command) {
     entry.trace.flat = false;
     entry.trace.brush = command.brush;
     if (command.action == stroke::Action::dip) entry.trace.ink = command.ink;
+    entry.seconds = command.seconds;
     entry.settings.dip = "carry";
     work_.painting->paint(std::move(entry));
     work_.keeper.add(work_.painting->journal().strokes().back());
@@ -317,12 +324,22 @@ void Painter::edit(const EditStroke& command) {
     }
 }
 
+// Ground, brushes and inks as the journal's strokes were painted with.
+void Painter::take_presets(stroke::Painting& painting) {
+    stroke::Painting& own = *work_.painting;
+    painting.use_substrate(own.substrate());
+    for (const stroke::Stroke& s : own.journal().strokes()) {
+        if (stroke::has_brush(s.action)) painting.use_brush(own.brush(s.trace.brush));
+        if (!s.trace.ink.empty()) painting.use_ink(own.ink(s.trace.ink));
+    }
+}
+
 // Paints all strokes anew beside what is there, then puts it in its place.
 void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
     stroke::Painting& old = *work_.painting;
     auto painting = std::make_unique<stroke::Painting>(*work_.model);
-    painting->use_substrate(old.substrate());
-    for (const stroke::Stroke& s : strokes) {
+    take_presets(*painting);
+    for (const stroke::Stroke& s : strokes) {  // a change may name new ones
         if (stroke::has_brush(s.action)) painting->use_brush(old.brush(s.trace.brush));
         if (!s.trace.ink.empty()) painting->use_ink(old.ink(s.trace.ink));
     }
@@ -333,20 +350,6 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
     groups_.assign(work_.painting->journal().strokes().size(), 1);
     undone_groups_.clear();
     publish(true);
-}
-
-void Painter::export_model(const ExportModel& command) {
-    const stroke::Model& model = *work_.model;
-    progress("Exporting")("", 0);
-    ink::ComposeOptions compose = work_.painting->compose_options();
-    compose.progress = progress("Exporting");
-    io::ModelMaps maps = io::make_maps(work_.painting->stack(), model.texels, work_.painting->substrate(), compose);
-    if (!command.height) maps.height = {};
-    if (!command.orm) maps.orm = {};
-    io::export_model(command.path, *model.mesh, model.atlas, maps,
-                     {.unit = work_.unit, .progress = progress("Exporting")});
-    say("Exported " + command.path.string());
-    publish();
 }
 
 StrokeLine stroke_line(const stroke::Stroke& stroke) {

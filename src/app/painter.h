@@ -26,10 +26,11 @@ struct BeginStroke {
     bool carry = false;           ///< goes on with the hair and ink of the stroke before
     bool joined = false;          ///< is undone together with the one before it
 };
-/// Dips, rinses or combs a brush.
+/// Dips, rinses or combs a brush, or lets the ink dry.
 struct CareForBrush {
     stroke::Action action = stroke::Action::dip;
     std::string brush, ink;
+    double seconds = 0;           ///< of drying; 0: until all is dry
 };
 struct ExtendStroke {
     std::vector<brush::Pose> poses;
@@ -44,12 +45,18 @@ struct PaintTraces {
 struct CancelStroke {};
 struct UndoStroke {};
 struct RedoStroke {};
+/// Hands over the whole texture anew.
+struct SendTexture {};
 struct SaveProject {
     std::filesystem::path path;
 };
 struct ExportModel {
     std::filesystem::path path;
     bool height = true, orm = true;  ///< maps besides the base colour
+    std::uint32_t size = 0;       ///< texels per side; 0: as painted
+    int pictures = 0;             ///< of the model beside it: none, one, or that many all round
+    int picture_width = 1280;     ///< pixels; 16 : 9
+    double azimuth = 0, elevation = 0.45;  ///< radians, from where they are seen
 };
 /// p → to + rotation (p − from)
 struct RigidMove {
@@ -65,7 +72,7 @@ struct EditStroke {
     bool remove = false;
 };
 using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
-                             ExportModel, EditStroke>;
+                             ExportModel, EditStroke, SendTexture>;
 
 /// A stroke for the list.
 struct StrokeLine {
@@ -80,6 +87,7 @@ struct StrokeLine {
 
 /// What changed since the last look.
 struct Update {
+    std::optional<render::MapPixels> pixels;  ///< the whole texture, older than the tiles
     std::vector<render::TilePixels> tiles;
     std::optional<std::vector<StrokeLine>> strokes;
     std::vector<std::string> messages;
@@ -137,7 +145,9 @@ class Painter {
     void redo();
     void edit(const EditStroke& command);
     void rewrite(std::vector<stroke::Stroke> strokes);
+    void take_presets(stroke::Painting& painting);
     void export_model(const ExportModel& command);
+    void draw_pictures(const ExportModel& command, const stroke::Painting& painting);
     void publish(bool strokes_changed = false);
     void say(std::string message);
     ProgressFn progress(const std::string& name);

@@ -19,10 +19,12 @@ bool begin_dialog(Session& s, const char* title, float width) {
     const bool open = ImGui::Begin(name.c_str(), nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                                                               ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+    s.ui.in_dialog = true;
     return open;
 }
 
-void end_dialog() {
+void end_dialog(Session& s) {
+    s.ui.in_dialog = false;
     ImGui::End();
     ImGui::PopStyleVar();
 }
@@ -46,7 +48,7 @@ std::string print(const char* format, double a, double b = 0, double c = 0) {
 
 void open_dialog(Session& s) {
     if (!s.inspected || !begin_dialog(s, s.revises.empty() ? "Open model" : "Revised model", 520)) {
-        if (s.inspected) end_dialog();
+        if (s.inspected) end_dialog(s);
         return;
     }
     Ui& ui = s.ui;
@@ -97,24 +99,24 @@ void open_dialog(Session& s) {
     const bool cancelled = ui.button("Cancel", nullptr, 120);
     ImGui::SameLine();
     const bool accepted = ui.primary_button(s.revises.empty() ? "Unwrap and paint" : "Unwrap and repaint", 120, fits);
-    end_dialog();
+    end_dialog(s);
     if (accepted) accept_inspected(s);
     else if (cancelled) s.inspected.reset();
 }
 
 void opening_progress(Session& s) {
-    if (!begin_dialog(s, "Opening", 380)) return end_dialog();
+    if (!begin_dialog(s, "Opening", 380)) return end_dialog(s);
     std::string phase = s.opening.phase();
     ImGui::TextUnformatted(s.ui.tr(phase.c_str()));
     ImGui::ProgressBar(static_cast<float>(s.opening.fraction()), ImVec2(-1, s.ui.px(18)), "");
     const bool stop = s.ui.button("Cancel", nullptr, 110);
-    end_dialog();
+    end_dialog(s);
     if (stop) s.opening.cancel();
 }
 
 void recovery_dialog(Session& s) {
     if (s.lost.empty()) return;
-    if (!begin_dialog(s, "Unfinished work", 480)) return end_dialog();
+    if (!begin_dialog(s, "Unfinished work", 480)) return end_dialog(s);
     Ui& ui = s.ui;
     const LostWork work = s.lost.front();
     ui.wrapped(ui.tr("The program ended before this work was saved under a name. It is complete to the last finished stroke."));
@@ -131,7 +133,7 @@ void recovery_dialog(Session& s) {
     const bool later = ui.button("Later", "It is offered again at the next start", 100);
     ImGui::SameLine();
     const bool drop = ui.button("Discard", "Removes this work for good, unless it lies in a project of its own", 100);
-    end_dialog();
+    end_dialog(s);
     if (go_on) {
         forget_lost_work(work, false);
         open_path(s, work.project);
@@ -141,36 +143,9 @@ void recovery_dialog(Session& s) {
     if (go_on || later || drop) s.lost.erase(s.lost.begin());
 }
 
-void export_dialog(Session& s) {
-    if (!s.show_export) return;
-    if (!begin_dialog(s, "Export", 420)) return end_dialog();
-    Ui& ui = s.ui;
-    static const std::vector<std::string> presets{"Blender", "Unreal", "Unity", "Web", "Print proof"};
-    ImGui::TextDisabled("%s", ui.tr("For"));
-    if (ui.combo("Preset", s.export_choice.preset, presets)) s.export_choice.relief = s.export_choice.roughness = s.export_choice.preset != "Web";
-    const bool obj = s.export_choice.preset == "Print proof";
-    bool colour = true;
-    ImGui::BeginDisabled();
-    ui.toggle("Base colour", colour);
-    ImGui::EndDisabled();
-    ui.toggle("Roughness", s.export_choice.roughness, "Occlusion, roughness and metal in one picture");
-    ui.toggle("Relief of the ink", s.export_choice.relief, "A normal map made from the film's height");
-    if (s.painter) {
-        const std::uint32_t n = s.painter->model().atlas.size;
-        ui.note(print(obj ? "OBJ, MTL, PNG \xc2\xb7 %.0f \xc3\x97 %.0f" : "GLB \xc2\xb7 %.0f \xc3\x97 %.0f", n, n));
-    }
-    ImGui::Dummy(ImVec2(0, ui.px(4)));
-    const bool go = ui.primary_button("Choose a file...", 160);
-    ImGui::SameLine();
-    const bool cancel = ui.button("Cancel", nullptr, 110);
-    end_dialog();
-    if (go) s.files.show(FileDialog::Purpose::export_model, project_name(s) + (obj ? ".obj" : ".glb"));
-    if (go || cancel) s.show_export = false;
-}
-
 void settings_dialog(Session& s) {
     if (!s.show_settings) return;
-    if (!begin_dialog(s, "Settings", 420)) return end_dialog();
+    if (!begin_dialog(s, "Settings", 420)) return end_dialog(s);
     Ui& ui = s.ui;
     UiSettings& w = s.wanted;
     bool changed = false;
@@ -196,45 +171,15 @@ void settings_dialog(Session& s) {
     ImGui::SameLine();
     if (ui.choice("As in Maya", s.keymap == Keymap::maya, "Turn with Alt and the left button", 150)) s.keymap = Keymap::maya, changed = true;
     changed |= ui.toggle("Left-handed: tools on the right", w.left_handed);
+    if (ui.button("Keys...", "Look up and change what the keys do", 150)) s.show_keys = true;
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     const bool close = ui.button("Close", nullptr, 110);
-    end_dialog();
+    end_dialog(s);
     if (changed) {
         s.restyle = true;
         store_settings(s);
     }
     if (close) s.show_settings = false;
-}
-
-void keys_dialog(Session& s) {
-    if (!s.show_keys) return;
-    if (!begin_dialog(s, "Keys and mouse", 560)) return end_dialog();
-    const bool maya = s.keymap == Keymap::maya;
-    const std::pair<const char*, const char*> rows[] = {
-        {"Left button", "Paint"},
-        {maya ? "Alt + left" : "Middle, right, Alt + left", "Turn the view"},
-        {maya ? "Alt + middle" : "Shift + middle", "Move the view"},
-        {maya ? "Alt + right, wheel" : "Ctrl + middle, wheel", "Nearer and further"},
-        {"Ctrl + wheel", "Roll the view"},
-        {"Home   .", "Frame all, frame what is under the cursor"},
-        {"1 3 7  (Ctrl: from behind)", "Front, right, top"},
-        {"5", "Parallel or perspective"},
-        {"[  ]", "Press less, press more"},
-        {"Arrow keys   \\", "Lean the brush, hold it upright"},
-        {"B   L   C   T", "Brush, line, curve, place writing"},
-        {"Enter   Backspace   Esc", "Curve: paint it, remove a point, drop it"},
-        {"X   U", "See through the brush, atlas"},
-        {"Ctrl + Z,  Ctrl + Shift + Z", "Undo, redo"},
-        {"Esc while painting", "Take the stroke in hand back"},
-    };
-    for (const auto& [key, what] : rows) {
-        ImGui::TextUnformatted(s.ui.tr(key));
-        ImGui::SameLine(s.ui.px(250));
-        ImGui::TextDisabled("%s", s.ui.tr(what));
-    }
-    ImGui::Dummy(ImVec2(0, s.ui.px(4)));
-    if (s.ui.button("Close", nullptr, 110)) s.show_keys = false;
-    end_dialog();
 }
 
 }  // namespace tuft::app

@@ -53,7 +53,7 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);
     const std::string what = std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
-    draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), s.ui.faint, what.c_str());
+    draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, what.c_str());
     if (ImGui::IsItemHovered() && !line.label.empty()) ImGui::SetTooltip("%s", line.label.c_str());
     if (chosen) edit_row(s, line);
     ImGui::PopID();

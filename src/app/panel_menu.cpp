@@ -10,10 +10,10 @@ namespace {
 void file_menu(Session& s) {
     if (!s.ui.begin_menu("File")) return;
     const bool ready = s.painter != nullptr;
-    if (s.ui.menu_item("Open...", "Ctrl+O")) s.files.show(FileDialog::Purpose::open, {});
-    if (s.ui.menu_item("Save as...", "Ctrl+S", false, ready))
+    if (s.ui.menu_item("Open...", name_of(s.keys.chord(Act::open)).c_str())) s.files.show(FileDialog::Purpose::open, {});
+    if (s.ui.menu_item("Save as...", name_of(s.keys.chord(Act::save)).c_str(), false, ready))
         s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft");
-    if (s.ui.menu_item("Export...", "Ctrl+E", false, ready)) s.show_export = true;
+    if (s.ui.menu_item("Export...", name_of(s.keys.chord(Act::export_to)).c_str(), false, ready)) s.show_export = true;
     if (s.ui.menu_item("Revised model...", nullptr, false, ready)) s.files.show(FileDialog::Purpose::revise, s.painter->source());
     ImGui::Separator();
     if (s.ui.menu_item("Close model", nullptr, false, ready)) {
@@ -21,14 +21,14 @@ void file_menu(Session& s) {
         s.recent = recent_projects();
         s.lost = find_lost_work();
     }
-    if (s.ui.menu_item("Quit", "Ctrl+Q")) s.quit = true;
+    if (s.ui.menu_item("Quit", name_of(s.keys.chord(Act::quit)).c_str())) s.quit = true;
     ImGui::EndMenu();
 }
 
 void edit_menu(Session& s) {
     if (!s.ui.begin_menu("Edit")) return;
-    if (s.ui.menu_item("Undo", "Ctrl+Z", false, s.last.can_undo) && s.painter) s.painter->post(UndoStroke{});
-    if (s.ui.menu_item("Redo", "Ctrl+Shift+Z", false, s.last.can_redo) && s.painter) s.painter->post(RedoStroke{});
+    if (s.ui.menu_item("Undo", name_of(s.keys.chord(Act::undo)).c_str(), false, s.last.can_undo) && s.painter) s.painter->post(UndoStroke{});
+    if (s.ui.menu_item("Redo", name_of(s.keys.chord(Act::redo)).c_str(), false, s.last.can_redo) && s.painter) s.painter->post(RedoStroke{});
     ImGui::Separator();
     if (s.ui.menu_item("Settings...")) s.show_settings = true;
     ImGui::EndMenu();
@@ -37,18 +37,18 @@ void edit_menu(Session& s) {
 void view_menu(Session& s) {
     if (!s.ui.begin_menu("View")) return;
     Orbit& o = s.view.orbit;
-    if (s.ui.menu_item("Frame all", "Home") && s.painter)
+    if (s.ui.menu_item("Frame all", name_of(s.keys.chord(Act::frame_all)).c_str()) && s.painter)
         o.frame(s.painter->model().mesh->bounds);
-    if (s.ui.menu_item("Front", "1")) o.look_from(StandardView::front);
-    if (s.ui.menu_item("Back", "Ctrl+1")) o.look_from(StandardView::back);
-    if (s.ui.menu_item("Right", "3")) o.look_from(StandardView::right);
-    if (s.ui.menu_item("Left", "Ctrl+3")) o.look_from(StandardView::left);
-    if (s.ui.menu_item("Top", "7")) o.look_from(StandardView::top);
-    if (s.ui.menu_item("Bottom", "Ctrl+7")) o.look_from(StandardView::bottom);
+    if (s.ui.menu_item("Front", name_of(s.keys.chord(Act::front)).c_str())) o.look_from(StandardView::front);
+    if (s.ui.menu_item("Back", name_of(s.keys.chord(Act::back)).c_str())) o.look_from(StandardView::back);
+    if (s.ui.menu_item("Right", name_of(s.keys.chord(Act::right)).c_str())) o.look_from(StandardView::right);
+    if (s.ui.menu_item("Left", name_of(s.keys.chord(Act::left)).c_str())) o.look_from(StandardView::left);
+    if (s.ui.menu_item("Top", name_of(s.keys.chord(Act::top)).c_str())) o.look_from(StandardView::top);
+    if (s.ui.menu_item("Bottom", name_of(s.keys.chord(Act::bottom)).c_str())) o.look_from(StandardView::bottom);
     ImGui::Separator();
-    if (s.ui.menu_item("Parallel projection", "5", o.parallel)) o.parallel = !o.parallel;
-    if (s.ui.menu_item("Atlas beside the model", "U", s.view.atlas)) s.view.atlas = !s.view.atlas;
-    if (s.ui.menu_item("See through the brush", "X", s.view.see_through)) s.view.see_through = !s.view.see_through;
+    if (s.ui.menu_item("Parallel projection", name_of(s.keys.chord(Act::parallel)).c_str(), o.parallel)) o.parallel = !o.parallel;
+    if (s.ui.menu_item("Atlas beside the model", name_of(s.keys.chord(Act::atlas)).c_str(), s.view.atlas)) s.view.atlas = !s.view.atlas;
+    if (s.ui.menu_item("See through the brush", name_of(s.keys.chord(Act::see_through)).c_str(), s.view.see_through)) s.view.see_through = !s.view.see_through;
     if (s.ui.menu_item("Side view of the tuft", nullptr, s.view.inset)) s.view.inset = !s.view.inset;
     ImGui::EndMenu();
 }
@@ -75,7 +75,7 @@ void menu_bar(Session& s) {
         edit_menu(s);
         view_menu(s);
         if (s.ui.begin_menu("Help")) {
-            if (s.ui.menu_item("Keys and mouse", "F1")) s.show_keys = true;
+            if (s.ui.menu_item("Keys and mouse", name_of(s.keys.chord(Act::keys)).c_str())) s.show_keys = true;
             ImGui::EndMenu();
         }
         if (s.painter) {

@@ -8,7 +8,7 @@ namespace tuft::app {
 
 void misfit_dialog(Session& s) {
     if (!s.show_misfits || !s.painter) return;
-    if (!begin_dialog(s, "Strokes that no longer fit", 460)) return end_dialog();
+    if (!begin_dialog(s, "Strokes that no longer fit", 460)) return end_dialog(s);
     Ui& ui = s.ui;
     ui.wrapped(ui.tr("These strokes do not touch the revised model anywhere. They stay in the journal."));
     const float rows = std::min(8.0f, static_cast<float>(s.misfits.size()));
@@ -27,7 +27,7 @@ void misfit_dialog(Session& s) {
     const bool hide = ui.button("Hide them", nullptr, 120);
     ImGui::SameLine();
     const bool keep = ui.primary_button("Keep them", 120);
-    end_dialog();
+    end_dialog(s);
     if (hide)
         for (const Misfit& misfit : s.misfits) s.painter->post(EditStroke{.id = misfit.stroke, .hidden = true});
     if (hide || keep) s.show_misfits = false;

@@ -130,6 +130,11 @@ void ink_palette(Session& s) {
 // What is done with a brush between strokes.
 void care_section(Session& s) {
     Ui& ui = s.ui;
+    if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", (kToolWidth - 24 - 8) / 2 - 6))
+        s.painter->post(CareForBrush{stroke::Action::dry, s.brush, "", 60});
+    ImGui::SameLine();
+    if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", (kToolWidth - 24 - 8) / 2 - 6))
+        s.painter->post(CareForBrush{stroke::Action::dry, s.brush, "", 0});
     ui.toggle("Carry ink over", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
     if (!s.carry) return;
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
@@ -143,6 +148,51 @@ void care_section(Session& s) {
     ui.hint("Ink left in the brush");
 }
 
+// The curve from a pen's pressure to the brush's depth; its ends and its middle can be dragged. The dot
+// is what the pen does now.
+void pen_curve(Session& s) {
+    Ui& ui = s.ui;
+    HandSettings& h = s.hand;
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ui.px(96));
+    ImGui::InvisibleButton("pen curve", size);
+    ui.mark("Pen curve");
+    const bool held = ImGui::IsItemActive();
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float pad = ui.px(8);
+    const auto place = [&](double x, double y) {
+        return ImVec2(at.x + pad + static_cast<float>(x) * (size.x - 2 * pad), at.y + size.y - pad - static_cast<float>(y) * (size.y - 2 * pad));
+    };
+    const double x = std::clamp(static_cast<double>((mouse.x - at.x - pad) / (size.x - 2 * pad)), 0.0, 1.0);
+    const double y = std::clamp(static_cast<double>((at.y + size.y - pad - mouse.y) / (size.y - 2 * pad)), 0.02, 0.98);
+    const double middle = 0.5 * (h.pen_least + h.pen_full);
+    if (ImGui::IsItemActivated()) {
+        const double to_least = std::abs(x - h.pen_least) + y, to_full = std::abs(x - h.pen_full) + 1 - y;
+        const double to_middle = std::abs(x - middle) + std::abs(y - std::pow(0.5, h.pen_gamma));
+        s.pen_handle = to_middle <= std::min(to_least, to_full) ? 1 : to_least < to_full ? 0 : 2;
+    }
+    if (held && s.pen_handle == 0) h.pen_least = std::min(x, h.pen_full - 0.1);
+    if (held && s.pen_handle == 2) h.pen_full = std::max(x, h.pen_least + 0.1);
+    if (held && s.pen_handle == 1) h.pen_gamma = std::clamp(std::log(y) / std::log(0.5), 0.25, 4.0);
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) h.pen_least = 0, h.pen_full = 1, h.pen_gamma = 1;
+    ui.hint("Drag its ends and its middle; a double click makes it straight");
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), ImGui::GetColorU32(ImGuiCol_FrameBg), ui.px(4));
+    for (int i = 1; i < 4; ++i) {
+        draw->AddLine(place(0.25 * i, 0), place(0.25 * i, 1), ImGui::GetColorU32(ImGuiCol_Separator));
+        draw->AddLine(place(0, 0.25 * i), place(1, 0.25 * i), ImGui::GetColorU32(ImGuiCol_Separator));
+    }
+    ImVec2 points[49];
+    for (int i = 0; i < 49; ++i) points[i] = place(i / 48.0, pen_depth(h, i / 48.0));
+    draw->AddPolyline(points, 49, ui.accent, 0, ui.px(2));
+    for (const ImVec2& p : {place(h.pen_least, 0), place(middle, std::pow(0.5, h.pen_gamma)), place(h.pen_full, 1)})
+        draw->AddCircleFilled(p, ui.px(4.5f), ui.strong);
+    if (s.pen_pressure >= 0) {
+        const ImVec2 dot = place(std::min(1.0, s.pen_pressure), pen_depth(h, s.pen_pressure));
+        draw->AddLine(dot, place(std::min(1.0, s.pen_pressure), 0), IM_COL32(255, 176, 32, 160), ui.px(1));
+        draw->AddCircleFilled(dot, ui.px(5), IM_COL32(255, 176, 32, 255));
+    }
+}
+
 void hand_section(Session& s) {
     Ui& ui = s.ui;
     ui.heading("Hand");
@@ -152,7 +202,8 @@ void hand_section(Session& s) {
     if (!s.more_hand) return;
     ui.slider("Speed lightens", s.hand.speed_effect, 0, 1, "%.2f", "As a hand does. Only for a mouse; a pen says its own pressure");
     ui.slider("Rest deepens", s.hand.dwell_effect, 0, 1, "%.2f", "A mouse that stays where it is sinks in slowly");
-    ui.slider("Pen softness", s.hand.pen_gamma, 0.4, 2.5, "%.2f", "Curve from the pen's force to the brush's depth");
+    ui.note(ui.tr("Pen: from its force to the brush's depth"));
+    pen_curve(s);
     double right = s.hand.tilt.x, up = s.hand.tilt.y;
     ui.slider("Lean sideways", right, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", "Of the holder, seen on the screen. Arrow keys", kDegree);
     ui.slider("Lean away", up, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", "Of the holder, seen on the screen. Arrow keys", kDegree);

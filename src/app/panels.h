@@ -25,6 +25,8 @@ void tuft_inset(Session& s);
 /// Marks on the model: where the tuft touches, planes of symmetry, the line being drawn.
 void view_marks(const Session& s, const render::GlCamera& camera);
 
+/// The export as the dialog says it.
+ExportModel export_command(const Session& s, const std::filesystem::path& path);
 /// Marks on the atlas: its frame, figures, and where the cursor over the model is in it.
 void atlas_marks(const Session& s, const std::optional<Vec2>& cursor);
 /// Strokes that do not touch the revised model.
@@ -40,6 +42,6 @@ unsigned ink_colour(const std::string& ink);
 
 /// Modal window in the middle; true while it is drawn. Close it with `end_dialog`.
 bool begin_dialog(Session& s, const char* title, float width);
-void end_dialog();
+void end_dialog(Session& s);
 
 }  // namespace tuft::app

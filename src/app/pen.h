@@ -17,7 +17,8 @@ class Pen {
     /// Puts the pen's samples since the last call in the place of the cursor movements that
     /// the window saw at the same time, and gives presses the pen's pressure. `now`: the
     /// window's clock; `scale`: picture pixels per window coordinate.
-    virtual void merge(EventQueue& events, double now, double scale) = 0;
+    /// Returns true when a pen was unplugged.
+    virtual bool merge(EventQueue& events, double now, double scale) = 0;
 };
 
 /// nullptr when the window is not on an X server with XInput 2.2.

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <map>
 
+#include "app/panels.h"
 #include "app/studio.h"
 #include "core/random.h"
 #include "io/image.h"
@@ -215,7 +216,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     else if (c.name == "redo") press_key("ctrl+shift+z", c.line);
     else if (c.name == "save") save_as(s, word);
     else if (c.name == "export") {
-        if (s.painter) s.painter->post(ExportModel{word, true, true});
+        if (s.painter) s.painter->post(export_command(s, word));
     } else if (c.name == "close") {
         studio.finish();
         s.recent = recent_projects();
@@ -230,6 +231,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         pace_start_ = now;
         pace_from_ = clock_;
     } else if (c.name == "random") random_events(studio, c);
+    else if (c.name == "lose-graphics") lose_ = true;
     else if (c.name == "report") report(studio, now);
     else if (c.name == "names") {
         for (const std::string& name : s.ui.names()) std::printf("%s\n", name.c_str());

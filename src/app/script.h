@@ -3,6 +3,7 @@
 #include <deque>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/events.h"
@@ -41,6 +42,8 @@ class Script {
     void after_frame(int width, int height, double now);
     /// Seconds that the next frame may wait: none while there is something to play.
     double patience(const Studio& studio) const;
+    /// Whether the script wants the graphics to be lost now.
+    bool take_loss() { return std::exchange(lose_, false); }
     bool finished() const { return next_ >= commands_.size() && pending_.empty() && picture_.empty(); }
 
   private:
@@ -65,6 +68,7 @@ class Script {
     Event cursor_;
     ScriptPoint last_place_;           ///< of the label a click waits for
     std::string picture_;
+    bool lose_ = false;
     bool waiting_ = false;             ///< the last command waits for something
     std::size_t frames_ = 0, report_frames_ = 0;
     double report_start_ = 0;

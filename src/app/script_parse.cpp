@@ -22,7 +22,8 @@
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
 ///   set NAME VALUE          texels (of the model asked about), brush, ink, shading, light, parallel, azimuth, elevation, zoom,
-///                           pressure, writing-width (mm), string, radial, mirror, carry, tool, language, theme, scale, section,
+///                           export-size, export-pictures,
+///                           export-picture-width, pressure, writing-width (mm), string, radial, mirror, carry, tool, language, theme, scale, section,
 ///                           see-through, atlas, draw-every (frames of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
@@ -30,6 +31,7 @@
 ///   pace on|off             events at the speed of the clock, or at once
 ///   random COUNT SEED       that many events of any kind
 ///   report                  frames, seconds and delays since the last one, on standard output
+///   lose-graphics           as if the graphics driver had been reset
 ///   names                   labels that can be clicked, on standard output
 ///   quit
 namespace tuft::app {
@@ -40,7 +42,7 @@ const std::map<std::string, std::pair<int, int>> kCommands{
     {"open", {1, 1}}, {"revise", {1, 1}}, {"wait-ready", {0, 0}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
     {"stroke", {2, 10000}}, {"key", {1, 1}}, {"type", {1, 1}}, {"scroll", {1, 1}}, {"click", {1, 1}}, {"set", {2, 2}},
     {"undo", {0, 0}}, {"redo", {0, 0}}, {"save", {1, 1}}, {"export", {1, 1}}, {"close", {0, 0}}, {"screenshot", {1, 1}},
-    {"expect", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"report", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};
+    {"expect", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};
 
 std::vector<std::string> split(const std::string& line, const std::string& file, int number) {
     std::vector<std::string> words;

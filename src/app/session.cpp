@@ -72,6 +72,7 @@ void revise_with(Session& s, const fs::path& path) {
 
 bool close_dialog(Session& s) {
     if (s.files.shown()) s.files.close();
+    else if (s.key_asked) s.key_asked.reset();
     else if (s.show_keys) s.show_keys = false;
     else if (s.show_misfits) s.show_misfits = false;
     else if (s.shift_stroke) s.shift_stroke = false;
@@ -151,6 +152,7 @@ void poll_session(Session& s) {
         std::vector<render::TilePixels> tiles = std::move(s.last.tiles);
         tiles.insert(tiles.end(), u.tiles.begin(), u.tiles.end());
         u.tiles = std::move(tiles);
+        if (!u.pixels) u.pixels = std::move(s.last.pixels);
         if (!u.tuft) u.tuft = std::move(s.last.tuft);
         s.last = std::move(u);
     }
@@ -188,6 +190,10 @@ void load_settings(Session& s) {
         else if (key == "theme") s.wanted.theme = value == "light" ? Theme::light : Theme::dark;
         else if (key == "scale") s.wanted.scale = std::clamp(static_cast<float>(std::atof(value.c_str())), 0.75f, 3.0f);
         else if (key == "left_handed") s.wanted.left_handed = value == "1";
+        else if (key.rfind("key:", 0) == 0) s.keys.restore(key.substr(4), value);
+        else if (key == "pen_least") s.hand.pen_least = std::clamp(std::atof(value.c_str()), 0.0, 0.9);
+        else if (key == "pen_full") s.hand.pen_full = std::clamp(std::atof(value.c_str()), s.hand.pen_least + 0.1, 1.0);
+        else if (key == "pen_gamma") s.hand.pen_gamma = std::clamp(std::atof(value.c_str()), 0.25, 4.0);
         else if (key == "keymap") s.keymap = value == "maya" ? Keymap::maya : Keymap::blender;
     }
 }
@@ -196,7 +202,9 @@ void store_settings(const Session& s) {
     std::ostringstream out;
     out << "language " << (s.wanted.language == Language::chinese ? "chinese" : "english") << "\ntheme "
         << (s.wanted.theme == Theme::light ? "light" : "dark") << "\nscale " << s.wanted.scale << "\nleft_handed "
-        << s.wanted.left_handed << "\nkeymap " << (s.keymap == Keymap::maya ? "maya" : "blender") << '\n';
+        << s.wanted.left_handed << "\nkeymap " << (s.keymap == Keymap::maya ? "maya" : "blender") << "\npen_least " << s.hand.pen_least << "\npen_full "
+        << s.hand.pen_full << "\npen_gamma " << s.hand.pen_gamma << '\n';
+    for (const auto& [word, chord] : s.keys.changes()) out << "key:" << word << ' ' << chord << '\n';
     const std::string text = out.str();
     try {
         write_file(state_folder() / "settings", text.data(), text.size());

@@ -9,6 +9,7 @@
 #include "app/curve.h"
 #include "app/file_dialog.h"
 #include "app/hand.h"
+#include "app/keys.h"
 #include "app/opening.h"
 #include "app/painter.h"
 #include "app/pictures.h"
@@ -21,6 +22,7 @@
 namespace tuft::app {
 
 enum class ModelView { glaze, clay, flat, height, texels, charts, stretch };
+inline constexpr int kModelViews = 7;
 /// A stroke that does not touch a revised model any more.
 struct Misfit {
     std::uint64_t stroke = 0;
@@ -55,6 +57,9 @@ struct Area {
 struct ExportChoice {
     std::string preset = "Blender";
     bool relief = true, roughness = true;
+    std::uint32_t size = 0;       ///< texels per side; 0: as painted
+    int picture = 0;              ///< 0: none, 1: a still, else that many pictures all round
+    int picture_width = 1280;     ///< pixels
 };
 
 /// Everything the window knows, as plain data; panels read and change it.
@@ -94,6 +99,11 @@ struct Session {
     double highest = 0;                    ///< micrometres, of the ink seen so far
     bool carry = false;                    ///< ink lasts from stroke to stroke
     bool hand_down = false;
+
+    double pen_pressure = -1;              ///< of the pen now; below 0: no pen
+    int pen_handle = 1;                    ///< of its curve, in the hand
+    KeyTable keys;
+    std::optional<Act> key_asked;          ///< action that the next key is given to
 
     std::vector<StrokeLine> strokes;
     std::uint64_t selected = 0;

@@ -45,6 +45,25 @@ Studio::~Studio() {
     session_.pictures.release();
 }
 
+void Studio::drop_graphics() {
+    scene_.reset();
+    view_.reset();
+    session_.pictures.release();
+}
+
+void Studio::make_graphics() {
+    Session& s = session_;
+    scene_ = std::make_unique<render::GlScene>();
+    view_ = std::make_unique<render::GlView>();
+    colours_shown_ = ModelView::glaze;
+    if (s.painter && !s.model_is_new) {
+        const stroke::Model& m = s.painter->model();
+        scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
+        s.painter->post(SendTexture{});
+    }
+    say(s, "The graphics driver was reset; the picture was made anew, and no stroke is lost.");
+}
+
 void Studio::finish() {
     if (hand_ && session_.painter) post(hand_->lift(), now_);
     hand_.reset();
@@ -109,7 +128,7 @@ void Studio::panels(int height) {
         else if (s.files.purpose() == FileDialog::Purpose::revise) revise_with(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::writing) open_writing(s, *path);
         else if (s.painter)
-            s.painter->post(ExportModel{*path, s.export_choice.relief, s.export_choice.roughness});
+            s.painter->post(export_command(s, *path));
     }
 }
 
@@ -134,6 +153,11 @@ void Studio::take_model() {
         s.view.orbit.frame(m.mesh->bounds);
         s.model_is_new = false;
         strokes_seen_ = s.strokes.size();
+    }
+    if (s.last.pixels) {
+        scene_->set_texture(*s.last.pixels);
+        s.last.pixels.reset();
+        view_->scene_changed();
     }
     if (s.last.done > shown_ && !s.last.tiles.empty()) delays_.push_back(now_ - s.last.done);
     shown_ = s.last.done;
@@ -247,6 +271,7 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
         update_tuft(now);
     }
     panels(height);
+    s.ui.enter = false;
     if (++frames_ % draw_every_ != 0) return ImGui::EndFrame();
     draw_scene(framebuffer, height);
     keep_picture();

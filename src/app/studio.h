@@ -27,6 +27,9 @@ class Studio {
     /// Seconds that the next frame may wait for an event: none while the picture moves, a while
     /// during work that only shows its progress, long when nothing happens.
     double patience() const;
+    /// The OpenGL context is gone, or goes; then there is a new one.
+    void drop_graphics();
+    void make_graphics();
     /// Ends the stroke in hand and keeps everything.
     void finish();
     /// Changes a setting by its name in scripts. Throws `Error` for a name or value that is unknown.
@@ -46,6 +49,7 @@ class Studio {
     void move(const Event& event);
     void release(const Event& event);
     void key(const Event& event);
+    void perform(Act act);
     void post(std::vector<HandStep> steps, double time);
     int curve_point_at(const Event& event) const;
     std::optional<CurvePoint> curve_point(const Event& event) const;

@@ -61,6 +61,7 @@ void Studio::handle(const Event& e) {
             return;
         default: return;
     }
+    if (e.pressure >= 0) s.pen_pressure = e.pressure;
     cursor_ = e;
     cursor_inside_ = !ImGui::GetIO().WantCaptureMouse && e.x >= s.area.x && e.y >= s.area.y && e.x < s.area.x + s.area.width &&
                      e.y < s.area.y + s.area.height;
@@ -126,7 +127,6 @@ void Studio::release(const Event& e) {
 void Studio::key(const Event& e) {
     Session& s = session_;
     if (ImGui::GetIO().WantTextInput && e.key != GLFW_KEY_ESCAPE) return;
-    const bool shift = e.modifiers & kShift, control = e.modifiers & kControl;
     if (e.key == GLFW_KEY_ESCAPE && hand_) {
         hand_.reset();
         s.hand_down = false;
@@ -135,54 +135,66 @@ void Studio::key(const Event& e) {
     }
     if (hand_) return;
     if (e.key == GLFW_KEY_ESCAPE && close_dialog(s)) return;
-    if (control && e.key == GLFW_KEY_O) return s.files.show(FileDialog::Purpose::open, {});
-    if (control && e.key == GLFW_KEY_Q) s.quit = true;
-    if (e.key == GLFW_KEY_F1) s.show_keys = !s.show_keys;
+    if (ImGui::GetIO().WantTextInput) return;
+    if ((e.key == GLFW_KEY_ENTER || e.key == GLFW_KEY_KP_ENTER) && !s.key_asked && dialog_open()) {
+        s.ui.enter = true;
+        return;
+    }
+    if (s.key_asked) {
+        const bool modifier = e.key >= GLFW_KEY_LEFT_SHIFT && e.key <= GLFW_KEY_RIGHT_SUPER;
+        if (modifier || name_of(Chord{e.key, e.modifiers}).empty()) return;
+        if (const auto other = s.keys.assign(*s.key_asked, {e.key, e.modifiers})) say(s, std::string(s.ui.tr(title_of(*other))) + s.ui.tr(" has no key now."));
+        s.key_asked.reset();
+        store_settings(s);
+        return;
+    }
+    if (s.painter && !dialog_open() && curve_key(e)) return;
+    if (const auto act = s.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)})) perform(*act);
+}
+
+void Studio::perform(Act act) {
+    Session& s = session_;
+    if (act == Act::open) return s.files.show(FileDialog::Purpose::open, {});
+    if (act == Act::quit) s.quit = true;
+    if (act == Act::keys) s.show_keys = !s.show_keys;
     if (!s.painter || dialog_open()) return;
-    if (curve_key(e)) return;
     const auto tilt = [&](double x, double y) {
         s.hand.tilt = glm::clamp(s.hand.tilt + Vec2(x, y) * 0.0872664626, -1.0471975512, 1.0471975512);
     };
     Orbit& o = s.view.orbit;
-    switch (e.key) {
-        case GLFW_KEY_Z:
-            if (control) s.painter->post(shift ? Command(RedoStroke{}) : Command(UndoStroke{}));
+    switch (act) {
+        case Act::undo: s.painter->post(UndoStroke{}); break;
+        case Act::redo: s.painter->post(RedoStroke{}); break;
+        case Act::delete_stroke:
+            if (s.selected) s.painter->post(EditStroke{.id = s.selected, .remove = true});
             break;
-        case GLFW_KEY_Y:
-            if (control) s.painter->post(RedoStroke{});
-            break;
-        case GLFW_KEY_S:
-            if (control) s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft");
-            break;
-        case GLFW_KEY_E:
-            if (control) s.show_export = true;
-            break;
-        case GLFW_KEY_HOME: o.frame(s.painter->model().mesh->bounds); break;
-        case GLFW_KEY_PERIOD:
-        case GLFW_KEY_KP_DECIMAL:
+        case Act::save: s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft"); break;
+        case Act::export_to: s.show_export = true; break;
+        case Act::frame_all: o.frame(s.painter->model().mesh->bounds); break;
+        case Act::frame_cursor:
             if (const auto hit = aim_at(*s.painter->model().query, aim_of(cursor_))) o.target = hit->position;
             break;
-        case GLFW_KEY_1:
-        case GLFW_KEY_KP_1: o.look_from(control ? StandardView::back : StandardView::front); break;
-        case GLFW_KEY_3:
-        case GLFW_KEY_KP_3: o.look_from(control ? StandardView::left : StandardView::right); break;
-        case GLFW_KEY_7:
-        case GLFW_KEY_KP_7: o.look_from(control ? StandardView::bottom : StandardView::top); break;
-        case GLFW_KEY_5:
-        case GLFW_KEY_KP_5: o.parallel = !o.parallel; break;
-        case GLFW_KEY_LEFT_BRACKET: s.hand.pressure = std::max(0.02, s.hand.pressure - 0.05); break;
-        case GLFW_KEY_RIGHT_BRACKET: s.hand.pressure = std::min(1.0, s.hand.pressure + 0.05); break;
-        case GLFW_KEY_LEFT: tilt(-1, 0); break;
-        case GLFW_KEY_RIGHT: tilt(1, 0); break;
-        case GLFW_KEY_UP: tilt(0, 1); break;
-        case GLFW_KEY_DOWN: tilt(0, -1); break;
-        case GLFW_KEY_BACKSLASH: s.hand.tilt = Vec2(0); break;
-        case GLFW_KEY_B: s.tool = Tool::brush; break;
-        case GLFW_KEY_L: s.tool = Tool::line; break;
-        case GLFW_KEY_C: s.tool = Tool::curve; break;
-        case GLFW_KEY_T: s.tool = Tool::writing; break;
-        case GLFW_KEY_U: s.view.atlas = !s.view.atlas; break;
-        case GLFW_KEY_X: s.view.see_through = !s.view.see_through; break;
+        case Act::front: o.look_from(StandardView::front); break;
+        case Act::back: o.look_from(StandardView::back); break;
+        case Act::right: o.look_from(StandardView::right); break;
+        case Act::left: o.look_from(StandardView::left); break;
+        case Act::top: o.look_from(StandardView::top); break;
+        case Act::bottom: o.look_from(StandardView::bottom); break;
+        case Act::parallel: o.parallel = !o.parallel; break;
+        case Act::lighter: s.hand.pressure = std::max(0.02, s.hand.pressure - 0.05); break;
+        case Act::heavier: s.hand.pressure = std::min(1.0, s.hand.pressure + 0.05); break;
+        case Act::lean_left: tilt(-1, 0); break;
+        case Act::lean_right: tilt(1, 0); break;
+        case Act::lean_away: tilt(0, 1); break;
+        case Act::lean_near: tilt(0, -1); break;
+        case Act::upright: s.hand.tilt = Vec2(0); break;
+        case Act::brush: s.tool = Tool::brush; break;
+        case Act::line: s.tool = Tool::line; break;
+        case Act::curve: s.tool = Tool::curve; break;
+        case Act::writing: s.tool = Tool::writing; break;
+        case Act::atlas: s.view.atlas = !s.view.atlas; break;
+        case Act::see_through: s.view.see_through = !s.view.see_through; break;
+        case Act::next_shading: s.view.shown = static_cast<ModelView>((static_cast<int>(s.view.shown) + 1) % kModelViews); break;
         default: break;
     }
 }

@@ -88,7 +88,7 @@ void Ui::style() {
     const ImVec4 soft = dark ? ImVec4(0.25f, 0.38f, 0.58f, 1) : ImVec4(0.72f, 0.82f, 0.95f, 1);
     ImVec4* c = s.Colors;
     c[ImGuiCol_Text] = dark ? grey(0.92f) : grey(0.10f);
-    c[ImGuiCol_TextDisabled] = dark ? grey(0.66f) : grey(0.38f);
+    c[ImGuiCol_TextDisabled] = dark ? grey(0.66f) : grey(0.36f);
     c[ImGuiCol_WindowBg] = dark ? grey(0.155f) : grey(0.94f);
     c[ImGuiCol_ChildBg] = ImVec4(0, 0, 0, 0);
     c[ImGuiCol_PopupBg] = dark ? grey(0.19f) : grey(0.985f);
@@ -174,12 +174,15 @@ bool Ui::button(const char* label, const char* text, float width, bool enabled) 
 }
 
 bool Ui::primary_button(const char* label, float width, bool enabled) {
-    const ImVec4 blue = ImVec4(0.16f, 0.40f, 0.78f, 1);
-    ImGui::PushStyleColor(ImGuiCol_Button, blue);
-    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.20f, 0.46f, 0.86f, 1));
+    ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(kPrimary[0], kPrimary[1], kPrimary[2], 1));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(kPrimaryHovered[0], kPrimaryHovered[1], kPrimaryHovered[2], 1));
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 1, 1, 1));
-    const bool pressed = button(label, nullptr, width, enabled);
+    bool pressed = button(label, nullptr, width, enabled);
     ImGui::PopStyleColor(3);
+    if (enter && in_dialog && enabled) {
+        enter = false;
+        pressed = true;
+    }
     return pressed;
 }
 

@@ -35,6 +35,8 @@ class Ui {
     float px(float length) const { return length * settings_.scale; }
 
     void begin_frame();
+    bool enter = false;           ///< Enter was pressed: the primary button of the dialog takes it
+    bool in_dialog = false;
     bool button(const char* label, const char* hint = nullptr, float width = 0, bool enabled = true);
     /// Pixels of a button's width: at least `least` at a scale of 1, and as much as the text needs.
     float button_width(const char* label, float least) const;
@@ -71,6 +73,9 @@ class Ui {
     UiSettings settings_;
     std::map<std::string, Place> places_;
 };
+
+/// sRGB of the primary button, at rest and under the cursor; its text is white.
+inline constexpr float kPrimary[3] = {0.16f, 0.40f, 0.78f}, kPrimaryHovered[3] = {0.17f, 0.43f, 0.82f};
 
 /// Chinese for an English text of the interface, nullptr when there is none.
 const char* chinese_text(const char* english);

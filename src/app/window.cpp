@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "app/display.h"
 #include "app/pen.h"
@@ -29,11 +30,29 @@ class Window : public Display {
   public:
     Window(int width, int height) {
         if (!glfwInit()) throw Error("no display could be opened; set DISPLAY, or use 'tuft' without a window");
+        make_window(width, height);
+        for (std::size_t i = 0; i < cursors_.size(); ++i) cursors_[i] = glfwCreateStandardCursor(kCursors[i].second);
+    }
+    void renew() override {
+        int x = 0, y = 0, w = 1, h = 1;
+        glfwGetWindowPos(window_, &x, &y);
+        glfwGetWindowSize(window_, &w, &h);
+        pen_.reset();
+        glfwDestroyWindow(window_);
+        make_window(w, h);
+        glfwSetWindowPos(window_, x, y);
+    }
+    void make_window(int width, int height) {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+        glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
         window_ = glfwCreateWindow(width, height, "tuft studio", nullptr, nullptr);
+        if (!window_) {  // a driver that cannot say that it was reset
+            glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_NO_ROBUSTNESS);
+            window_ = glfwCreateWindow(width, height, "tuft studio", nullptr, nullptr);
+        }
         if (!window_) {
             glfwTerminate();
             throw Error("no window with OpenGL 3.3 could be opened; a newer graphics driver is needed");
@@ -43,7 +62,6 @@ class Window : public Display {
         glfwSetWindowUserPointer(window_, this);
         set_callbacks();
         pen_ = open_pen(window_);
-        for (std::size_t i = 0; i < cursors_.size(); ++i) cursors_[i] = glfwCreateStandardCursor(kCursors[i].second);
     }
     ~Window() override {
         pen_.reset();
@@ -65,10 +83,11 @@ class Window : public Display {
             if (e.kind == Event::Kind::move) ++done;
             e.time = from + (last_poll_ - from) * (moves ? static_cast<double>(done) / static_cast<double>(moves) : 1.0);
         }
-        if (pen_) pen_->merge(fresh_, last_poll_, scale_factor());
+        if (pen_ && pen_->merge(fresh_, last_poll_, scale_factor())) trouble_ = "The pen was unplugged; the mouse goes on.";
         events.insert(events.end(), std::make_move_iterator(fresh_.begin()), std::make_move_iterator(fresh_.end()));
         show_cursor();
     }
+    std::string take_trouble() override { return std::exchange(trouble_, ""); }
     void present() override { glfwSwapBuffers(window_); }
     bool closed() const override { return glfwWindowShouldClose(window_); }
     void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
@@ -156,6 +175,7 @@ class Window : public Display {
     GLFWwindow* window_ = nullptr;
     std::unique_ptr<Pen> pen_;
     EventQueue fresh_;
+    std::string trouble_;
     double last_poll_ = 0;
     std::array<GLFWcursor*, std::size(kCursors)> cursors_{};
 };

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "atlas/texel_map.h"
+#include "io/image.h"
 #include "io/project.h"
 #include "io/read_model.h"
 
@@ -146,6 +147,36 @@ TEST_F(StudioProgram, ARevisedModelCarriesTheStrokesAndNamesThoseThatDoNotFit) {
     // The dialog is there exactly when a replay finds a stroke that touches nothing.
     EXPECT_EQ(ran.out.find("Keep them") != std::string::npos, truth["missed"] > 0) << truth.dump();
     EXPECT_EQ(io::Project::open(path("work.tuft")).strokes().size(), 2u);
+}
+
+TEST_F(StudioProgram, LostGraphicsAreMadeAnewWithAllTheirInk) {
+    const Ran ran = studio(kBowl + kTwoStrokes + "wait 0.1\nmove 5%,5%\nwait 0.1\nscreenshot before.png\nlose-graphics\nwait 0.1\nexpect message graphics\nwait-ready\nwait 0.1\n"
+                                                 "screenshot after.png\nstroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\nexpect kept\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const io::Image8 before = io::read_image8(path("before.png"), 1 << 24), after = io::read_image8(path("after.png"), 1 << 24);
+    ASSERT_EQ(before.pixels.size(), after.pixels.size());
+    // All but the status line at the bottom, which tells what happened.
+    const std::size_t same = before.pixels.size() - static_cast<std::size_t>(before.channels * before.width) * 30;
+    EXPECT_TRUE(std::equal(before.pixels.begin(), before.pixels.begin() + static_cast<std::ptrdiff_t>(same), after.pixels.begin()));
+}
+
+TEST_F(StudioProgram, AnExportAtAnotherSizeIsPaintedAnew) {
+    const Ran ran = studio(kBowl + kTwoStrokes + "set export-size 256\nset export-pictures 1\nset export-picture-width 96\nexport small.obj\nwait-ready\nexpect message Exported\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_TRUE(fs::exists(path("small.picture.png")));
+    bool found = false;
+    for (const auto& entry : fs::directory_iterator(folder_))
+        if (entry.path().filename().string().find("colour") != std::string::npos) {
+            found = true;
+            EXPECT_EQ(io::read_image8(entry.path(), 1 << 24).width, 256);
+        }
+    EXPECT_TRUE(found);
+}
+
+TEST_F(StudioProgram, KeysCanBeChangedAndStayChanged) {
+    const Ran ran = studio(kBowl + "key f1\nwait 0.1\nclick \"key open\"\nkey k\nwait 0.1\nkey escape\nwait 0.1\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_NE(read(path("state") + "/tuft/settings").find("key:open K"), std::string::npos);
 }
 
 TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {

@@ -1,0 +1,46 @@
+#include "app/keys.h"
+
+#include <gtest/gtest.h>
+
+#include "app/events.h"
+
+namespace tuft::app {
+namespace {
+
+TEST(Keys, EveryShippedChordHasANameThatIsReadBackAndNoTwoAreTheSame) {
+    const KeyTable keys;
+    for (int i = 0; i < static_cast<int>(Act::count); ++i) {
+        const Chord chord = keys.chord(static_cast<Act>(i));
+        const auto back = chord_of(name_of(chord));
+        ASSERT_TRUE(back) << title_of(static_cast<Act>(i));
+        EXPECT_EQ(*back, chord);
+        EXPECT_EQ(keys.find(chord), static_cast<Act>(i));
+    }
+}
+
+TEST(Keys, AKeyGivenToAnotherActionLeavesTheFirstWithout) {
+    KeyTable keys;
+    EXPECT_EQ(keys.assign(Act::curve, *chord_of("B")), Act::brush);
+    EXPECT_EQ(keys.find(*chord_of("B")), Act::curve);
+    EXPECT_EQ(keys.find(*chord_of("C")), std::nullopt);
+    EXPECT_EQ(keys.chord(Act::brush).key, 0);
+    EXPECT_FALSE(keys.shipped());
+    KeyTable other;
+    for (const auto& [word, chord] : keys.changes()) other.restore(word, chord);
+    EXPECT_EQ(other.changes(), keys.changes());
+    EXPECT_EQ(other.find(*chord_of("B")), Act::curve);
+}
+
+TEST(Keys, NonsenseInTheSettingsChangesNothing) {
+    KeyTable keys;
+    keys.restore("fly", "B");
+    keys.restore("brush", "Hyper+Q");
+    keys.restore("brush", "");
+    EXPECT_TRUE(keys.shipped());
+    EXPECT_FALSE(chord_of("F26"));
+    EXPECT_FALSE(chord_of("Ctrl+"));
+    EXPECT_EQ(chord_of("Ctrl++")->key, '+');
+}
+
+}  // namespace
+}  // namespace tuft::app

@@ -1,0 +1,54 @@
+#include "app/ui.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <cmath>
+
+namespace tuft::app {
+namespace {
+
+// Relative luminance and contrast after WCAG 2.1, "relative luminance" and "contrast ratio".
+double luminance(const ImVec4& c) {
+    const auto linear = [](float v) {
+        const auto x = static_cast<double>(v);
+        return x <= 0.03928 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+    };
+    return 0.2126 * linear(c.x) + 0.7152 * linear(c.y) + 0.0722 * linear(c.z);
+}
+double contrast(const ImVec4& a, const ImVec4& b) {
+    const double x = luminance(a), y = luminance(b);
+    return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
+}
+
+TEST(Contrast, OfBlackOnWhiteIsTwentyOne) { EXPECT_NEAR(contrast({0, 0, 0, 1}, {1, 1, 1, 1}), 21, 1e-9); }
+
+class Themes : public testing::TestWithParam<Theme> {};
+
+TEST_P(Themes, TextCanBeReadEverywhere) {
+    ImGui::CreateContext();
+    Ui ui;
+    ui.prepare({.theme = GetParam()});
+    const ImVec4* c = ImGui::GetStyle().Colors;
+    for (const int ground : {ImGuiCol_WindowBg, ImGuiCol_PopupBg, ImGuiCol_MenuBarBg, ImGuiCol_TitleBgActive, ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered,
+                             ImGuiCol_FrameBgActive, ImGuiCol_Button, ImGuiCol_ButtonHovered, ImGuiCol_ButtonActive, ImGuiCol_Header,
+                             ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive})
+        EXPECT_GE(contrast(c[ImGuiCol_Text], c[ground]), 4.5) << ImGui::GetStyleColorName(ground);
+    for (const int ground : {ImGuiCol_WindowBg, ImGuiCol_PopupBg, ImGuiCol_MenuBarBg, ImGuiCol_FrameBg})
+        EXPECT_GE(contrast(c[ImGuiCol_TextDisabled], c[ground]), 4.5) << "faint on " << ImGui::GetStyleColorName(ground);
+    const ImVec4 white(1, 1, 1, 1);
+    EXPECT_GE(contrast(white, {kPrimary[0], kPrimary[1], kPrimary[2], 1}), 4.5);
+    EXPECT_GE(contrast(white, {kPrimaryHovered[0], kPrimaryHovered[1], kPrimaryHovered[2], 1}), 4.5);
+    // What is not text needs 3 : 1 (WCAG 1.4.11).
+    const ImVec4 accent = ImGui::ColorConvertU32ToFloat4(ui.accent);
+    for (const int ground : {ImGuiCol_WindowBg, ImGuiCol_FrameBg}) EXPECT_GE(contrast(accent, c[ground]), 3.0) << ImGui::GetStyleColorName(ground);
+    ImGui::DestroyContext();
+}
+INSTANTIATE_TEST_SUITE_P(, Themes, testing::Values(Theme::dark, Theme::light));
+
+TEST(UiText, AllChineseTextsAreThereForWhatTheKeysAreCalled) {
+    for (const char* text : {"Undo", "Redo", "Curve", "Hold it upright", "Dry"}) EXPECT_NE(chinese_text(text), nullptr) << text;
+}
+
+}  // namespace
+}  // namespace tuft::app
