@@ -134,7 +134,7 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     open_studio(TUFT_SOURCE "/models/plate.ply");
     std::this_thread::sleep_for(std::chrono::seconds(2));
     // Enter agrees to what the dialog proposes, once it is there.
-    wait_for("the model", [&] { return keys("Return"), titled("plate – tuft studio"); });
+    wait_for("the model", [&] { return keys("Return"), titled("plate"); });
     wait_for("the project", [&] { return kept() == 0; });
     stroke({{460, 300}, {520, 330}, {560, 300}});
     wait_for("a stroke", [&] { return kept() == 1; });
