@@ -13,15 +13,32 @@ namespace tuft::atlas {
 /// The atlas of a mesh: UVs per triangle corner in [0,1]², v up. Texel (i, j) of a
 /// size × size page covers u in [i, i+1]/size and v in [j, j+1]/size, its centre
 /// at +0.5; row 0 is at v = 0 (image files are flipped on writing).
+///
+/// Several pages (UDIM) lie side by side in one square of that many texels: page p in column
+/// p mod k and row p / k of k × k, its k the least that holds them all. No chart lies on two
+/// pages, and half a gutter is free along each page's edge. To whatever works on texels they
+/// are one large atlas whose empty tiles cost nothing; only files see pages.
 struct Atlas {
-    std::uint32_t size = 0;                ///< texels per side
+    std::uint32_t size = 0;                ///< texels per side, of all pages together
+    std::uint32_t pages = 1;               ///< that are used
     std::uint32_t gutter = 4;              ///< texels kept free between charts
     double texel_size = 0;                 ///< metres per texel, area-weighted mean
     std::vector<Vec2f> corner_uvs;         ///< [3 n_triangles]
     std::vector<std::uint32_t> triangle_chart;  ///< [n_triangles]
     std::uint32_t n_charts = 0;
     bool from_file = false;                ///< the file's own UVs were kept
+
+    std::uint32_t pages_per_side() const;
+    std::uint32_t page_size() const { return size / pages_per_side(); }
+    /// Page of a triangle: where its middle lies.
+    std::uint32_t page_of(std::size_t triangle) const;
 };
+
+/// UV of a point on a page of its own, [0, 1]².
+Vec2 page_uv(const Atlas& atlas, std::uint32_t page, const Vec2f& uv);
+/// Number of a page by the UDIM convention, 1001 + column + 10 row: the UV of a point with
+/// respect to all pages is `page_uv` + (column, row).
+std::uint32_t udim_of(const Atlas& atlas, std::uint32_t page);
 
 enum class UvPolicy { automatic, keep, renew };
 
@@ -34,12 +51,15 @@ struct AskedSeams {
 };
 
 struct UnwrapOptions {
-    std::uint32_t size = 0;        ///< texels per side; 0: from texel_size
+    std::uint32_t size = 0;        ///< texels per side (of a page); 0: from texel_size
     double texel_size = 0;         ///< metres; used when size is 0. Both 0: size 2048
+    /// Most pages. Above 1, `size` (0: 4096) is the side of a page, and with `texel_size` as many
+    /// are made as it needs; without, all of them are filled as well as can be.
+    std::uint32_t pages = 1;
     std::uint32_t gutter = 4;      ///< texels
     UvPolicy uvs = UvPolicy::automatic;  ///< automatic: the file's UVs if they are valid
-    AskedSeams seams;              ///< makes new UVs unless `UvPolicy::keep` is asked
-    std::uint32_t max_size = 16384;
+    AskedSeams seams;              ///< these, and pages, make new UVs unless `keep` is asked
+    std::uint32_t max_size = 16384;  ///< of all pages together
     ProgressFn progress;
 };
 
@@ -51,7 +71,7 @@ struct AtlasReport {
     std::size_t roomless_triangles = 0;///< with a zero or non-finite UV area
     double l2_stretch = 0, linf_stretch = 0;
     double angle_distortion = 0, area_distortion = 0;  ///< area-weighted means, 1 = none
-    double utilisation = 0;            ///< covered texels over all
+    double utilisation = 0;            ///< covered texels over those of all used pages
     double seam_length = 0;            ///< over the diagonal of the bounding box
     int smallest_gap = 0;              ///< texels between two charts, capped at 64
     std::vector<std::pair<std::string, double>> seconds;  ///< per phase, in order

@@ -123,7 +123,8 @@ AtlasReport measure(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
 
     const Coverage coverage = cover(atlas.corner_uvs, {}, atlas.size);
     report.overlapping_texels = coverage.twice;
-    const double texels = static_cast<double>(atlas.size) * atlas.size;
+    const double page = atlas.page_size();
+    const double texels = atlas.pages * page * page;
     report.utilisation = texels > 0 ? static_cast<double>(coverage.covered) / texels : 0;
     report.smallest_gap =
         report.overlapping_texels > 0

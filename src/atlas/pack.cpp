@@ -28,6 +28,7 @@ struct Layout {
     std::uint32_t rows = 0;  // cells, up to the highest chart
     double scale = 0;
     std::vector<Placement> placements;
+    std::vector<std::uint8_t> placed;  // [n_charts]
 
     bool complete() const { return scale > 0 && first_unplaced == kNone; }
 };
@@ -77,6 +78,7 @@ class Packer {
         Layout layout;
         layout.scale = scale;
         layout.placements.resize(shapes_.size());
+        layout.placed.assign(shapes_.size(), 0);
         const double cell = page.cell;
         const auto most_rows = static_cast<std::uint32_t>(limit * page.cells);
         Strip strip(page.cells, reach_of_gutter(page.cell));
@@ -103,6 +105,7 @@ class Packer {
                 continue;
             }
             strip.place(*best, spot);
+            layout.placed[i] = 1;
             layout.placements[i] = {masks.chart_scale, best->c, best->s,
                                     Vec2(spot.x, spot.y) * cell + Vec2(margin()) - best->corner};
         }
@@ -168,6 +171,52 @@ class Packer {
     /// All charts at a given scale within the page.
     Layout at_scale(std::uint32_t size, double scale, double limit) {
         return fill(page(size, kCells), scale, limit);
+    }
+
+    /// Charts on as many pages as they need, up to `most`; see `Packing`.
+    Packing on_pages(std::uint32_t size, std::uint32_t most_cells, double scale,
+                     std::uint32_t most) {
+        Packing packing;
+        packing.size = size;
+        packing.texels_per_unit = scale;
+        packing.placements.resize(shapes_.size());
+        packing.page.assign(shapes_.size(), 0);
+        const std::vector<std::uint32_t> order = plan_.order;
+        std::uint32_t used = 0;
+        for (; !plan_.order.empty() && used <= most; ++used) {
+            const Layout layout = fill(page(size, most_cells), scale, 1);
+            std::vector<std::uint32_t> left;
+            for (const std::uint32_t i : plan_.order) {
+                if (!layout.placed[i]) {
+                    left.push_back(i);
+                    continue;
+                }
+                packing.placements[i] = layout.placements[i];
+                packing.page[i] = used;
+            }
+            if (left.size() == plan_.order.size()) {  // not even on a page of their own
+                packing.too_large = std::move(left);
+                std::sort(packing.too_large.begin(), packing.too_large.end());
+                break;
+            }
+            plan_.order = std::move(left);
+        }
+        packing.pages = std::max(used, 1u);
+        packing.fits = plan_.order.empty() && used <= most;
+        plan_.order = order;
+        return packing;
+    }
+
+    /// The largest scale at which all charts lie on `most` pages, by steps of 1.5 %.
+    Packing fill_pages(std::uint32_t size, std::uint32_t most, bool quick) {
+        const double full = size * std::sqrt(most / area_);
+        Packing packing;
+        for (double scale = 0.92 * full; scale > std::sqrt(kLeastUse) * full; scale *= 0.985) {
+            report(progress_, "pack", std::clamp((0.92 * full / scale - 1) / 0.3, 0.0, 1.0));
+            packing = on_pages(size, quick ? kCoarseCells : kCells, scale, most);
+            if (packing.fits) break;
+        }
+        return packing;
     }
 
   private:
@@ -245,6 +294,10 @@ class Packer {
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options) {
     Packing packing;
     Packer packer(borders, options.gutter, options.progress);
+    if (options.pages > 1)
+        return options.texels_per_unit > 0
+                   ? packer.on_pages(options.size, kCells, options.texels_per_unit, options.pages)
+                   : packer.fill_pages(options.size, options.pages, options.quick);
     if (options.size > 0) {
         Layout layout = packer.largest(options.size, options.quick);
         packing.size = options.size;

@@ -14,6 +14,7 @@ struct PackOptions {
     double texels_per_unit = 0;  ///< scale; 0: the largest that fits `size`
     std::uint32_t gutter = 4;    ///< texels free between charts; half of it along the page's edge
     bool quick = false;          ///< take the first layout that fits
+    std::uint32_t pages = 1;     ///< most pages; above 1, `size` must be given
     ProgressFn progress;
 };
 
@@ -26,6 +27,9 @@ struct Placement {
 struct Packing {
     bool fits = false;       ///< with at least 0.1 % of the page covered
     std::uint32_t size = 0;  ///< of the page; when it does not fit, one that would
+    std::uint32_t pages = 1;  ///< that are used, or would be
+    std::vector<std::uint32_t> page;       ///< [n_charts] with more than one page allowed
+    std::vector<std::uint32_t> too_large;  ///< charts that no page can hold, ascending
     double texels_per_unit = 0;
     std::vector<Placement> placements;  ///< [n_charts]
 };
@@ -34,7 +38,9 @@ struct Packing {
 /// a texel are enlarged to that. Bit masks of all cells a chart touches, largest
 /// chart first, up to eight rotations each, at the lowest free place of a strip as
 /// wide as the page; the scale is searched until the strip is a square. Distances
-/// between charts are at least `gutter` texels, exactly.
+/// between charts are at least `gutter` texels, exactly. With several pages allowed, each is
+/// filled in turn by what found no place on the ones before; offsets count from the corner
+/// of the chart's own page.
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options);
 
 }  // namespace tuft::atlas

@@ -39,6 +39,44 @@ double mean_texel_size(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
     return std::sqrt(mesh::surface_area(mesh) / area_uv) / atlas.size;
 }
 
+[[noreturn]] void refuse_texel_size(const UnwrapOptions& options, double size) {
+    throw Error("a texel of " + std::to_string(options.texel_size * 1e3) +
+                " mm needs an atlas of " + std::to_string(static_cast<long long>(size)) +
+                " texels, more than the " + std::to_string(options.max_size) +
+                " allowed; use larger texels");
+}
+
+[[noreturn]] void refuse_size(const UnwrapOptions& options, const CutMesh& cut, double size) {
+    throw Error("an atlas of " + std::to_string(options.size) + " texels cannot hold " +
+                std::to_string(cut.charts.size()) + " charts with gutters of " +
+                std::to_string(options.gutter) + "; it needs at least " +
+                std::to_string(static_cast<long long>(size)));
+}
+
+/// Whether the layout is as large as the user allows; charts too large for a page are not
+/// complained about, they can be cut.
+void check_packing(const CutMesh& cut, const UnwrapOptions& options, const Packing& packing) {
+    if (options.pages == 1) {
+        if (!packing.fits) refuse_size(options, cut, packing.size);
+        if (packing.size > options.max_size) refuse_texel_size(options, packing.size);
+        return;
+    }
+    if (!packing.too_large.empty()) return;
+    if (packing.fits) {
+        Atlas atlas;
+        atlas.pages = packing.pages;
+        if (packing.size * std::size_t{atlas.pages_per_side()} <= options.max_size) return;
+        throw Error(std::to_string(packing.pages) + " pages of " + std::to_string(packing.size) +
+                    " texels are more than fit a square of " + std::to_string(options.max_size) +
+                    " texels; use larger texels");
+    }
+    if (options.texel_size > 0)
+        throw Error("a texel of " + std::to_string(options.texel_size * 1e3) +
+                    " mm needs more than " + std::to_string(options.pages) + " pages of " +
+                    std::to_string(options.size) + " texels; allow more or use larger texels");
+    refuse_size(options, cut, 2.0 * options.size);
+}
+
 Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options, bool quick) {
     std::vector<std::vector<Vec2>> borders;
     borders.reserve(cut.charts.size());
@@ -50,39 +88,34 @@ Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options, bool quick
     pack_options.gutter = options.gutter;
     pack_options.quick = quick;
     pack_options.progress = options.progress;
-    if (options.size > 0)
-        pack_options.size = options.size;
-    else
+    pack_options.pages = options.pages;
+    pack_options.size = options.size;
+    if (options.size == 0 || (options.pages > 1 && options.texel_size > 0))
         pack_options.texels_per_unit = cut.unit / options.texel_size;
     Packing packing = pack(borders, pack_options);
-    if (!packing.fits)
-        throw Error("an atlas of " + std::to_string(options.size) + " texels cannot hold " +
-                    std::to_string(cut.charts.size()) + " charts with gutters of " +
-                    std::to_string(options.gutter) + "; it needs at least " +
-                    std::to_string(packing.size));
-    if (packing.size > options.max_size)
-        throw Error("a texel of " + std::to_string(options.texel_size * 1e3) +
-                    " mm needs an atlas of " + std::to_string(packing.size) +
-                    " texels, more than the " + std::to_string(options.max_size) +
-                    " allowed; use larger texels");
+    check_packing(cut, options, packing);
     return packing;
 }
 
 /// Rounds the placed charts into the atlas; the triangles that found no room.
 std::vector<std::uint32_t> place_charts(const CutMesh& cut, const Packing& packing, Atlas& atlas) {
     std::vector<std::uint32_t> roomless;
-    atlas.size = packing.size;
+    atlas.pages = packing.pages;
+    const std::uint32_t per_side = atlas.pages_per_side();
+    atlas.size = packing.size * per_side;
     atlas.n_charts = static_cast<std::uint32_t>(cut.charts.size());
     for (std::uint32_t c = 0; c < atlas.n_charts; ++c) {
         const FlatChart& chart = cut.charts[c];
         const Placement& p = packing.placements[c];
+        const std::uint32_t page = packing.page.empty() ? 0 : packing.page[c];
+        const Vec2 offset = p.offset + double(packing.size) * Vec2(page % per_side, page / per_side);
         std::vector<Vec2> uv(chart.uv.size());
         for (std::size_t v = 0; v < uv.size(); ++v) {
             const Vec2& q = chart.uv[v];
-            uv[v] = (p.offset + p.scale * Vec2(p.c * q.x - p.s * q.y, p.s * q.x + p.c * q.y)) /
-                    double(packing.size);
+            uv[v] = (offset + p.scale * Vec2(p.c * q.x - p.s * q.y, p.s * q.x + p.c * q.y)) /
+                    double(atlas.size);
         }
-        for (const std::uint32_t t : snap_to_floats(chart.mesh.faces, uv, packing.size))
+        for (const std::uint32_t t : snap_to_floats(chart.mesh.faces, uv, atlas.size))
             roomless.push_back(chart.mesh.triangles[t]);
         for (std::size_t t = 0; t < chart.mesh.faces.size(); ++t) {
             const std::uint32_t triangle = chart.mesh.triangles[t];
@@ -94,19 +127,38 @@ std::vector<std::uint32_t> place_charts(const CutMesh& cut, const Packing& packi
     return roomless;
 }
 
+/// Limits of charts for this atlas.
+struct Limits {
+    ChartOptions chart;
+    MergeOptions merge;
+};
+
+Limits chart_limits(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
+    Limits limits;
+    limits.chart.seams = options.seams;
+    // Texels along the square root of the surface's area: charts cover about two thirds.
+    const double covered = 0.8 * options.size * std::sqrt(options.pages);
+    const bool by_texel = options.texel_size > 0 && (options.size == 0 || options.pages > 1);
+    const double texels =
+        by_texel ? std::sqrt(mesh::surface_area(mesh)) / options.texel_size : covered;
+    // Parts of one chart keep a gutter from each other like two charts do.
+    limits.chart.gap = options.gutter / texels;
+    if (options.pages > 1) {  // charts have to fit a page, and some beside each other
+        const double page = (double(options.size) - 2 * options.gutter) / texels;
+        limits.chart.longest = std::min(limits.chart.longest, 0.9 * page);
+        limits.merge.longest = std::min(limits.merge.longest, 0.8 * page);
+        limits.merge.largest_chart = std::min(limits.merge.largest_chart, 0.4 * page * page);
+    }
+    return limits;
+}
+
 Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
     Unwrapped out;
     Stopwatch watch;
-    ChartOptions chart_options;
-    chart_options.seams = options.seams;
-    // Parts of one chart keep a gutter from each other like two charts do: charts cover
-    // about two thirds of the page.
-    const double side = std::sqrt(mesh::surface_area(mesh));
-    const double page = 0.8 * options.size;
-    chart_options.gap = options.gutter * (options.size > 0 ? 1 / page : options.texel_size / side);
+    const auto [chart_options, merge_options] = chart_limits(mesh, options);
     CutMesh cut = cut_into_charts(mesh, chart_options, options.progress);
     watch.lap(out.report, "charts");
-    merge_charts(mesh, cut, chart_options, {}, options.progress);
+    merge_charts(mesh, cut, chart_options, merge_options, options.progress);
     watch.lap(out.report, "merge");
     polish_charts(mesh, cut, chart_options, options.progress);
     watch.lap(out.report, "polish");
@@ -121,6 +173,11 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     for (int round = 0; round < kMostRepairs; ++round) {
         const Packing packing = pack_charts(cut, options, quick);
         watch.lap(out.report, "pack");
+        if (!packing.too_large.empty()) {
+            cut_again(mesh, cut, packing.too_large, chart_options, options.progress);
+            watch.lap(out.report, "repair");
+            continue;
+        }
         std::vector<std::uint32_t> roomless = place_charts(cut, packing, atlas);
         const Coverage coverage = cover(atlas.corner_uvs, atlas.triangle_chart, atlas.size);
         report(options.progress, "check", 1);
@@ -138,6 +195,7 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
         }
         watch.lap(out.report, "repair");
     }
+    if (atlas.size == 0) refuse_size(options, cut, 2.0 * options.size);
     atlas.texel_size = mean_texel_size(mesh, atlas);
     return out;
 }
@@ -147,27 +205,59 @@ void check_options(const mesh::TriangleMesh& mesh, const UnwrapOptions& options)
     if (options.size > options.max_size)
         throw Error("an atlas of " + std::to_string(options.size) + " texels is larger than the " +
                     std::to_string(options.max_size) + " allowed");
+    if (options.pages == 0 || options.pages > 100)
+        throw Error("an atlas has 1 to 100 pages, not " + std::to_string(options.pages));
+    if (options.pages > 1) {
+        if (!(options.texel_size >= 0) || !std::isfinite(options.texel_size))
+            throw Error("the texel size must be above 0");
+        return;
+    }
     if (options.size > 0) return;
     if (!(options.texel_size > 0) || !std::isfinite(options.texel_size))
         throw Error("the texel size must be above 0");
     const double least = std::sqrt(mesh::surface_area(mesh)) / options.texel_size;
-    if (least > options.max_size)
-        throw Error("a texel of " + std::to_string(options.texel_size * 1e3) +
-                    " mm needs an atlas of at least " +
-                    std::to_string(static_cast<long long>(std::min(least / 0.8, 1e15))) +
-                    " texels, more than the " + std::to_string(options.max_size) +
-                    " allowed; use larger texels");
+    if (least > options.max_size) refuse_texel_size(options, std::min(least / 0.8, 1e15));
 }
 
 }  // namespace
 
+std::uint32_t Atlas::pages_per_side() const {
+    std::uint32_t k = 1;
+    while (k * k < pages) ++k;
+    return k;
+}
+
+std::uint32_t Atlas::page_of(std::size_t triangle) const {
+    const std::uint32_t k = pages_per_side();
+    const Vec2 middle = (Vec2(corner_uvs[3 * triangle]) + Vec2(corner_uvs[3 * triangle + 1]) +
+                         Vec2(corner_uvs[3 * triangle + 2])) /
+                        3.0;
+    const auto index = [k](double x) {
+        return static_cast<std::uint32_t>(std::clamp(x * k, 0.0, k - 0.5));
+    };
+    return index(middle.y) * k + index(middle.x);
+}
+
+Vec2 page_uv(const Atlas& atlas, std::uint32_t page, const Vec2f& uv) {
+    const std::uint32_t k = atlas.pages_per_side();
+    return glm::clamp(Vec2(uv) * double(k) - Vec2(page % k, page / k), 0.0, 1.0);
+}
+
+std::uint32_t udim_of(const Atlas& atlas, std::uint32_t page) {
+    const std::uint32_t k = atlas.pages_per_side();
+    return 1001 + page % k + 10 * (page / k);
+}
+
 Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& given) {
     UnwrapOptions options = given;
+    if (options.size == 0 && options.pages > 1) options.size = 4096;
     if (options.size == 0 && options.texel_size == 0) options.size = 2048;
     check_options(mesh, options);
     if (options.uvs == UvPolicy::keep ||
-        (options.uvs == UvPolicy::automatic && !options.seams.any())) {
-        const FileUvs found = read_file_uvs(mesh, options);
+        (options.uvs == UvPolicy::automatic && !options.seams.any() && options.pages == 1)) {
+        UnwrapOptions file = options;  // lies on one page
+        if (options.pages > 1 && options.texel_size > 0) file.size = 0;
+        const FileUvs found = read_file_uvs(mesh, file);
         if (found.fault.empty()) return {found.atlas, measure(mesh, found.atlas)};
         if (options.uvs == UvPolicy::keep)
             throw Error("the model's UVs cannot be kept: " + found.fault +

@@ -46,11 +46,18 @@ void add_surface(CLI::App* app, Surface& s, bool with_unit = true) {
     if (with_unit)
         app->add_option("--unit", s.unit, "unit of the model file: um, mm, cm, m, in, ft")
             ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
-    auto* size = app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
-                     ->check(CLI::PositiveNumber);
-    auto* texel = app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")
-                      ->check(CLI::PositiveNumber);
-    size->excludes(texel);
+    app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
+        ->check(CLI::PositiveNumber);
+    app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")
+        ->check(CLI::PositiveNumber);
+    app->add_option("--pages", s.pages,
+                    "most pages of the atlas (UDIM), each --atlas-size texels wide: as many as "
+                    "--texel-size needs, or all of them")
+        ->check(CLI::Range(1, 100));
+    app->parse_complete_callback([&s] {
+        if (s.atlas_size > 0 && s.texel_size_mm > 0 && s.pages <= 1)
+            throw CLI::ExcludesError("--atlas-size", "--texel-size (without --pages)");
+    });
     auto* renew = app->add_flag("--new-uv", s.new_uv, "make a new atlas even if the file has UVs");
     auto* keep = app->add_flag("--keep-uv", s.keep_uv, "use the file's UVs or fail");
     renew->excludes(keep);

@@ -15,6 +15,7 @@ struct Surface {
     std::string unit = "mm";
     std::uint32_t atlas_size = 0;   ///< texels per side; 0: from texel_size_mm or the default
     double texel_size_mm = 0;
+    std::uint32_t pages = 0;        ///< most pages (UDIM); 0: not said
     bool new_uv = false, keep_uv = false;
     std::string seams = "free";     ///< free | groups | sharp | both
     double sharp_angle_deg = 40;

@@ -23,9 +23,10 @@ std::filesystem::path numbered(const std::filesystem::path& path, int index, int
 stroke::Model replay_model(const Replay& a, OpenProject& project, Console& console) {
     Surface surface = a.surface;
     surface.unit = a.model.empty() ? "mm" : project.unit;
+    if (surface.pages == 0) surface.pages = project.model.atlas.pages;
     if (!a.model.empty()) {
         if (surface.atlas_size == 0 && surface.texel_size_mm == 0)
-            surface.atlas_size = project.model.atlas.size;
+            surface.atlas_size = project.model.atlas.page_size();
         return load_model(a.model, surface, console);
     }
     if (surface.atlas_size == 0 && surface.texel_size_mm == 0 && !surface.new_uv &&
@@ -99,13 +100,18 @@ int run(const Export& a) {
     show_layers(painting, a.layers);
     const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
+    const atlas::Atlas& atlas = project->model.atlas;
+    const auto write_pages = [&](const auto& map, const io::ImageOptions& options) {
+        for (std::uint32_t page = 0; page < atlas.pages; ++page)
+            io::write_image(io::page_path(a.output, atlas, page),
+                            io::page_view(io::view_of(map), atlas, page), options);
+    };
     if (extension == ".png") {
-        io::write_image(a.output, io::view_of(ink::compose_srgb8(painting.stack(), project->model.texels,
-                                                                 painting.substrate(), compose)));
+        write_pages(ink::compose_srgb8(painting.stack(), project->model.texels,
+                                       painting.substrate(), compose), {});
     } else if (extension == ".exr") {
-        io::write_image(a.output, io::view_of(ink::compose_linear(painting.stack(), project->model.texels,
-                                                                  painting.substrate(), compose)),
-                        {.srgb = false});
+        write_pages(ink::compose_linear(painting.stack(), project->model.texels,
+                                        painting.substrate(), compose), {.srgb = false});
     } else {
         write_outputs({.exported = a.output, .unit = project->unit}, painting, console);
     }

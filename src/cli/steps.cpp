@@ -25,6 +25,7 @@ stroke::ModelOptions model_options(const Surface& s, Console& console) {
     options.repair.metres_per_unit = metres_per(s.unit).value_or(kMillimetre);
     options.unwrap.size = s.atlas_size;
     options.unwrap.texel_size = s.texel_size_mm * kMillimetre;
+    options.unwrap.pages = std::max(s.pages, 1u);
     options.unwrap.seams.groups = s.seams == "groups" || s.seams == "both";
     if (s.seams == "sharp" || s.seams == "both")
         options.unwrap.seams.sharp_angle = s.sharp_angle_deg * kDegree;
@@ -320,7 +321,8 @@ nlohmann::json to_json(const mesh::RepairReport& r) {
 }
 
 nlohmann::json to_json(const atlas::Atlas& a, const atlas::AtlasReport& r) {
-    nlohmann::json j{{"size", a.size},
+    nlohmann::json j{{"size", a.page_size()},
+                     {"pages", a.pages},
                      {"texel_size_mm", a.texel_size / kMillimetre},
                      {"gutter", a.gutter},
                      {"uvs_from_file", a.from_file},

@@ -41,8 +41,10 @@ int run(const Unwrap& a) {
         std::cout << j.dump(2) << '\n';
         return 0;
     }
-    fmt::print("{} charts at {} x {}, texel {:.3f} mm, {:.0f} % used{}\n", r.charts, unwrapped.atlas.size,
-               unwrapped.atlas.size, unwrapped.atlas.texel_size / kMillimetre, 100 * r.utilisation,
+    const atlas::Atlas& made = unwrapped.atlas;
+    const std::string pages = made.pages > 1 ? fmt::format("{} pages of ", made.pages) : "";
+    fmt::print("{} charts at {}{} x {}, texel {:.3f} mm, {:.0f} % used{}\n", r.charts, pages,
+               made.page_size(), made.page_size(), unwrapped.atlas.texel_size / kMillimetre, 100 * r.utilisation,
                unwrapped.atlas.from_file ? " (the file's own UVs)" : "");
     fmt::print("stretch L2 {:.4f}, Linf {:.2f}; seams {:.1f} x the diagonal; flips {}, overlapping texels {}, triangles without room {}\n",
                r.l2_stretch, r.linf_stretch, r.seam_length, r.flips, r.overlapping_texels,

@@ -35,6 +35,24 @@ std::vector<MapFile> map_files(const ModelMaps& maps, const ExportOptions& optio
             {"normal", has_height(maps, options)}};
 }
 
+/// Fills in the pages of the scene and their UVs, which are returned; nothing with one page.
+std::vector<Vec2f> split_pages(const atlas::Atlas& atlas, ExportScene& scene) {
+    std::vector<Vec2f> uvs;
+    if (atlas.pages == 1) return uvs;
+    scene.udims.clear();
+    for (std::uint32_t page = 0; page < atlas.pages; ++page)
+        scene.udims.push_back(atlas::udim_of(atlas, page));
+    scene.triangle_page.resize(scene.mesh.n_triangles());
+    uvs.resize(atlas.corner_uvs.size());
+    for (std::size_t t = 0; t < scene.triangle_page.size(); ++t) {
+        scene.triangle_page[t] = std::min(atlas.page_of(t), atlas.pages - 1);
+        for (std::size_t c = 3 * t; c < 3 * t + 3; ++c)
+            uvs[c] = Vec2f(atlas::page_uv(atlas, scene.triangle_page[t], atlas.corner_uvs[c]));
+    }
+    scene.corner_uvs = uvs;
+    return uvs;
+}
+
 }  // namespace
 
 ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels,
@@ -105,8 +123,27 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
     }
 }
 
+PixelView page_view(const PixelView& whole, const atlas::Atlas& atlas, std::uint32_t page) {
+    const std::uint32_t k = atlas.pages_per_side();
+    const auto side = static_cast<int>(atlas.page_size());
+    const int column = static_cast<int>(page % k), row = static_cast<int>(k - 1 - page / k);
+    const std::ptrdiff_t texel = std::abs(whole.row_bytes) / whole.width;
+    PixelView view = whole;
+    view.width = view.height = side;
+    view.first = static_cast<const char*>(whole.first) +
+                 std::ptrdiff_t{row} * side * whole.row_bytes + std::ptrdiff_t{column} * side * texel;
+    return view;
+}
+
+fs::path page_path(const fs::path& path, const atlas::Atlas& atlas, std::uint32_t page) {
+    if (atlas.pages == 1) return path;
+    return path.parent_path() / (path.stem().string() + "." +
+                                 std::to_string(atlas::udim_of(atlas, page)) +
+                                 path.extension().string());
+}
+
 std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps,
-                                     const ExportOptions& options) {
+                                     const ExportOptions& options, std::uint32_t pages) {
     std::vector<fs::path> files{path};
     const std::string extension = path.extension().string();
     if (extension == ".glb") return files;
@@ -115,7 +152,11 @@ std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps
     };
     files.push_back(beside(extension == ".obj" ? ".mtl" : ".bin"));
     for (const MapFile& map : map_files(maps, options))
-        if (map.present) files.push_back(beside("_" + std::string(map.suffix) + ".png"));
+        for (std::uint32_t page = 0; map.present && page < pages; ++page) {
+            atlas::Atlas atlas;
+            atlas.pages = pages;
+            files.push_back(page_path(beside("_" + std::string(map.suffix) + ".png"), atlas, page));
+        }
     return files;
 }
 
@@ -128,12 +169,13 @@ void export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const at
     const auto metres = metres_per(options.unit);
     if (!metres)
         throw Error("unknown unit '" + options.unit + "'; there are um, mm, cm, m, in and ft");
-    const ExportScene scene{.mesh = mesh,
-                            .wedges = split_wedges(mesh, atlas.corner_uvs),
-                            .corner_uvs = atlas.corner_uvs,
-                            .name = safe_stem(path),
-                            .z_up = options.z_up,
-                            .metres_per_unit = *metres};
+    ExportScene scene{.mesh = mesh,
+                      .wedges = split_wedges(mesh, atlas.corner_uvs),
+                      .corner_uvs = atlas.corner_uvs,
+                      .name = safe_stem(path),
+                      .z_up = options.z_up,
+                      .metres_per_unit = *metres};
+    const std::vector<Vec2f> page_uvs = split_pages(atlas, scene);
     std::vector<EncodedMap> encoded;
     report(options.progress, "export", 0);
     const ImageOptions colour{.srgb = true, .channel_names = {}},
@@ -141,13 +183,21 @@ void export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const at
     for (const MapFile& map : map_files(maps, options)) {
         if (!map.present) continue;
         const std::string kind = map.suffix;
-        EncodedMap e{.kind = kind, .file = scene.name + "_" + kind + ".png", .png = {}};
-        if (kind == "base_colour") e.png = png_bytes(view_of(maps.base_colour), colour);
-        if (kind == "orm") e.png = png_bytes(view_of(maps.orm), data);
-        if (kind == "normal")
-            e.png = png_bytes(view_of(normal_map(maps.height, atlas.texel_size)), data);
-        encoded.push_back(std::move(e));
-        report(options.progress, "export", 0.25 * static_cast<double>(encoded.size()));
+        ink::AtlasMap<std::uint8_t> made;
+        if (kind == "normal") made = normal_map(maps.height, atlas.texel_size);
+        const ink::AtlasMap<std::uint8_t>& whole = kind == "base_colour" ? maps.base_colour
+                                                   : kind == "orm"       ? maps.orm
+                                                                         : made;
+        for (std::uint32_t page = 0; page < atlas.pages; ++page) {
+            const fs::path file = page_path(scene.name + "_" + kind + ".png", atlas, page);
+            encoded.push_back({.kind = kind,
+                               .file = file.string(),
+                               .page = page,
+                               .png = png_bytes(page_view(view_of(whole), atlas, page),
+                                                kind == "base_colour" ? colour : data)});
+            report(options.progress, "export",
+                   0.25 * static_cast<double>(encoded.size()) / atlas.pages);
+        }
     }
     write_together(path, [&](const fs::path& folder) {
         if (extension == ".obj")

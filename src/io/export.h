@@ -9,6 +9,7 @@
 #include "atlas/texel_map.h"
 #include "core/progress.h"
 #include "ink/composite.h"
+#include "io/image.h"
 #include "mesh/triangle_mesh.h"
 
 /// Decorated models for other programs.
@@ -45,6 +46,10 @@ struct ExportOptions {
 /// - `.obj`: NAME.obj, NAME.mtl and NAME_*.png; coordinates in `unit`, axes as in the model;
 ///   vertices and triangles in their order.
 ///
+/// An atlas of several pages: OBJ gets UVs by the UDIM convention, pictures NAME_*.1001.png and
+/// so on, and `<UDIM>` in their names in the MTL; glTF gets a primitive and a material with its
+/// own pictures for each page.
+///
 /// UVs are written so that the picture's top row is v = 1 in OBJ and v = 0 in glTF, as
 /// those formats say. Nothing is left behind when anything fails; existing files are
 /// replaced only when all new ones are complete. Throws `Error` for an unknown
@@ -56,7 +61,14 @@ void export_model(const std::filesystem::path& path, const mesh::TriangleMesh& m
 /// Names of the files `export_model` writes for `path` with these maps.
 std::vector<std::filesystem::path> exported_files(const std::filesystem::path& path,
                                                   const ModelMaps& maps,
-                                                  const ExportOptions& options = {});
+                                                  const ExportOptions& options = {},
+                                                  std::uint32_t pages = 1);
+
+/// One page of a picture of the whole atlas; no copy.
+PixelView page_view(const PixelView& whole, const atlas::Atlas& atlas, std::uint32_t page);
+/// `path` with the page's UDIM number before the extension: name.1001.png. With one page, `path`.
+std::filesystem::path page_path(const std::filesystem::path& path, const atlas::Atlas& atlas,
+                                std::uint32_t page);
 
 /// Runs `write(folder)` with a fresh folder beside `path`, then moves the files made in it
 /// beside `path`. On any error nothing has changed and `Error` is thrown.

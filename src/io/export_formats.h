@@ -25,16 +25,23 @@ Wedges split_wedges(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corne
 struct EncodedMap {
     std::string kind;  ///< base_colour, orm, normal
     std::string file;  ///< name in the folder
+    std::uint32_t page = 0;
     std::vector<unsigned char> png;
 };
 
 struct ExportScene {
     const mesh::TriangleMesh& mesh;
     Wedges wedges;
-    std::span<const Vec2f> corner_uvs;
+    std::span<const Vec2f> corner_uvs;  ///< of the triangle's own page
     std::string name;
     bool z_up = true;
     double metres_per_unit = 1e-3;
+    std::vector<std::uint32_t> udims{1001};    ///< of each page
+    std::vector<std::uint32_t> triangle_page;  ///< [n_triangles], or empty: all on page 0
+
+    std::uint32_t page_of(std::size_t triangle) const {
+        return triangle_page.empty() ? 0 : triangle_page[triangle];
+    }
 };
 
 /// GLB, or glTF with its files, by the extension; `path` lies in a staging folder.

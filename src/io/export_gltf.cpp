@@ -116,12 +116,15 @@ class Builder {
     }
 };
 
-tinygltf::Material material_of(Builder& builder, std::span<const EncodedMap> maps, bool embed) {
+tinygltf::Material material_of(Builder& builder, const ExportScene& scene,
+                               std::span<const EncodedMap> maps, std::uint32_t page, bool embed) {
     tinygltf::Material material;
     material.name = "decorated";
+    if (scene.udims.size() > 1) material.name += "." + std::to_string(scene.udims[page]);
     material.pbrMetallicRoughness.metallicFactor = 0;
     material.pbrMetallicRoughness.roughnessFactor = 0.3;
     for (const EncodedMap& map : maps) {
+        if (map.page != page) continue;
         const int texture = builder.add_texture(map, embed);
         if (map.kind == "base_colour") {
             material.pbrMetallicRoughness.baseColorTexture.index = texture;
@@ -136,7 +139,8 @@ tinygltf::Material material_of(Builder& builder, std::span<const EncodedMap> map
     return material;
 }
 
-tinygltf::Primitive primitive_of(Builder& builder, const ExportScene& scene, bool tangents) {
+/// All vertices, without indices.
+tinygltf::Primitive vertices_of(Builder& builder, const ExportScene& scene, bool tangents) {
     const mesh::TriangleMesh& mesh = scene.mesh;
     const std::size_t n = scene.wedges.vertex.size();
     std::vector<Vec3f> positions(n), normals(n);
@@ -152,7 +156,6 @@ tinygltf::Primitive primitive_of(Builder& builder, const ExportScene& scene, boo
     }
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.material = 0;
     const int position = builder.add_attribute(positions, TINYGLTF_TYPE_VEC3);
     builder.model.accessors[position].minValues = {lo.x, lo.y, lo.z};
     builder.model.accessors[position].maxValues = {hi.x, hi.y, hi.z};
@@ -162,10 +165,21 @@ tinygltf::Primitive primitive_of(Builder& builder, const ExportScene& scene, boo
     if (tangents)
         primitive.attributes["TANGENT"] =
             builder.add_attribute(wedge_tangents(scene), TINYGLTF_TYPE_VEC4);
-    primitive.indices =
-        builder.add_accessor(scene.wedges.corner_wedge, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                             TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     return primitive;
+}
+
+/// The triangles of one page, over vertices that all pages share.
+int indices_of(Builder& builder, const ExportScene& scene, std::uint32_t page) {
+    const auto add = [&](const std::vector<std::uint32_t>& corners) {
+        return builder.add_accessor(corners, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                                    TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    };
+    const std::vector<std::uint32_t>& all = scene.wedges.corner_wedge;
+    if (scene.udims.size() == 1) return add(all);
+    std::vector<std::uint32_t> own;
+    for (std::size_t c = 0; c < all.size(); ++c)
+        if (scene.page_of(c / 3) == page) own.push_back(all[c]);
+    return add(own);
 }
 
 /// tinygltf does not say when the disk is full.
@@ -187,9 +201,15 @@ void write_gltf(const std::filesystem::path& path, const ExportScene& scene,
     Builder builder;
     tinygltf::Mesh mesh;
     mesh.name = scene.name;
-    mesh.primitives.push_back(primitive_of(builder, scene, with_normals));
+    tinygltf::Primitive primitive = vertices_of(builder, scene, with_normals);
+    for (std::uint32_t page = 0; page < scene.udims.size(); ++page) {
+        primitive.material = static_cast<int>(page);
+        primitive.indices = indices_of(builder, scene, page);
+        mesh.primitives.push_back(primitive);
+    }
     builder.model.meshes.push_back(mesh);
-    builder.model.materials.push_back(material_of(builder, maps, embed));
+    for (std::uint32_t page = 0; page < scene.udims.size(); ++page)
+        builder.model.materials.push_back(material_of(builder, scene, maps, page, embed));
     tinygltf::Node node;
     node.name = scene.name;
     node.mesh = 0;

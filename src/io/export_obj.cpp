@@ -107,8 +107,11 @@ void write_obj(const std::filesystem::path& path, const ExportScene& scene,
     std::string mtl = "newmtl decorated\nKa 0 0 0\nKd 1 1 1\nKs 0.04 0.04 0.04\nillum 2\n";
     for (const EncodedMap& map : maps) {
         write_staged(path.parent_path() / map.file, map.png.data(), map.png.size());
-        if (map.kind == "base_colour") mtl += "map_Kd " + map.file + "\n";
-        if (map.kind == "normal") mtl += "norm " + map.file + "\n";
+        if (map.page > 0) continue;
+        const std::string file =
+            scene.udims.size() == 1 ? map.file : scene.name + "_" + map.kind + ".<UDIM>.png";
+        if (map.kind == "base_colour") mtl += "map_Kd " + file + "\n";
+        if (map.kind == "normal") mtl += "norm " + file + "\n";
     }
     const std::string mtl_name = safe_stem(path) + ".mtl";
     write_staged(path.parent_path() / mtl_name, mtl.data(), mtl.size());
@@ -121,7 +124,8 @@ void write_obj(const std::filesystem::path& path, const ExportScene& scene,
         append_row(file.text(), "v", std::array{q.x, q.y, q.z}, 9);
     }
     for (const std::uint32_t corner : wedges.corner) {
-        const Vec2 uv(scene.corner_uvs[corner]);
+        const std::uint32_t tile = scene.udims[scene.page_of(corner / 3)] - 1001;
+        const Vec2 uv = Vec2(scene.corner_uvs[corner]) + Vec2(tile % 10, tile / 10);
         append_row(file.text(), "vt", std::array{uv.x, uv.y}, 9);
     }
     for (const std::uint32_t corner : wedges.corner) {

@@ -47,6 +47,9 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
     const double texel = model.atlas.texel_size;
     if (model.atlas.size == 0 || model.atlas.size > 65536 || !(texel > 0) || !std::isfinite(texel))
         damaged(path, "the atlas has no valid size");
+    if (model.atlas.pages < 1 || model.atlas.pages > 100 ||
+        model.atlas.size % model.atlas.pages_per_side() != 0)
+        damaged(path, "the atlas has no valid pages");
     if (!metres_per(model.unit)) damaged(path, "the model's unit is unknown");
 }
 
@@ -125,6 +128,7 @@ void store_model(SQLite::Database& db, const ProjectModel& model) {
     put_array(db, "mesh", "triangle_groups", m.triangle_groups, kSingle);
     put_array(db, "atlas", "corner_uvs", a.corner_uvs, kUv);
     put_array(db, "atlas", "triangle_chart", a.triangle_chart, kSingle);
+    if (a.pages > 1) put_array(db, "atlas", "pages", std::vector<std::uint32_t>{a.pages}, kSingle);
 }
 
 ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path) {
@@ -169,6 +173,8 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
     m.triangle_groups = get_array<std::uint32_t>(db, path, "mesh", "triangle_groups", kSingle, n_t);
     a.corner_uvs = get_array<Vec2f>(db, path, "atlas", "corner_uvs", kUv, 3 * n_t);
     a.triangle_chart = get_array<std::uint32_t>(db, path, "atlas", "triangle_chart", kSingle, n_t);
+    const auto pages = get_array<std::uint32_t>(db, path, "atlas", "pages", kSingle, 1);
+    if (!pages.empty()) a.pages = pages[0];
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
     check(model, path);
     return model;

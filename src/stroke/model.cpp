@@ -45,6 +45,11 @@ void finish(Model& model, atlas::TexelStore texels, const ProgressFn& progress) 
     release_free_memory();
 }
 
+/// Side of a square of as many texels as the used pages have.
+std::uint32_t side_of_pages(std::uint32_t page_size, std::uint32_t pages) {
+    return static_cast<std::uint32_t>(std::ceil(page_size * std::sqrt(double(pages))));
+}
+
 void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOptions& options) {
     if (unwrap.size > 0) check_memory(unwrap.size, options.texels, options.memory_limit);
     if (unwrap.size == 0 && unwrap.texel_size > 0) {
@@ -56,7 +61,8 @@ void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOpt
     atlas::Unwrapped unwrapped = atlas::unwrap(*model.mesh, unwrap);
     model.atlas = std::move(unwrapped.atlas);
     model.atlas_report = std::move(unwrapped.report);
-    check_memory(model.atlas.size, options.texels, options.memory_limit);
+    check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), options.texels,
+                 options.memory_limit);
     finish(model, options.texels, options.progress);
 }
 
@@ -114,7 +120,7 @@ Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressF
     Model model;
     model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(mesh));
     model.atlas = std::move(atlas);
-    check_memory(model.atlas.size, texels, 0);
+    check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), texels, 0);
     finish(model, texels, progress);
     return model;
 }

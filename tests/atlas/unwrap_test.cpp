@@ -292,6 +292,66 @@ TEST(Unwrap, TexelSizeIsKept) {
     EXPECT_NEAR(covered, mesh::surface_area(m), 0.01 * covered);  // texels on borders
 }
 
+/// No chart may leave its page, nor come nearer to the page's edge than half a gutter.
+void expect_paged(const Atlas& atlas) {
+    EXPECT_EQ(atlas.size, atlas.page_size() * atlas.pages_per_side());
+    const double side = atlas.page_size(), margin = atlas.gutter / 2;
+    std::vector<std::uint32_t> page(atlas.n_charts, kNone);
+    std::vector<std::uint8_t> used(atlas.pages, 0);
+    for (std::size_t t = 0; t < atlas.triangle_chart.size(); ++t) {
+        const std::uint32_t p = atlas.page_of(t);
+        ASSERT_LT(p, atlas.pages);
+        used[p] = 1;
+        std::uint32_t& of_chart = page[atlas.triangle_chart[t]];
+        if (of_chart == kNone) of_chart = p;
+        ASSERT_EQ(of_chart, p);
+        for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
+            const Vec2 uv = side * page_uv(atlas, p, atlas.corner_uvs[c]);
+            // Floats of UVs round by 2^-24 of the whole; snapping moves by 1/16 texel at most.
+            ASSERT_GE(std::min({uv.x, uv.y, side - uv.x, side - uv.y}), margin - 0.07);
+        }
+    }
+    EXPECT_EQ(std::count(used.begin(), used.end(), 1), atlas.pages);
+}
+
+TEST(Unwrap, SpreadsChartsOverAsManyPagesAsATexelSizeNeeds) {
+    UnwrapOptions options;
+    options.texel_size = 0.0005;
+    const Unwrapped one = unwrap(torus(), options);
+    options.size = 160;  // the torus needs about 0.04 m² / (0.5 mm)² = 158,000 texels
+    options.pages = 20;
+    const Unwrapped u = unwrap(torus(), options);
+    expect_sound(torus(), u);
+    expect_paged(u.atlas);
+    EXPECT_GE(u.atlas.pages, 7u);
+    EXPECT_LE(u.atlas.pages, 20u);
+    EXPECT_EQ(u.atlas.page_size(), 160u);
+    EXPECT_NEAR(u.atlas.texel_size, one.atlas.texel_size, 1e-3 * one.atlas.texel_size);
+    EXPECT_EQ(udim_of(u.atlas, u.atlas.pages_per_side()), 1011u);
+    options.pages = u.atlas.pages - 1;
+    EXPECT_THROW(unwrap(torus(), options), Error);
+    options.pages = 20;
+    options.size = 2048;
+    EXPECT_EQ(unwrap(torus(), options).atlas.pages, 1u);
+    options.max_size = 300;  // no room for two pages beside each other
+    options.size = 160;
+    EXPECT_THROW(unwrap(torus(), options), Error);
+}
+
+TEST(Unwrap, FillsThePagesItIsGiven) {
+    UnwrapOptions options;
+    options.size = 256;
+    const double one = unwrap(torus(), options).atlas.texel_size;
+    options.pages = 4;
+    const Unwrapped u = unwrap(torus(), options);
+    expect_sound(torus(), u);
+    expect_paged(u.atlas);
+    EXPECT_EQ(u.atlas.pages, 4u);
+    EXPECT_GE(u.report.utilisation, 0.4);
+    // Four times the texels, less what the gutters of small pages cost.
+    EXPECT_LT(u.atlas.texel_size, 0.65 * one);
+}
+
 TEST(Unwrap, WiderGuttersAreKept) {
     UnwrapOptions options;
     options.size = 512;

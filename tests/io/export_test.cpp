@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "io/image.h"
 #include "io/read_gltf.h"
+#include "mesh/polygon_soup.h"
 #include "sample_model.h"
 
 namespace tuft::io {
@@ -81,6 +82,75 @@ TEST(Export, GltfWithFilesReadBackIsTheSameMesh) {
     EXPECT_EQ(folder.n_files(), files.size());
     for (const auto& file : files) EXPECT_TRUE(std::filesystem::exists(file)) << file;
     EXPECT_EQ(read_image8(folder / "blue_bowl_base_colour.png").width, 64);
+}
+
+/// The cylinder's lower half on page 1001, the upper one on 1002, each 64 texels wide.
+atlas::Atlas two_pages(const mesh::TriangleMesh& mesh) {
+    atlas::Atlas a = cylinder_atlas(mesh, 128);
+    a.pages = 2;
+    a.n_charts = 2;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
+        a.triangle_chart[t] = mesh.triangle_groups[t];
+        for (std::size_t c = 3 * t; c < 3 * t + 3; ++c)
+            a.corner_uvs[c] =
+                0.5f * (mesh.corner_uvs[c] + Vec2f(float(mesh.triangle_groups[t]), 0));
+    }
+    return a;
+}
+
+TEST(Export, PagesOfAnObjFollowTheUdimConvention) {
+    const Folder folder("udim");
+    const mesh::TriangleMesh mesh = cylinder();
+    const atlas::Atlas atlas = two_pages(mesh);
+    const ModelMaps maps = pattern_maps(128);
+    export_model(folder / "m.obj", mesh, atlas, maps);
+    for (const auto& file : exported_files(folder / "m.obj", maps, {}, 2))
+        EXPECT_TRUE(std::filesystem::exists(file)) << file;
+    EXPECT_EQ(folder.n_files(), 2u + 3 * 2);
+    const std::vector<char> mtl = read_file(folder / "m.mtl");
+    EXPECT_NE(std::string(mtl.begin(), mtl.end()).find("map_Kd m_base_colour.<UDIM>.png"),
+              std::string::npos);
+    const mesh::PolygonSoup soup = mesh::read_obj(read_file(folder / "m.obj"), "m.obj");
+    for (std::size_t c = 0; c < 3 * mesh.n_triangles(); ++c) {
+        const Vec2f expected =
+            mesh.corner_uvs[c] + Vec2f(float(mesh.triangle_groups[c / 3]), 0);
+        // UVs went through halves and back: two roundings of floats below 2.
+        EXPECT_NEAR(soup.corner_uvs[c].x, expected.x, 3e-7);
+        EXPECT_NEAR(soup.corner_uvs[c].y, expected.y, 3e-7);
+    }
+    for (const int column : {0, 1}) {
+        const Image8 page =
+            read_image8(folder / ("m_base_colour.100" + std::to_string(column + 1) + ".png"));
+        ASSERT_EQ(page.width, 64);
+        ASSERT_EQ(page.height, 64);
+        for (int y = 0; y < 64; ++y)
+            for (int i = 0; i < 64 * 3; ++i)
+                ASSERT_EQ(page.pixels[(63 - y) * 64 * 3 + i],
+                          maps.base_colour.texels[(y * 128 + 64 * column) * 3 + i]);
+    }
+}
+
+TEST(Export, PagesOfAGltfArePrimitivesWithTheirOwnMaterials) {
+    const Folder folder("gltf_pages");
+    const mesh::TriangleMesh mesh = cylinder();
+    export_model(folder / "m.glb", mesh, two_pages(mesh), pattern_maps(128));
+    const nlohmann::json json = glb_json(folder / "m.glb");
+    const auto& primitives = json["meshes"][0]["primitives"];
+    ASSERT_EQ(primitives.size(), 2u);
+    ASSERT_EQ(json["materials"].size(), 2u);
+    EXPECT_EQ(json["images"].size(), 6u);
+    for (int page = 0; page < 2; ++page) {
+        // glTF takes the first material for granted.
+        EXPECT_EQ(primitives[page].value("material", 0), page);
+        const auto& indices = json["accessors"][primitives[page]["indices"].get<int>()];
+        EXPECT_EQ(indices["count"], 3 * mesh.n_triangles() / 2);
+        const auto& colour = json["materials"][page]["pbrMetallicRoughness"]["baseColorTexture"];
+        const auto& texture = json["textures"][colour["index"].get<int>()];
+        EXPECT_EQ(json["images"][texture["source"].get<int>()]["name"], "base_colour");
+        EXPECT_EQ(texture["source"], 3 * page);  // colour, orm and normal of each
+    }
+    // Each triangle's UVs are those of its own page.
+    expect_same(read_gltf(read_file(folder / "m.glb"), folder / "m.glb"), mesh, 1, 3e-7);
 }
 
 TEST(Export, FailuresLeaveNothingBehind) {

@@ -129,6 +129,19 @@ TEST(Project, ModelAndAtlasComeBackToTheBit) {
     EXPECT_EQ(folder.n_files(), 1u) << "a project is one file";
 }
 
+TEST(Project, PagesOfTheAtlasComeBack) {
+    const Folder folder("project_pages");
+    ProjectModel model = sample_model();
+    EXPECT_EQ(model.atlas.pages, 1u);
+    model.atlas.pages = 3;
+    model.atlas.size = 2 * 64;
+    Project::create(folder / "a.tuft", model);
+    EXPECT_EQ(Project::open(folder / "a.tuft").model().atlas.pages, 3u);
+    model.atlas.size = 2 * 64 + 1;  // no whole page
+    Project::create(folder / "b.tuft", model);
+    EXPECT_THROW(Project::open(folder / "b.tuft").model(), Error);
+}
+
 TEST(Project, StrokesComeBackToTheBitInOrder) {
     const Folder folder("project_strokes");
     std::vector<stroke::Stroke> strokes;
