@@ -341,7 +341,7 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
     take_presets(*painting);
     for (const stroke::Stroke& s : strokes) {  // a change may name new ones
         if (stroke::has_brush(s.action)) painting->use_brush(old.brush(s.trace.brush));
-        if (!s.trace.ink.empty()) painting->use_ink(old.ink(s.trace.ink));
+        for (const std::string& ink : stroke::inks_of(s)) painting->use_ink(old.ink(ink));
     }
     painting->replay(std::move(strokes), progress("Painting again"));
     for (const stroke::LayerTexels& layer : old.canvases())

@@ -70,6 +70,19 @@ void add_surface(CLI::App* app, Surface& s, bool with_unit = true) {
     add_store(app, s);
 }
 
+CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<double>& to, const std::string& what) {
+    return app
+        ->add_option_function<std::string>(
+            name,
+            [&to, name](const std::string& text) {
+                to = numbers(text, ',', 3);
+                if (to.empty())
+                    throw CLI::ValidationError(name, "'" + text + "' is not X,Y,Z in millimetres");
+            },
+            what)
+        ->type_name("X,Y,Z");
+}
+
 void add_layers(CLI::App* app, std::vector<std::string>& layers) {
     app->add_option("--layers", layers, "show these layers only, hidden ones too: NAME,...")->delimiter(',');
 }
@@ -126,6 +139,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
     p->add_option("--brush", paint.brush, "brush for strokes that name none ('tuft brush' lists them)");
     p->add_option("--ink", paint.ink, "ink for strokes that name none");
+    p->add_flag_callback("--erase", [&paint] { paint.erases = true; },
+                         "the strokes take ink away, wet and dry, instead of leaving some");
     p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
     p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
     p->add_option("--spine", paint.spine, "how the tuft bends: rod (live solve) or table (query table)")
@@ -212,6 +227,25 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     l->add_option("VALUE", layer.value, "opacity (0 to 1), new name, or place (1 is the lowest)");
     add_common(l, layer.common);
 
+    FillWork fill;
+    auto* f = app.add_subcommand("fill", "lay ink over a whole project, a part or a chart of it, even or graded");
+    f->add_option("PROJECT", fill.project, "project file (.tuft)")->required();
+    f->add_option("--ink", fill.ink, "ink to fill with");
+    f->add_option("--film", fill.film, "film units of 10 um of wet ink (default: what a full brush leaves)")
+        ->check(CLI::Range(0.0, 1000.0));
+    f->add_option("--to-ink", fill.to_ink, "ink at the other end of a gradient (default: the same)");
+    f->add_option("--to-film", fill.to_film, "film at the other end of a gradient (default: the same)")
+        ->check(CLI::Range(0.0, 1000.0));
+    auto* from = add_point(f, "--from", fill.from_mm, "where the gradient begins, in millimetres");
+    auto* to = add_point(f, "--to", fill.to_mm, "where it ends");
+    from->needs(to);
+    to->needs(from);
+    f->add_flag("--round", fill.round, "grade by the distance from the first point")->needs(from);
+    auto* part = add_point(f, "--part", fill.part_mm, "fill only what hangs together with the surface here");
+    add_point(f, "--chart", fill.chart_mm, "fill only the chart of the atlas here")->excludes(part);
+    f->add_option("--layer", fill.layer, "layer to fill; it is made when there is none yet");
+    add_common(f, fill.common);
+
     Render render;
     auto* d = app.add_subcommand("render", "draw a picture of a model or a project");
     d->add_option("FILE", render.file, "mesh or project")->required();
@@ -278,6 +312,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     else if (b->parsed()) command = brush;
     else if (h->parsed()) command = habit;
     else if (l->parsed()) command = layer;
+    else if (f->parsed()) command = fill;
     else command = bench;
     return true;
 }

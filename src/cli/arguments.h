@@ -44,6 +44,7 @@ struct Paint {
     std::vector<std::filesystem::path> strokes;
     std::string brush, ink;         ///< empty: as the stroke file says, else the default
     std::string layer;              ///< name; empty: as the stroke file says, else the first one
+    bool erases = false;            ///< all strokes take ink away
     std::string spine = "rod";      ///< rod | table
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";  ///< exact | vertices
@@ -93,6 +94,16 @@ struct LayerWork {
     Common common;
 };
 
+/// `tuft fill PROJECT`
+struct FillWork {
+    std::filesystem::path project;
+    std::string ink = "carbon", to_ink, layer;
+    double film = -1, to_film = -1;   ///< film units; < 0: what a full brush leaves of the ink
+    std::vector<double> from_mm, to_mm, part_mm, chart_mm;  ///< three numbers, or empty
+    bool round = false;
+    Common common;
+};
+
 struct Render {
     std::filesystem::path file, output;
     int turntable = 0;              ///< number of pictures; 0: one picture
@@ -123,7 +134,7 @@ struct Bench {
     Common common;
 };
 
-using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench, LayerWork>;
+using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench, LayerWork, FillWork>;
 
 /// Reads the command line. Prints help or version and returns false with `status` set
 /// when there is nothing to run; a wrong command line gives one line on standard error

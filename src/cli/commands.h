@@ -16,5 +16,6 @@ int run(const Brush& arguments);
 int run(const Habit& arguments);
 int run(const Bench& arguments);
 int run(const LayerWork& arguments);
+int run(const FillWork& arguments);
 
 }  // namespace tuft::cli

@@ -79,12 +79,7 @@ int run(const Paint& a) {
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);
     const std::size_t n_before = painting.journal().strokes().size();
     const double prepared = seconds_since(start);
-    // Unknown names are found before any paint flows.
-    for (const stroke::Stroke& s : strokes) {
-        if (!stroke::has_brush(s.action)) continue;
-        painting.brush(s.trace.brush);
-        painting.ink(s.trace.ink);
-    }
+    find_presets(painting, strokes);
     std::optional<io::Project> project;
     std::error_code no_matter;
     if (before && (a.project.empty() || std::filesystem::equivalent(a.project, a.model, no_matter))) {

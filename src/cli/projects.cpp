@@ -52,10 +52,8 @@ int run(const Replay& a) {
     for (stroke::Stroke& s : strokes) {
         if (!a.brush.empty()) s.trace.brush = a.brush;
         if (!a.ink.empty()) s.trace.ink = a.ink;
-        if (!stroke::has_brush(s.action)) continue;
-        painting.brush(s.trace.brush);
-        painting.ink(s.trace.ink);
     }
+    find_presets(painting, strokes);
     const std::vector<stroke::StrokeReport> reports = painting.replay(strokes, console.progress());
     console.clear();
     std::size_t missed = 0;

@@ -120,10 +120,13 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
                 entry.trace.flat = false;
                 entry.trace.brush = trace.brush;
                 entry.trace.ink = care.ink.empty() ? trace.ink : care.ink;
+                entry.trace.layer = trace.layer;
+                entry.fill = care.fill;
                 strokes.push_back(std::move(entry));
             }
             stroke::Stroke s{.settings = settings};
             if (trace.flat && !trace.pressed) s.settings.pressure = a.pressure;
+            trace.erases = trace.erases || a.erases;
             s.trace = std::move(trace);
             strokes.push_back(std::move(s));
         }
@@ -243,11 +246,17 @@ io::Project start_project(const fs::path& path, const std::string& source, const
 void put_presets(io::Project& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes) {
     std::set<std::string> brushes, inks;
     for (const stroke::Stroke& s : strokes) {
-        if (!stroke::has_brush(s.action)) continue;
-        if (brushes.insert(s.trace.brush).second)
+        if (stroke::has_brush(s.action) && brushes.insert(s.trace.brush).second)
             project.put_brush({s.trace.brush, brush::preset_toml(painting.brush(s.trace.brush))});
-        if (inks.insert(s.trace.ink).second)
-            project.put_ink({s.trace.ink, ink::ink_toml(painting.ink(s.trace.ink))});
+        for (const std::string& ink : stroke::inks_of(s))
+            if (inks.insert(ink).second) project.put_ink({ink, ink::ink_toml(painting.ink(ink))});
+    }
+}
+
+void find_presets(stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes) {
+    for (const stroke::Stroke& s : strokes) {
+        if (stroke::has_brush(s.action)) painting.brush(s.trace.brush);
+        for (const std::string& ink : stroke::inks_of(s)) painting.ink(ink);
     }
 }
 
@@ -350,6 +359,7 @@ nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::Stroke& s) {
             {"stamps", r.stamps},
             {"unconverged", r.unconverged},
             {"ink_mm3", r.ink_given * ink::kFilmUnit * 1e9},
+            {"removed_mm3", r.removed.sum() * ink::kFilmUnit * 1e9},
             {"touched", r.touched()},
             {"nearest_mm", r.nearest / kMillimetre}};
 }

@@ -60,6 +60,8 @@ void write_picture(const std::filesystem::path& path, const render::Image& image
 
 /// A new project with the model and the presets of these strokes; strokes are appended
 /// to it as they are finished.
+/// Throws `Error` for a brush or ink that there is none of, before any paint flows.
+void find_presets(stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes);
 /// Stores the presets that these entries use.
 void put_presets(io::Project& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes);
 io::Project start_project(const std::filesystem::path& path, const std::string& source,

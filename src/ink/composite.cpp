@@ -1,9 +1,9 @@
 #include "ink/composite.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "ink/elementary.h"
 #include "ink/kubelka_munk.h"
 #include "ink/simd.h"
 
@@ -14,23 +14,6 @@ constexpr int kN = atlas::kTileTexels;
 using Texels = std::array<float, kN>;
 
 constexpr float kWetRoughness = 0.05f;  ///< glTF roughness of a film of water
-
-/// exp(-x) for x ≥ 0, 1.5e-7 relative: 2^-n by exponent bits, Taylor polynomial on the
-/// rest. Written out so that it vectorises and gives the same bits everywhere.
-inline float exp_minus(float x) {
-    const float y = (x < 80.0f ? x : 80.0f) * 1.44269504f;
-    const int n = static_cast<int>(y + 0.5f);
-    const float f = (static_cast<float>(n) - y) * 0.693147181f;  // |f| ≤ 0.347
-    float e = 1.0f / 5040;
-    e = e * f + 1.0f / 720;
-    e = e * f + 1.0f / 120;
-    e = e * f + 1.0f / 24;
-    e = e * f + 1.0f / 6;
-    e = e * f + 0.5f;
-    e = e * f + 1.0f;
-    e = e * f + 1.0f;
-    return e * std::bit_cast<float>((127 - n) << 23);
-}
 
 TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, float factor) {
     for (int t = 0; t < kN; ++t) sum[t] += factor * w[t];

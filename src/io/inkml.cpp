@@ -29,6 +29,7 @@ struct Marks {
     bool placed = false;
     std::string brush, ink, label, layer;
     std::uint64_t seed = 0;
+    bool erases = false;
 };
 
 struct State {
@@ -304,6 +305,10 @@ class Reader {
                 marks.ink = text;
             else if (type == "label")
                 marks.label = text;
+            else if (type == "tool" && text != "brush" && text != "eraser")
+                fail(node, "tuft:tool is neither brush nor eraser");
+            else if (type == "tool")
+                marks.erases = text == "eraser";
             else if (type == "layer")
                 marks.layer = name_of(node, text, "layer");
             else if (type == "origin") {
@@ -338,7 +343,35 @@ class Reader {
     }
 
     static bool is_care(std::string_view type) {
-        return type == "dip" || type == "rinse" || type == "reshape" || type == "dry";
+        return type == "dip" || type == "rinse" || type == "reshape" || type == "dry" || type == "fill";
+    }
+
+    stroke::Fill fill_of(const xml_node& node) const {
+        stroke::Fill fill;
+        const auto number = [&](const char* name, double& to) {
+            if (node.attribute(name)) to = number_of(node, name);
+        };
+        const auto point = [&](const char* name, Vec3& to) {
+            if (node.attribute(name)) to = kMillimetre * vector_of(node, node.attribute(name).value());
+        };
+        number("film", fill.film);
+        fill.to_film = fill.film;
+        number("to_film", fill.to_film);
+        point("at", fill.at);
+        point("from", fill.from);
+        point("to", fill.to);
+        fill.to_ink = node.attribute("to_ink").value();
+        try {
+            if (node.attribute("region")) fill.region = stroke::region_of(node.attribute("region").value());
+            if (node.attribute("gradient")) fill.gradient = stroke::gradient_of(node.attribute("gradient").value());
+            if (fill.region != stroke::Region::all && !node.attribute("at"))
+                fail(node, "a fill of a part or a chart needs a point: at=\"x y z\"");
+            stroke::check_fill(fill);
+        } catch (const Error& e) {
+            if (std::string(e.what()).starts_with(source_)) throw;
+            fail(node, e.what());
+        }
+        return fill;
     }
 
     /// Seconds to dry for; nothing written: until all is dry.
@@ -367,7 +400,8 @@ class Reader {
             const stroke::Action action = stroke::action_of(std::string(type));
             stroke::Care& one = care.emplace_back();
             one.action = action;
-            if (action == stroke::Action::dip) one.ink = trimmed(text);
+            if (action == stroke::Action::dip || action == stroke::Action::fill) one.ink = trimmed(text);
+            if (action == stroke::Action::fill) one.fill = fill_of(node);
             if (action == stroke::Action::dry) one.seconds = seconds_of(node, trimmed(text));
         }
         return care;
@@ -464,6 +498,7 @@ class Reader {
         d.trace.brush = state.marks.brush;
         d.trace.ink = state.marks.ink;
         d.trace.layer = state.marks.layer;
+        d.trace.erases = state.marks.erases;
         d.trace.seed = state.marks.seed;
         d.trace.label = state.marks.label;
         d.trace.pressed = d.has_pressure;

@@ -43,11 +43,13 @@ struct InkmlOptions {
 ///     tuft:ink      preset name          tuft:right   "x y z" direction of +x
 ///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
 ///     tuft:label    any text             tuft:laying  wrap | project
-///     tuft:layer    name of a layer
+///     tuft:layer    name of a layer      tuft:tool    brush | eraser
 ///
 /// and, on a `trace` only, what is done with the brush before it, in the order written:
 /// tuft:dip (an ink's name, or empty: the trace's own), tuft:rinse, tuft:reshape, tuft:dry
-/// (seconds, or empty: until all is dry).
+/// (seconds, or empty: until all is dry), tuft:fill (an ink's name, or empty: the trace's own) with the
+/// attributes film, region (all, part, chart), at, gradient (none, along, round), to_film, to_ink,
+/// from, to: see stroke::Fill, points "x y z" in mm.
 ///
 /// Flat traces without P and F get pressure that swells in and tapers out over their length
 /// and falls with speed; P without a declared range is 0–1, or scaled by its largest value.

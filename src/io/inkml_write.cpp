@@ -36,6 +36,8 @@ std::string escaped(const std::string& text) {
             out += "&lt;";
         else if (c == '>')
             out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
         else
             out += c;
     }
@@ -69,8 +71,22 @@ std::string vector_text(const Vec3& v, int decimals) {
     return out;
 }
 
+std::string fill_attributes(const stroke::Fill& fill) {
+    std::string out = fmt::format(" film=\"{}\" region=\"{}\"", fill.film, stroke::name_of(fill.region));
+    const auto add = [&out](const char* name, const Vec3& v) {
+        out += fmt::format(" {}=\"{} {} {}\"", name, v.x / kMillimetre, v.y / kMillimetre, v.z / kMillimetre);
+    };
+    if (fill.region != stroke::Region::all) add("at", fill.at);
+    if (fill.gradient == stroke::Gradient::none) return out;
+    out += fmt::format(" gradient=\"{}\" to_film=\"{}\" to_ink=\"{}\"", stroke::name_of(fill.gradient),
+                       fill.to_film, escaped(fill.to_ink));
+    add("from", fill.from);
+    add("to", fill.to);
+    return out;
+}
+
 bool same_place(const Trace& a, const Trace& b) {
-    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer &&
+    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer && a.erases == b.erases &&
            a.placement.origin == b.placement.origin && a.placement.right == b.placement.right &&
            a.placement.down == b.placement.down && a.placement.laying == b.placement.laying;
 }
@@ -100,7 +116,8 @@ void add_trace(std::string& out, const Trace& trace, Kind kind) {
     out += fmt::format("    <trace contextRef=\"#{}\">\n", name_of(kind));
     add_annotation(out, "      ", "label", trace.label);
     for (const stroke::Care& care : trace.before)
-        out += fmt::format("      <annotation type=\"tuft:{}\">{}</annotation>\n", stroke::name_of(care.action),
+        out += fmt::format("      <annotation type=\"tuft:{}\"{}>{}</annotation>\n", stroke::name_of(care.action),
+                           care.action == stroke::Action::fill ? fill_attributes(care.fill) : "",
                            care.seconds > 0 ? fmt::format("{}", care.seconds) : escaped(care.ink));
     if (trace.seed) add_annotation(out, "      ", "seed", std::to_string(trace.seed));
     const int decimals = trace.flat ? 3 : 7;
@@ -152,6 +169,7 @@ std::string inkml_text(std::span<const Trace> traces, const std::string& title) 
         add_annotation(out, "    ", "brush", first.brush);
         add_annotation(out, "    ", "ink", first.ink);
         add_annotation(out, "    ", "layer", first.layer);
+        if (first.erases) add_annotation(out, "    ", "tool", "eraser");
         if (first.flat) {
             add_annotation(out, "    ", "origin",
                            vector_text(first.placement.origin / kMillimetre, 7));

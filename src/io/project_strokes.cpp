@@ -82,7 +82,8 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         insert.bind(12, blob.data(), static_cast<int>(blob.size()));
         insert.exec();
         insert.reset();
-        if (stroke.action == stroke::Action::layer || stroke.layer != stroke::kFirstLayer)
+        if (stroke.action == stroke::Action::layer || stroke.action == stroke::Action::fill ||
+            stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
             raise_format(db, kProjectFormat);
     }
 }

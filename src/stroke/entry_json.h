@@ -2,6 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "stroke/fill.h"
 #include "stroke/layers.h"
 
 /// The parts of a journal's entry as JSON; included by sources of this room only. Readers
@@ -10,5 +11,8 @@ namespace tuft::stroke {
 
 nlohmann::json json_of(const LayerEdit& edit);
 LayerEdit layer_edit_of(const nlohmann::json& json);
+
+nlohmann::json json_of(const Fill& fill);
+Fill fill_of(const nlohmann::json& json);
 
 }  // namespace tuft::stroke

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLongestString = 1.0;    // metres
 constexpr double kStrongestFilter = 100;
 constexpr double kLongestWait = 86400;    // seconds
-constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer"};
+constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "fill"};
 
 nlohmann::json json_of(const Settings& s) {
     return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
@@ -78,6 +78,8 @@ std::string entry_json(const Stroke& entry) {
     if (entry.action == Action::dry) j["seconds"] = entry.seconds;
     if (entry.action == Action::layer) j["edit"] = json_of(entry.edit);
     if (entry.layer != kFirstLayer) j["layer"] = entry.layer;
+    if (entry.action == Action::fill) j["fill"] = json_of(entry.fill);
+    if (entry.trace.erases) j["tool"] = "eraser";
     return j.dump();
 }
 
@@ -90,11 +92,17 @@ void read_entry_json(const std::string& json, Stroke& entry) {
             throw Error("the layer of a journal's entry cannot be read");
         entry.layer = layer->get<std::uint32_t>();
     }
+    entry.trace.erases = false;
+    if (const auto tool = j.find("tool"); tool != j.end()) {
+        if (*tool != "eraser" && *tool != "brush") throw Error("the tool of a stroke is brush or eraser, not " + tool->dump().substr(0, 40));
+        entry.trace.erases = *tool == "eraser";
+    }
     const auto action = j.find("action");
     if (action == j.end()) return;
     if (!action->is_string()) throw Error("the action of a journal's entry cannot be read");
     entry.action = action_of(action->get<std::string>());
     if (entry.action == Action::layer) entry.edit = layer_edit_of(j.value("edit", nlohmann::json::object()));
+    if (entry.action == Action::fill) entry.fill = fill_of(j.value("fill", nlohmann::json::object()));
     const auto seconds = j.find("seconds");
     if (seconds == j.end()) return;
     if (!seconds->is_number()) throw Error("the seconds of a journal's entry cannot be read");
@@ -106,12 +114,22 @@ std::string name_of(Action action) { return kActions[static_cast<int>(action)]; 
 
 Action action_of(const std::string& name) {
     for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape,
-                           Action::dry, Action::layer})
+                           Action::dry, Action::layer, Action::fill})
         if (name == name_of(a)) return a;
-    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry and layer");
+    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer and fill");
 }
 
-bool has_brush(Action action) { return action != Action::dry && action != Action::layer; }
+bool has_brush(Action action) {
+    return action != Action::dry && action != Action::layer && action != Action::fill;
+}
+
+std::vector<std::string> inks_of(const Stroke& entry) {
+    std::vector<std::string> inks;
+    const bool none = entry.action == Action::dry || entry.action == Action::layer || entry.trace.erases;
+    if (!none && !entry.trace.ink.empty()) inks.push_back(entry.trace.ink);
+    if (entry.action == Action::fill && !entry.fill.to_ink.empty()) inks.push_back(entry.fill.to_ink);
+    return inks;
+}
 
 const Stroke& Journal::append(Stroke stroke) {
     stroke.id = next_id_++;

@@ -36,8 +36,8 @@ void check_settings(const Settings& settings);
 void check_seconds(double seconds);
 
 /// An entry of the journal: a stroke, or an action between strokes. An action has no samples;
-/// it names a brush, and for a dip the ink. Drying and changes of layers leave the brush as it
-/// is and need not name one.
+/// it names a brush, and for a dip the ink. Drying, fills and changes of layers leave the brush
+/// as it is and need not name one.
 struct Stroke {
     std::uint64_t id = 0;     ///< unique in its journal, never used again
     Trace trace;              ///< with the names of its brush and ink filled in
@@ -47,18 +47,21 @@ struct Stroke {
     double seconds = 0;       ///< of `Action::dry`; 0: until all is dry
     std::uint32_t layer = kFirstLayer;  ///< that is painted on
     LayerEdit edit = {};      ///< of `Action::layer`
+    Fill fill = {};           ///< of `Action::fill`, which names its first ink as strokes do
 };
 
 /// The settings of an entry as above, with the entry's action and seconds as further keys.
 std::string entry_json(const Stroke& entry);
 void read_entry_json(const std::string& json, Stroke& entry);
 
-/// "stroke", "dip", "rinse", "reshape", "dry", "layer"; and back, throwing `Error` for any other word.
+/// "stroke", "dip", "rinse", "reshape", "dry", "layer", "fill"; and back, throwing `Error` for any other word.
 std::string name_of(Action action);
 Action action_of(const std::string& name);
 
 /// Whether an entry with this action has a brush in it.
 bool has_brush(Action action);
+/// Names of the inks that an entry uses.
+std::vector<std::string> inks_of(const Stroke& entry);
 
 /// Strokes in the order in which they are painted, with undo and redo.
 class Journal {

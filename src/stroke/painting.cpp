@@ -113,7 +113,7 @@ const BrushInHand* Painting::held(const std::string& brush) const {
 void Painting::settle(Stroke& entry) const {
     if (entry.action == Action::layer && entry.edit.what == LayerChange::add && entry.edit.layer.id == 0)
         entry.edit.layer.id = layers_.next_id;
-    if (!has_brush(entry.action)) return;
+    if (!has_brush(entry.action) || entry.trace.erases) return;
     const BrushInHand* last = held(entry.trace.brush);
     if (!last) entry.settings.dip = "each";
     if (last && entry.action != Action::stroke && entry.trace.ink.empty()) entry.trace.ink = last->dipped;
@@ -123,6 +123,12 @@ void Painting::settle(Stroke& entry) const {
 BrushInHand Painting::take_up(const Stroke& entry) {
     brush::Preset preset = brush(entry.trace.brush);
     if (entry.settings.spine == "table") preset.spine = brush::SpineMethod::table;
+    if (entry.trace.erases) {
+        // A clean brush of its own, full of water: its hair lies together, it leaves nothing.
+        BrushInHand clean{brush::make_tuft(preset), ink::make_reservoir(preset.capacity * 1e6), {}, {}};
+        ink::dip(clean.reservoir, ink::Mix{});
+        return clean;
+    }
     const std::string& named = entry.trace.ink;
     const ink::Mix mix = ink::mix_of(canvas_, ink(named));
     const BrushInHand* last = entry.settings.dip == "carry" ? held(entry.trace.brush) : nullptr;
@@ -185,6 +191,7 @@ void Painting::act(const Stroke& entry) {
         case Action::reshape: brush::reshape(brush.tuft); break;
         case Action::dry:
         case Action::layer:
+        case Action::fill:
         case Action::stroke: break;
     }
     put_down(entry.id, entry.trace.brush, std::move(brush), {});
@@ -211,7 +218,7 @@ void Painting::begin_hand(Stroke stroke) {
     cancel();
     settle(stroke);
     BrushInHand brush = take_up(stroke);
-    const ink::Ink& ink = this->ink(brush.dipped);
+    const ink::Ink& ink = stroke.trace.erases ? ink::Ink{} : this->ink(brush.dipped);
     const double texel = model_->texels.texel_size;
     const double spacing = stroke.settings.spacing * texel;
     ink::Canvas& canvas = this->canvas(stroke.layer);
@@ -286,6 +293,7 @@ void Painting::draw_poses() {
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, substrate_);
         stamp.ink.capacity = substrate_.capacity;
         stamp.ds = h.step;
+        if (h.stroke.trace.erases) stamp.erases = 0.25 + 0.75 * touch.moment_factor;  // as ink is given
         if (h.stamper.add(std::move(stamp))) h.flush();
     }
     h.poses.clear();
@@ -299,8 +307,14 @@ StrokeReport Painting::finish_hand() {
     h.flush();
     h.report.ink_left = h.reservoir.remaining();
     if (h.report.touched()) h.report.nearest = 0;
+    h.report.removed = h.stamper.erased();
     const std::string name = h.stroke.trace.brush;
-    put_down(h.stroke.id, name, {std::move(h.tuft), h.reservoir, h.dipped, h.stroke.trace.ink},
+    if (h.stroke.trace.erases) {
+        Undo undo{.stroke_id = h.stroke.id};
+        undo.before.push_back({h.stroke.layer, h.stamper.take_before()});
+        keep_undo(std::move(undo));
+    } else
+        put_down(h.stroke.id, name, {std::move(h.tuft), h.reservoir, h.dipped, h.stroke.trace.ink},
              {h.stroke.layer, h.stamper.take_before()});
     StrokeReport report = std::move(h.report);
     hand_.reset();
@@ -337,6 +351,7 @@ std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
 StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
     if (stroke.action != Action::stroke) {
         cancel();
+        if (stroke.action == Action::fill) return lay_fill(stroke);
         act(stroke);
         return {.stroke_id = stroke.id};
     }

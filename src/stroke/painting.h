@@ -12,6 +12,7 @@
 #include "brush/tuft.h"
 #include "ink/canvas.h"
 #include "ink/composite.h"
+#include "ink/erase.h"
 #include "ink/pigments.h"
 #include "ink/reservoir.h"
 #include "stroke/journal.h"
@@ -39,7 +40,7 @@ struct BrushInHand {
     std::string named;         ///< the ink that its last stroke named
 };
 
-/// What a stroke did.
+/// What a stroke or a fill did.
 struct StrokeReport {
     std::uint64_t stroke_id = 0;
     std::size_t samples = 0;
@@ -47,6 +48,7 @@ struct StrokeReport {
     std::size_t unconverged = 0;     ///< of them, solved only to the iteration limit
     double ink_given = 0;            ///< film·m², now on the texels
     double ink_left = 0;             ///< film·m², in the tuft
+    ink::Amounts removed;            ///< by an eraser, of all films of its layer
     double nearest = 0;              ///< metres: least distance of tuft and model; 0 when it touched
     std::vector<ForceRecord> forces; ///< only when asked for
 
@@ -177,6 +179,7 @@ class Painting {
     void act(const Stroke& entry);
     void dry(const Stroke& entry);
     void edit_layers(const Stroke& entry);
+    StrokeReport lay_fill(const Stroke& entry);
     void take_back_layers(Undo& undo);
     void set_layers(LayerTable table);
     void check_layer(const Stroke& entry) const;

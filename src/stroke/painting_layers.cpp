@@ -110,7 +110,7 @@ std::vector<std::uint32_t> Painting::take_dirty() {
 
 // Before the hand begins: what it may not do. A replay may, since the lock came after it.
 void Painting::check_layer(const Stroke& entry) const {
-    if (entry.action != Action::stroke) return;
+    if (entry.action != Action::stroke && entry.action != Action::fill) return;
     const Layer* layer = layers_.find(entry.layer);
     if (!layer) throw Error("there is no layer " + std::to_string(entry.layer) + " to paint on");
     if (layer->locked)

@@ -48,7 +48,13 @@ double Stamper::flush() {
     }
     runs.push_back(static_cast<std::uint32_t>(order.size()));
 
+    const bool erases = batch_.front().erases > 0;
+    for (std::size_t r = 0; erases && r + 1 < runs.size(); ++r) {
+        const std::uint32_t slot = order[runs[r]].slot;
+        if (!starts_.contains(slot)) starts_.emplace(slot, ink::erase_start(canvas_, slot));
+    }
     std::vector<double> given(order.size(), 0.0);
+    std::vector<ink::Amounts> erased(erases ? order.size() : 0);
     parallel_for(runs.size() - 1, 4, [&](std::size_t begin, std::size_t end) {
         alignas(64) std::array<float, atlas::kTileTexels> exposure;
         footprint::Unpacked unpacked;
@@ -62,11 +68,17 @@ double Stamper::flush() {
                                               exposure))
                     continue;
                 const Stamp& stamp = batch_[job.stamp];
+                if (erases) {
+                    erased[k] = ink::erase(canvas_, job.slot, exposure, tile.area, stamp.ds,
+                                           starts_.at(job.slot), {.strength = stamp.erases});
+                    continue;
+                }
                 given[k] = ink::deposit(canvas_, slot, exposure, tile.area, stamp.ds, stamp.ink);
             }
         }
     });
     batch_.clear();
+    for (const ink::Amounts& e : erased) erased_ += e;
     double sum = 0;
     for (const double g : given) sum += g;
     return sum;

@@ -5,6 +5,7 @@
 
 #include "footprint/stamp.h"
 #include "ink/deposit.h"
+#include "ink/erase.h"
 #include "stroke/model.h"
 
 namespace tuft::stroke {
@@ -15,6 +16,7 @@ struct Stamp {
     footprint::Motion motion;    ///< since the stamp before, in the footprint's frame
     ink::DepositParams ink;
     double ds = 0;               ///< metres of travel it stands for
+    double erases = 0;           ///< strength of an eraser, which takes ink instead; 0: it is none
 };
 
 /// Puts stamps onto the texels, a batch at a time: tiles in parallel, on each tile the
@@ -31,6 +33,9 @@ class Stamper {
     /// Lays down what was added. Returns the ink given, film·m².
     double flush();
 
+    /// What erasing stamps have taken away since the start.
+    const ink::Amounts& erased() const { return erased_; }
+
     /// Tiles as they were before this stamper first wrote to them.
     std::vector<ink::TileSnapshot> take_before();
 
@@ -43,6 +48,8 @@ class Stamper {
     std::vector<footprint::StampJobs> jobs_;       ///< likewise; their memory is used again
     bool piecewise_ = false;
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
+    std::unordered_map<std::uint32_t, ink::EraseStart> starts_;  ///< of tiles an eraser came to
+    ink::Amounts erased_;
 };
 
 }  // namespace tuft::stroke

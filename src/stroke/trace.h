@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/types.h"
+#include "stroke/fill.h"
 
 /// Strokes as a device or a file gives them, before they meet a model.
 namespace tuft::stroke {
@@ -43,6 +43,7 @@ enum class Action {
     reshape,  ///< combs it: hair straight and together, ink stays
     dry,      ///< waits while the ink on the model flows and dries
     layer,    ///< changes the table of layers; no brush has a part in it
+    fill,     ///< lays ink over a whole part of the model; likewise
 };
 
 /// Something done with the brush between two strokes.
@@ -50,6 +51,7 @@ struct Care {
     Action action = Action::dip;
     std::string ink;   ///< to dip into; empty: the ink of the stroke after it
     double seconds = 0;  ///< to dry for; 0: until all is dry
+    Fill fill = {};
 };
 
 /// One stroke from touch to lift.
@@ -59,6 +61,7 @@ struct Trace {
     bool placed = false;                 ///< the file says where; else the placement is only a default
     std::vector<TraceSample> samples;    ///< time never falls
     std::string brush, ink;              ///< preset names; empty: as the command line says
+    bool erases = false;                 ///< takes ink away, wet and dry, where it would leave some
     std::string layer;                   ///< name of the layer; empty: as the command line says
     std::uint64_t seed = 0;
     std::string label;                   ///< free text for people: a character, a stroke's name

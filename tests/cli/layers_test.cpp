@@ -95,6 +95,28 @@ TEST_F(LayersOfAProject, WhatCannotBeIsOneLine) {
     EXPECT_EQ(layers().size(), 1u);
 }
 
+TEST_F(LayersOfAProject, AreFilledAndErased) {
+    paint("");
+    const Ran filled = tuft("fill " + path("p.tuft") + " --ink cinnabar --film 2 --to-ink indigo --from -20,0,0 --to 20,0,0 --layer ground --json");
+    ASSERT_EQ(filled.status, 0) << filled.err;
+    EXPECT_EQ(replayed(), json::parse(filled.out)["canvas_hash"]);
+    EXPECT_GT(json::parse(filled.out)["pigment_mm3"], 0);
+    const Ran erased = tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") + " --layer ground --erase --json");
+    ASSERT_EQ(erased.status, 0) << erased.err;
+    const json stroke = json::parse(erased.out)["strokes"][0];
+    EXPECT_GT(stroke["removed_mm3"], 0);
+    EXPECT_EQ(stroke["ink_mm3"], 0);
+    EXPECT_EQ(replayed(), json::parse(erased.out)["canvas_hash"]);
+    for (const char* wrong : {"--film -1", "--film much", "--to-ink indigo", "--from 0,0,0", "--from 0,0,0 --to 0,0", "--round",
+                              "--part 0,0,0 --chart 0,0,0"}) {
+        const Ran ran = tuft("fill " + path("p.tuft") + " " + wrong);
+        EXPECT_EQ(ran.status, 2) << wrong;
+        EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+    }
+    EXPECT_EQ(tuft("fill " + path("p.tuft") + " --from 1,1,1 --to 1,1,1").status, 1);
+    EXPECT_EQ(tuft("fill " + path("p.tuft") + " --ink nothing").status, 1);
+}
+
 // Every change is in the file when the command ends, however it ends: a kill of the painting
 // after it loses nothing of it.
 TEST_F(LayersOfAProject, EveryFinishedChangeSurvivesAKill) {

@@ -216,7 +216,9 @@ TEST(Layers, EntriesComeBackFromTheirText) {
         EXPECT_EQ(back.layer, s.layer);
         EXPECT_EQ(back.action, s.action);
         EXPECT_EQ(back.edit.what, s.edit.what);
-        if (s.edit.what != LayerChange::remove && s.action == Action::layer) EXPECT_EQ(back.edit, s.edit);
+        if (s.edit.what != LayerChange::remove && s.action == Action::layer) {
+            EXPECT_EQ(back.edit, s.edit);
+        }
     }
     EXPECT_EQ(entry_json(on(kFirstLayer)).find("layer"), std::string::npos) << "as without layers";
 }

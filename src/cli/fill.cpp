@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/steps.h"
+#include "core/units.h"
+
+namespace tuft::cli {
+namespace {
+
+Vec3 metres(const std::vector<double>& mm) { return kMillimetre * Vec3(mm[0], mm[1], mm[2]); }
+
+stroke::Stroke entry_of(const FillWork& a, stroke::Painting& painting) {
+    stroke::Stroke entry;
+    entry.action = stroke::Action::fill;
+    entry.trace.flat = false;
+    entry.trace.ink = a.ink;
+    stroke::Fill& fill = entry.fill;
+    fill.film = a.film >= 0 ? a.film : painting.ink(a.ink).film;
+    fill.to_film = fill.film;
+    if (!a.to_ink.empty()) fill.to_film = painting.ink(a.to_ink).film;
+    if (a.to_film >= 0) fill.to_film = a.to_film;
+    fill.to_ink = a.to_ink;
+    if (!a.from_mm.empty()) {
+        fill.gradient = a.round ? stroke::Gradient::round : stroke::Gradient::along;
+        fill.from = metres(a.from_mm);
+        fill.to = metres(a.to_mm);
+    } else if (!a.to_ink.empty() || a.to_film >= 0) {
+        throw UsageError("a gradient needs --from and --to");
+    }
+    if (!a.part_mm.empty()) fill.region = stroke::Region::part, fill.at = metres(a.part_mm);
+    if (!a.chart_mm.empty()) fill.region = stroke::Region::chart, fill.at = metres(a.chart_mm);
+    return entry;
+}
+
+}  // namespace
+
+int run(const FillWork& a) {
+    Console console(a.common.quiet);
+    const auto project = open_project(a.project, console);
+    stroke::Painting painting(project->model);
+    painting.use_substrate(project->substrate);
+    use_presets(project->file, painting);
+    show_strokes(project->file, painting, console);
+    const std::vector<stroke::Stroke> entries =
+        stroke::onto_named_layers({entry_of(a, painting)}, painting.layers(), a.layer);
+    find_presets(painting, entries);
+    stroke::StrokeReport report;
+    std::vector<stroke::Stroke> done;
+    for (const stroke::Stroke& entry : entries) {
+        report = painting.paint(entry);
+        done.push_back(painting.journal().strokes().back());
+    }
+    put_presets(project->file, painting, entries);
+    project->file.append(done);
+    project->file.save_canvases(painting.canvases(), done.back().id);
+    console.clear();
+    const double volume = report.ink_given * ink::kFilmUnit * 1e9;
+    if (a.common.json)
+        std::cout << nlohmann::json{{"project", a.project.string()},
+                                    {"id", done.back().id},
+                                    {"pigment_mm3", volume},
+                                    {"canvas_hash", fmt::format("{:016x}", painting.hash())}}
+                         .dump(2)
+                  << '\n';
+    else
+        fmt::print("filled with {:.1f} mm3 of pigment\n", volume);
+    return 0;
+}
+
+}  // namespace tuft::cli

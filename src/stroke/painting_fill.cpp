@@ -1,0 +1,52 @@
+#include <array>
+
+#include "core/parallel.h"
+#include "stroke/painting.h"
+
+/// Fills and gradients.
+namespace tuft::stroke {
+
+StrokeReport Painting::lay_fill(const Stroke& entry) {
+    check_fill(entry.fill);
+    const Fill& fill = entry.fill;
+    const ink::Mix first = ink::mix_of(canvas_, ink(entry.trace.ink));
+    const ink::Mix second = fill.to_ink.empty() ? first : ink::mix_of(canvas_, ink(fill.to_ink));
+    const std::vector<std::uint8_t> charts = charts_of(fill, *model_);
+    ink::Canvas& canvas = this->canvas(entry.layer);
+    const atlas::TexelMap& map = model_->texels;
+
+    std::vector<std::uint32_t> slots;
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t k = map.piece_start[slot]; k < map.piece_start[slot + 1]; ++k)
+            if (charts[map.piece_chart[k]] && (slots.empty() || slots.back() != slot)) slots.push_back(slot);
+    Undo undo{.stroke_id = entry.id};
+    LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = entry.layer, .tiles = {}});
+    for (const std::uint32_t slot : slots) before.tiles.push_back(canvas.snapshot(slot));
+
+    std::vector<ink::Amounts> laid(slots.size());
+    parallel_for(slots.size(), 16, [&](std::size_t begin, std::size_t end) {
+        ink::Coat coat;
+        coat.first = first;
+        coat.second = second;
+        for (std::size_t i = begin; i < end; ++i) {
+            const atlas::TexelTile& tile = map.tiles[slots[i]];
+            for (int t = 0; t < atlas::kTileTexels; ++t) {
+                const std::uint8_t piece = tile.piece[t];
+                const bool in = piece != atlas::kNoPiece && charts[map.piece_chart[map.piece_start[slots[i]] + piece]];
+                const double along = in ? along_gradient(fill, Vec3(map.position(slots[i], t))) : 0;
+                const double film = fill.gradient == Gradient::none
+                                        ? fill.film
+                                        : fill.film + along * (fill.to_film - fill.film);
+                coat.film[t] = in ? static_cast<float>(film) : 0.0f;
+                coat.towards[t] = static_cast<float>(along);
+            }
+            laid[i] = ink::lay_coat(canvas, slots[i], tile.area, coat, substrate_.capacity);
+        }
+    });
+    keep_undo(std::move(undo));
+    StrokeReport report{.stroke_id = entry.id};
+    for (const ink::Amounts& a : laid) report.ink_given += a.sum();
+    return report;
+}
+
+}  // namespace tuft::stroke
