@@ -122,12 +122,6 @@ Vec3 touching_point(double z0, double z1, const Vec3& x_t0, const Vec3& x) {
     return x_t0 + std::min(1.0, z0 / (z0 - z1)) * (x - x_t0);
 }
 
-/// Share of the friction of hair at this angle: ends that stand on the surface fold under it.
-double end_share(const Law& law, const Vec3& tangent, const Vec3& normal) {
-    const double c = glm::dot(tangent, normal);
-    return law.end_friction + (1 - law.end_friction) * std::max(0.0, 1 - c * c);
-}
-
 /// Friction of a point for the next pass, from the normal force and tangent known so far.
 Friction friction_of(const Law& law, const Vec3& plane, double weight, double normal_force,
                      const Vec3& anchor, const Vec3& x, const Vec3& tangent) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "brush/lateral.h"
 
 namespace tuft::brush {
 
@@ -63,34 +66,22 @@ Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
 namespace {
 
 /// How far the contact squashes the hair round each node, 0 to 1, root first: indentation
-/// over radius, spread along the tuft over a few hair-bundle widths as hairs lean on each other.
+/// over radius; hair that stands on the surface is not pressed flat.
 std::vector<double> squash(const SectionInput& in) {
-    constexpr double kReach = 0.07;  // of the length
     const rod::Memory& m = in.spine.memory;
-    const std::size_t count = m.node.size();
-    std::vector<double> raw(count, 0), out(count, 0), at(count, 0);
-    for (std::size_t i = 1; i < count; ++i) {
-        at[i] = at[i - 1] + in.spine.rod.length[i - 1];
-        if (in.obstacles.empty()) continue;
+    std::vector<double> out(m.node.size(), 0);
+    for (std::size_t i = 1; i < out.size() && !in.obstacles.empty(); ++i) {
         const rod::Obstacle& o = in.obstacles[i];
         const double z = glm::dot(m.node[i] - o.origin, o.normal);
-        // Hair that stands on the surface is not pressed flat.
         const double c = glm::dot(m.tangent[i - 1], o.normal);
-        if (o.radius > 0) raw[i] = std::clamp((o.radius - z) / o.radius, 0.0, 1.0) * (1 - c * c);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        double sum = 0, weight = 0;
-        for (std::size_t j = 0; j < count; ++j) {
-            const double w = in.spine.rod.weight[j] * std::exp(-std::abs(at[i] - at[j]) / kReach);
-            sum += w * raw[j];
-            weight += w;
-        }
-        out[i] = sum / weight;
+        if (o.radius > 0) out[i] = std::clamp((o.radius - z) / o.radius, 0.0, 1.0) * (1 - c * c);
     }
     return out;
 }
 
-constexpr double kDrySpread = 0.4;  ///< dry hair, not held by water, spreads this much more
+constexpr double kDry = 0.7;   ///< stretch springs of dry hair over those of wet hair
+constexpr double kReach = 0.05;  ///< of the length, λ of the side nodes' bend springs
+constexpr double kSideDrag = 0.5;  ///< share of the friction across a section that its side nodes take
 constexpr double kLying = 0.6;  ///< height over b at which wet hair lies by its own weight
 
 /// How far each centre comes down along its plane's normal, metres, root first. A flattened
@@ -124,6 +115,54 @@ std::vector<double> lowering(const SectionInput& in, const std::vector<Section>&
 
 }  // namespace
 
+namespace {
+
+/// Half-widths of the sections to the side of e and to the other, metres, root first.
+struct Widths {
+    std::vector<double> plus, minus;
+};
+
+/// What pushes the side nodes out, as if it worked against the wet stretch springs alone:
+/// r (κ1 |m|/M_e0 + κ2 k_F + κ3 squash), and the friction of the surface along e.
+Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
+    const Preset& p = in.preset;
+    const std::size_t count = e.size();
+    const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
+    const double newton = p.stiffness / (p.length * p.length);
+    const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * newton / p.force_limit);
+    const std::vector<double> squashed = squash(in);
+    const double wet = p.transverse_stiffness;
+    const LateralSprings springs{.stretch = wet * (kDry + (1 - kDry) * in.wetness),
+                                 .bend = wet,
+                                 .reach = kReach * p.length};
+    std::vector<double> at(count, 0);
+    LateralSide plus{std::vector<double>(count, 0),
+                     std::vector<double>(count, std::numeric_limits<double>::infinity())};
+    LateralSide minus = plus;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i > 0) at[i] = at[i - 1] + in.spine.rod.length[i - 1] * p.length;
+        const double moment = i + 1 < count ? in.result.moment[i] : 0;
+        // The ferrule holds the hair round for some radii from its mouth.
+        const double out_of_ferrule = at[i] / (2.5 * p.radius);
+        const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
+        const double widen = held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
+                                     p.flatten_contact * squashed[i]);
+        const double drag = kSideDrag * glm::dot(in.result.contact_force[i], e[i]) * newton /
+                            (in.spine.rod.weight[i] * p.length);
+        plus.push[i] = wet * in.spine.rest_radius[i] * widen + drag;
+        minus.push[i] = wet * in.spine.rest_radius[i] * widen - drag;
+    }
+    Widths out{solve_lateral(at, springs, plus), solve_lateral(at, springs, minus)};
+    for (std::size_t i = 0; i < count; ++i) {
+        const double r = in.spine.rest_radius[i];
+        out.plus[i] = half_width(r, out.plus[i], p.flatten_max);
+        out.minus[i] = half_width(r, out.minus[i], p.flatten_max);
+    }
+    return out;
+}
+
+}  // namespace
+
 SectionOutput make_sections(const SectionInput& in) {
     const Preset& p = in.preset;
     const rod::Memory& m = in.spine.memory;
@@ -134,36 +173,23 @@ SectionOutput make_sections(const SectionInput& in) {
     e[wide.node] = wide.direction;
     for (std::size_t i = wide.node + 1; i < count; ++i) e[i] = parallel_transport(e[i - 1], t[i - 1], t[i]);
     for (std::size_t i = wide.node; i-- > 0;) e[i] = parallel_transport(e[i + 1], t[i + 1], t[i]);
+    for (std::size_t i = 0; i < count; ++i) e[i] = glm::normalize(e[i] - glm::dot(e[i], t[i]) * t[i]);
 
-    const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
-    const double force = glm::length(in.result.force) * p.stiffness / (p.length * p.length);
-    const double k_f = std::min(1.0, p.force_gain * force / p.force_limit);
-    const std::vector<double> squashed = squash(in);
-    const double spread = 1 + kDrySpread * (1 - in.wetness);
+    const Widths widths = side_nodes(in, e);
     SectionOutput out;
     out.sections.resize(count);
-    double s = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double r = in.spine.rest_radius[i];
-        const double moment = i + 1 < count ? in.result.moment[i] : 0;
-        // The ferrule holds the hair round for some radii from its mouth.
-        const double out_of_ferrule = s * p.length / (2.5 * p.radius);
-        const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
-        const double widen = held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
-                                         p.flatten_contact * spread * squashed[i]);
         Section& section = out.sections[count - 1 - i];
-        // Nears its limit smoothly, or a line's width would show where it is reached.
-        const double room = p.flatten_max - 1;
-        section.a = r * (1 + (room > 0 ? room * std::tanh(widen / room) : 0));
+        section.a = 0.5 * (widths.plus[i] + widths.minus[i]);
         section.b = r > 0 ? r * r / section.a : 0;
         section.tangent = t[i];
-        section.e = glm::normalize(e[i] - glm::dot(e[i], t[i]) * t[i]);
-        section.m = glm::cross(section.e, t[i]);
-        section.centre = m.node[i] * p.length;
-        section.moment = moment * p.stiffness / p.length;
+        section.e = e[i];
+        section.m = glm::cross(e[i], t[i]);
+        section.centre = m.node[i] * p.length + 0.5 * (widths.plus[i] - widths.minus[i]) * e[i];
+        section.moment = (i + 1 < count ? in.result.moment[i] : 0) * p.stiffness / p.length;
         section.pressure = in.result.normal_force[i] / in.spine.rod.weight[i] * p.stiffness /
                            (p.length * p.length * p.length);
-        if (i + 1 < count) s += in.spine.rod.length[i];
     }
     const std::vector<double> down = lowering(in, out.sections);
     for (std::size_t i = 1; i < count && !in.obstacles.empty(); ++i) {

@@ -23,8 +23,9 @@ struct SectionOutput {
     Vec3 wide{1, 0, 0};               ///< e at the root, ferrule frame
 };
 
-/// a = r (1 + κ1 |m|/M_e0 + κ2 k_F + κ3 squash), bent over smoothly to stay below
-/// flatten_max r, and b = r²/a; held round by the ferrule at the root. The wide axis e lies in the contact plane where the spine presses
+/// Half-widths to both sides from the side nodes (lateral.h), pushed by the bending moment, the
+/// force and the squash of the contact and dragged by its friction; a is their mean, the centre
+/// lies midway, b = r²/a. The wide axis e lies in the contact plane where the spine presses
 /// most, else along the axis of bending, else where it was; from there it is carried along
 /// the spine without spin.
 SectionOutput make_sections(const SectionInput& input);

@@ -1,0 +1,141 @@
+#include "brush/lateral.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace tuft::brush {
+
+namespace {
+
+/// u''_i = in u_{i-1} + own u_i + out u_{i+1} with the tributary length of the node.
+struct Curvature {
+    double in = 0, own = 0, out = 0, weight = 0;
+};
+
+/// By second differences; at the ferrule with a mirrored neighbour (u' = 0), none at the tip.
+std::vector<Curvature> curvatures(const std::vector<double>& at) {
+    const std::size_t n = at.size() - 1;
+    std::vector<Curvature> out(n + 1);
+    const double first = at[1] - at[0];
+    out[0] = {0, -2 / (first * first), 2 / (first * first), 0.5 * first};
+    for (std::size_t i = 1; i < n; ++i) {
+        const double a = at[i] - at[i - 1], b = at[i + 1] - at[i];
+        out[i] = {2 / (a * (a + b)), -2 / (a * b), 2 / (b * (a + b)), 0.5 * (a + b)};
+    }
+    return out;
+}
+
+double tributary(const std::vector<double>& at, std::size_t i) {
+    const std::size_t n = at.size() - 1;
+    return 0.5 * (at[std::min(i + 1, n)] - at[i > 0 ? i - 1 : 0]);
+}
+
+/// Lower band of a symmetric matrix: [i][d] is the element (i, i - d).
+using Band = std::vector<std::array<double, 3>>;
+
+/// Solves in place by Cholesky; the matrix is positive definite.
+void solve_band(Band& m, std::vector<double>& x) {
+    const std::size_t n = m.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t d = std::min<std::size_t>(i, 2) + 1; d-- > 0;) {
+            const std::size_t j = i - d;
+            double sum = m[i][d];
+            for (std::size_t k = i >= 2 ? i - 2 : 0; k < j; ++k) {
+                if (j - k <= 2) sum -= m[i][i - k] * m[j][j - k];
+            }
+            m[i][d] = d == 0 ? std::sqrt(sum) : sum / m[j][0];
+        }
+        for (std::size_t d = 1; d <= std::min<std::size_t>(i, 2); ++d) x[i] -= m[i][d] * x[i - d];
+        x[i] /= m[i][0];
+    }
+    for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t d = 1; d <= 2 && i + d < n; ++d) x[i] -= m[i + d][d] * x[i + d];
+        x[i] /= m[i][0];
+    }
+}
+
+/// Stretch and bend springs; the root's row holds it at 0.
+Band spring_band(const std::vector<double>& at, const LateralSprings& s) {
+    Band m(at.size(), {0, 0, 0});
+    const std::vector<Curvature> c = curvatures(at);
+    const double bend = s.bend * std::pow(s.reach, 4);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        m[i][0] += s.stretch * tributary(at, i);
+        const double k = bend * c[i].weight;
+        m[i][0] += k * c[i].own * c[i].own;
+        if (i + 1 == at.size()) continue;
+        m[i + 1][0] += k * c[i].out * c[i].out;
+        m[i + 1][1] += k * c[i].out * c[i].own;
+        if (i == 0) continue;
+        m[i - 1][0] += k * c[i].in * c[i].in;
+        m[i][1] += k * c[i].in * c[i].own;
+        m[i + 1][2] += k * c[i].in * c[i].out;
+    }
+    m[0] = {1, 0, 0};
+    m[1][1] = 0;
+    if (m.size() > 2) m[2][2] = 0;
+    return m;
+}
+
+}  // namespace
+
+std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSprings& s,
+                                  const LateralSide& side) {
+    const std::size_t count = at.size();
+    const Band free = spring_band(at, s);
+    std::vector<char> held(count, 0);
+    std::vector<double> u(count);
+    for (int pass = 0; pass < kWallPasses; ++pass) {
+        Band m = free;
+        u[0] = 0;
+        for (std::size_t i = 1; i < count; ++i) {
+            const double w = tributary(at, i);
+            u[i] = w * side.push[i];
+            if (!held[i]) continue;
+            m[i][0] += s.wall * s.stretch * w;
+            u[i] += s.wall * s.stretch * w * side.clear[i];
+        }
+        solve_band(m, u);
+        bool same = true;
+        for (std::size_t i = 1; i < count; ++i) {
+            const char now = u[i] > side.clear[i];
+            same = same && now == held[i];
+            held[i] = now;
+        }
+        if (same) break;
+    }
+    return u;
+}
+
+LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& s,
+                             const LateralSide& side, const std::vector<double>& u) {
+    LateralEnergy out;
+    out.gradient.assign(at.size(), 0);
+    const std::vector<Curvature> c = curvatures(at);
+    const double bend = s.bend * std::pow(s.reach, 4);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const double w = tributary(at, i), over = std::max(0.0, u[i] - side.clear[i]);
+        out.value += w * (0.5 * s.stretch * (u[i] * u[i] + s.wall * over * over) - side.push[i] * u[i]);
+        out.gradient[i] += w * (s.stretch * (u[i] + s.wall * over) - side.push[i]);
+        if (i + 1 == at.size()) continue;
+        const double inner = i > 0 ? u[i - 1] : 0;
+        const double turn = c[i].in * inner + c[i].own * u[i] + c[i].out * u[i + 1];
+        const double force = bend * c[i].weight * turn;
+        out.value += 0.5 * force * turn;
+        if (i > 0) out.gradient[i - 1] += force * c[i].in;
+        out.gradient[i] += force * c[i].own;
+        out.gradient[i + 1] += force * c[i].out;
+    }
+    out.gradient[0] = 0;
+    return out;
+}
+
+double half_width(double r, double u, double most) {
+    if (r <= 0) return 0;
+    const double v = u / r, room = v > 0 ? most - 1 : 0.6;
+    return r * (1 + (room > 0 ? room * std::tanh(v / room) : 0));
+}
+
+}  // namespace tuft::brush

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+/// Side nodes of the tuft: two to every spine node, which say how far the hair reaches to
+/// either side. Stretch springs draw them to their spine node (water and hair that holds
+/// together), bend springs run along each row of them (the hairs' own stiffness), and what
+/// presses, bends or drags the tuft pushes them out. Their displacements u minimise
+///
+///   E = Σ w_i [½ κ u_i² - q_i u_i + ½ κ_w ⟨u_i - c_i⟩²] + ½ κ0 λ⁴ Σ w_i (u''_i)²
+///
+/// for each side on its own, u = u' = 0 at the ferrule, both free at the tip; a side node that
+/// meets a wall (c_i away) is pushed back by κ_w. Closed solve: banded Cholesky, repeated while
+/// the set of nodes at walls changes (at most kWallPasses).
+/// Source: Chu and Tai 2002, 4.1.1 and 4.2.2 (lateral nodes, stretch and bend springs).
+namespace tuft::brush {
+
+inline constexpr int kWallPasses = 6;
+
+struct LateralSprings {
+    double stretch = 1e4;     ///< κ, N/m²: force per length of tuft per displacement
+    double bend = 1e4;        ///< κ0 of the bend springs
+    double reach = 2e-3;      ///< λ, m: how far along the tuft a push is felt where κ = κ0
+    double wall = 100;        ///< κ_w over κ
+};
+
+/// One side's nodes, root first. [n+1] each.
+struct LateralSide {
+    std::vector<double> push;  ///< q, N/m, outward
+    std::vector<double> clear; ///< c, m, displacement at which a wall is met; infinite: none
+};
+
+/// Displacements u, metres, outward, of the nodes at arc lengths `at` (metres from the ferrule,
+/// strictly growing). [n+1]; u_0 = 0.
+std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSprings& springs,
+                                  const LateralSide& side);
+
+/// E and its gradient at displacements u, for tests. [n+1]; the gradient at the root is 0.
+struct LateralEnergy {
+    double value = 0;
+    std::vector<double> gradient;
+};
+LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& springs,
+                             const LateralSide& side, const std::vector<double>& u);
+
+/// Half-width r (1 + v): v = u/r with the outward part bent over to stay below `most` - 1, the
+/// inward part to stay above -0.6: hair packs, and cannot pass through itself.
+double half_width(double r, double u, double most);
+
+}  // namespace tuft::brush
