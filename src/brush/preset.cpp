@@ -42,6 +42,7 @@ constexpr std::array kFields = {
     Field{"bending", "yield", &Preset::yield, 1, 0, 100},
     Field{"bending", "gamma", &Preset::gamma, 1, -6, 3},
     Field{"bending", "plastic_share", &Preset::plastic_share, 1, 0, 1},
+    Field{"bending", "recovery_s", &Preset::recovery, 1, 0, 1e6},
     Field{"bending", "damping_ms", &Preset::damping, 1e-3, 0, 1000},
     Field{"contact", "transverse_stiffness_n_m2", &Preset::transverse_stiffness, 1, 10, 1e7},
     Field{"contact", "core_stiffness", &Preset::core_stiffness, 1, 0, 1000},

@@ -40,6 +40,8 @@ struct Preset {
     double plastic_share = 0.3;   ///< part of the stiffness that yields; 1 is the ideally plastic hair
                                   ///< of the paper, less gives a set that saturates
 
+    double recovery = 4;          ///< s in which a small set goes back while nothing bends the hair;
+                                  ///< 0: never. A large set goes slower or stays
     double damping = 3e-3;        ///< s, viscous over elastic stiffness of the wet bundle: hair that
                                   ///< slips off an edge or buckles lets go in this time
 

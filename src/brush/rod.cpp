@@ -165,6 +165,7 @@ struct Solver {
     double moved = 0;                      ///< of the clamp since the last solve
     std::vector<double> last_miss = {};    ///< of N̂ in the pass before
     double relaxation = 1;
+    double recovered = 0;                  ///< energy lost by the set going back
 
     int n() const { return rod.segments(); }
 
@@ -175,6 +176,7 @@ struct Solver {
         for (int j = 0; j < n(); ++j) {
             // Frames are laid anew along the rod, so that spin gathered in one solve is dropped.
             memory.joint[j].bend = bend_of(a, side, shape.tangent[j]);
+            recovered += recover_joint(rod, j, memory.joint[j], law.recovery);
             a = shape.tangent[j];
             side = shape.side[j];
         }
@@ -398,6 +400,7 @@ struct Solver {
     void finish(Result& out) {
         const Evaluation& at = ws.at;
         out.moment.resize(n());
+        out.dissipation += recovered;
         out.normal_force.assign(n() + 1, 0);
         out.contact_force.assign(n() + 1, Vec3{0});
         for (int j = 0; j < n(); ++j) {

@@ -79,6 +79,8 @@ struct Law {
     double onset = 0;           ///< indentation over which a stiffness comes in, smoothing its kink
     double end_friction = 1;    ///< share of μ that is left where hair meets the surface end-on; the
                                 ///< rest comes with lying down, as sin² of its angle to the normal
+    double recovery = 0;        ///< Δt/T of the set: stops that push the hair back towards straight
+                                ///< creep; see `recover_joint`
     double end_give = 0;        ///< length by which the hair's ends give at the buckling load
                                 ///< when they meet a surface end-on, less the more they lie;
                                 ///< 0: none. Fades to nothing 4 end_give behind the tip

@@ -121,6 +121,28 @@ double commit_joint(const Rod& rod, int j, JointMemory& memory, const Vec2& w) {
     return lost;
 }
 
+double recover_joint(const Rod& rod, int j, JointMemory& memory, double time) {
+    constexpr double kElastic = 1, kRigid = 12;
+    if (!memory.yielded || time <= 0) return 0;
+    double lost = 0, left = 0;
+    for (int f = 0; f < kFibres; ++f) {
+        const Fibre fb = fibre(rod, j, f);
+        Vec2& s = memory.stop[f];
+        const Vec2 set = memory.bend - s;
+        if (glm::dot(s, set) < 0) {
+            const double far = glm::length(set) / fb.limit;
+            const double x = std::clamp((kRigid - far) / (kRigid - kElastic), 0.0, 1.0);
+            const double keep = std::exp(-x * time);
+            lost += 0.5 * fb.stiffness * (1 - keep * keep) * glm::dot(s, s);
+            s *= keep;
+        }
+        left = std::max(left, glm::length(memory.bend - s));
+    }
+    // What is left is less than any shape shows: the joint is as new.
+    if (left < 1e-9) memory.yielded = false;
+    return lost;
+}
+
 double stored_energy(const Rod& rod, int j, const JointMemory& memory, const Vec2& w) {
     JointForce limit;
     add_full_bend(rod.stiffness[j], w, limit);

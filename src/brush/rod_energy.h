@@ -108,6 +108,12 @@ JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const V
 /// Moves the stops of joint j to bend w; returns the energy lost by yielding.
 double commit_joint(const Rod& rod, int j, JointMemory& memory, const Vec2& w);
 
+/// Lets the set of joint j go back for Δt/T = `time`: a stop whose strain s is opposed to its set
+/// p = w - s creeps, s ← s e^{-x time}, with x = clamp((t_rig - |p|/α_f)/(t_rig - t_ela)): all of a
+/// small set returns, nothing of one that is t_rig times the elastic range. Returns the energy
+/// lost, never negative: nothing is gained from a held bend. After Xu et al. 2004, eq. 5.10.
+double recover_joint(const Rod& rod, int j, JointMemory& memory, double time);
+
 /// Energy stored in the stops of joint j.
 double stored_energy(const Rod& rod, int j, const JointMemory& memory, const Vec2& w);
 

@@ -15,6 +15,11 @@ constexpr double kEndFriction = 0.2;  ///< of the fold of hair ends that carries
 constexpr double kEdge = 2e-4;     ///< m, by a quarter of which creases are rounded
 constexpr int kContactPoints = 6;  ///< per segment: a patch then grows smoothly with depth
 
+void set_time(const Preset& p, double dt, rod::Law& law) {
+    law.damping = dt > 0 ? p.damping / dt : 0;
+    law.recovery = p.recovery > 0 ? dt / p.recovery : 0;
+}
+
 /// The preset's law in units of L and B0, for one of `share` spines and a solve over `dt`.
 rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     const double unit = p.stiffness / std::pow(p.length, 4);
@@ -27,7 +32,7 @@ rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     law.end_friction = kEndFriction;
     law.edge = kEdge / p.length;
     law.end_give = p.end_give / p.length;
-    law.damping = dt > 0 ? p.damping / dt : 0;
+    set_time(p, dt, law);
     law.adhesion = wetness * p.adhesion / (unit * p.length) / share;
     law.adhesion_range = p.adhesion_range / p.length;
     law.friction = p.friction_dry + (p.friction_wet - p.friction_dry) * wetness;
@@ -106,9 +111,11 @@ Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, 
 namespace {
 
 Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Quat& turn,
-                     std::span<const rod::Obstacle> obstacles, double wetness, double share) {
+                     std::span<const rod::Obstacle> obstacles, double wetness, double share,
+                     std::span<const ContactPlane> walls = {}) {
     Solved out{std::move(result), {}};
-    SectionOutput sections = make_sections({p, spine, out.result, obstacles, turn, wetness, share});
+    SectionOutput sections = make_sections({p, spine, out.result, obstacles, turn, wetness, share, walls});
+    spine.side = std::move(sections.sides);
     spine.wide = sections.wide;
     out.branch.sections = std::move(sections.sections);
     return out;
@@ -118,11 +125,11 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Qu
 
 Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
                    std::span<const ContactPlane> planes, double wetness, double share,
-                   double dt) {
+                   double dt, std::span<const ContactPlane> walls) {
     const rod::Law law = law_of(p, wetness, share, dt);
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
     rod::Result result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law);
-    return with_sections(p, spine, std::move(result), turn, obstacles, wetness, share);
+    return with_sections(p, spine, std::move(result), turn, obstacles, wetness, share, walls);
 }
 
 namespace {
@@ -155,7 +162,7 @@ void approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
     }
     law.max_iterations = std::max(30, law.max_iterations / parts);
     dt /= parts;
-    law.damping = dt > 0 ? p.damping / dt : 0;
+    set_time(p, dt, law);
     Pose last = from;
     for (int k = 1; k < parts; ++k) {
         const Pose pose = between(from, to, static_cast<double>(k) / parts);

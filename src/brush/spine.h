@@ -24,9 +24,10 @@ Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& cl
 void approach(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
               std::span<const ContactPlane> planes, double wetness, double& dt);
 
-/// The spine bent by the rod solver over `dt` seconds; `turn` is the ferrule's rotation, `planes` tip first.
+/// The spine bent by the rod solver over `dt` seconds; `turn` is the ferrule's rotation, `planes` and `walls` tip first.
 Solved solve_spine(const Preset& preset, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
-                   std::span<const ContactPlane> planes, double wetness, double share, double dt);
+                   std::span<const ContactPlane> planes, double wetness, double share, double dt,
+                   std::span<const ContactPlane> walls = {});
 
 /// The spine from the query table: bent in the plane of the holder and the tip's last place,
 /// so that the tip follows the hand as a tractrix, by the moment that puts the tip on the plane.

@@ -46,9 +46,9 @@ struct Calibration {
     int evaluations = 0;
 };
 
-/// Fits radius, taper, stiffness along the hair, side stiffness, flattening and wet film of
-/// `start`, whose hair length must be the measured brush's, by a simplex search from several
-/// beginnings. Deterministic. About 20 ms per evaluation.
+/// Fits radius, taper, stiffness along the hair, side stiffness, flattening, friction and wet film
+/// of `start`, whose hair length must be the measured brush's: least squares from several
+/// beginnings, then a simplex search on the worst column. Deterministic. About 20 ms per evaluation.
 Calibration calibrate(const Preset& start, std::span<const SweepRow> measured,
                       const CalibrateOptions& options = {});
 

@@ -10,6 +10,8 @@ namespace tuft::brush {
 
 namespace {
 
+constexpr double kDryPlastic = 0.3;  ///< plastic share of dry hair over that of wet hair
+
 std::size_t expected_planes(const Tuft& tuft) {
     std::size_t count = tuft.spine.rest_radius.size();
     if (tuft.split) {
@@ -58,12 +60,24 @@ std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose) {
     return out;
 }
 
-TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt) {
+std::vector<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose) {
+    std::vector<Vec3> out;
+    if (!tuft.posed) return out;
+    for (const Vec3& s : tuft.spine.side) out.push_back(pose.position + pose.rotation * s);
+    return out;
+}
+
+TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
+               std::span<const ContactPlane> walls) {
     const Preset& p = tuft.preset;
     const std::size_t expected = expected_planes(tuft);
     if (planes.size() > 1 && planes.size() != expected) {
         throw Error("brush: " + std::to_string(planes.size()) + " contact planes for " +
                     std::to_string(expected) + " nodes; give one per node, one for all, or none");
+    }
+    if (!walls.empty() && walls.size() != 2 * tuft.spine.rest_radius.size()) {
+        throw Error("brush: " + std::to_string(walls.size()) + " walls for " +
+                    std::to_string(2 * tuft.spine.rest_radius.size()) + " side nodes");
     }
     if (!std::isfinite(glm::dot(pose.position, pose.position)) ||
         std::abs(glm::length(pose.rotation) - 1) > 1e-3) {
@@ -77,13 +91,15 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
         tuft.posed = true;
     }
     tuft.wetness = std::clamp(tuft.wetness, 0.0, 1.0);
+    // Water between the hairs is what yields; dry hair springs back.
+    tuft.spine.rod.plastic_share = p.plastic_share * (kDryPlastic + (1 - kDryPlastic) * tuft.wetness);
     const std::size_t own = tuft.spine.rest_radius.size();
     const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
     double part = std::isfinite(dt) ? std::max(0.0, dt) : 0;
     if (p.spine == SpineMethod::rod) approach(p, tuft.spine, tuft.pose, pose, main_planes, tuft.wetness, part);
     Solved solved = p.spine == SpineMethod::table
                         ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness)
-                        : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part);
+                        : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part, walls);
     tuft.pose = pose;
 
     const rod::Result& r = solved.result;
@@ -117,6 +133,7 @@ void reset(Tuft& tuft) {
 
 void reshape(Tuft& tuft) {
     const rod::Clamp clamp = tuft.spine.memory.clamp;
+    tuft.spine.side.clear();
     tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
     tuft.split = false;
 }

@@ -11,8 +11,8 @@
 #include "core/types.h"
 
 /// The tuft of one brush as it is moved: what persists from sample to sample, and the
-/// step that bends it. Quasi-static: no masses, no speeds; `dt` only matters to what
-/// recovers with time. Everything is deterministic.
+/// step that bends it. Quasi-static: no masses; time only matters to the damping of what snaps
+/// and to the set that recovers. Everything is deterministic.
 namespace tuft::brush {
 
 /// One solved spine with what it remembers. Arrays go from root to tip.
@@ -21,12 +21,14 @@ struct Spine {
     rod::Memory memory;             ///< joints, contacts
     std::vector<double> rest_radius;///< [n+1] m
     Vec3 wide{1, 0, 0};             ///< unit, ferrule frame: direction e at the root of the last step
+    std::vector<Vec3> side;         ///< side nodes of the last step, metres from the root, ferrule
+                                    ///< frame, tip first, two to a node; or none
 };
 
 /// The persistent state of one tuft. Make it with `make_tuft`; copying it is a snapshot.
 struct Tuft {
     Preset preset;
-    double wetness = 1;             ///< input, 0 dry … 1 wet: friction, cohesion
+    double wetness = 1;             ///< input, 0 dry … 1 wet: friction, cohesion, plasticity
     double ink_left = 1;            ///< input, ink over capacity: splitting
 
     Pose pose;                      ///< of the last step
@@ -45,13 +47,19 @@ Tuft make_tuft(const Preset& preset);
 /// the sub-spines follow in the same order.
 std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose);
 
+/// Side nodes of the spine, as `predicted_nodes`: two to a node, tip first; none before the
+/// first step.
+std::vector<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose);
+
 /// Moves the ferrule to `pose` and bends the tuft against the planes: one for each node
 /// of `predicted_nodes`, in that order; or one that serves all; or none (free in air).
+/// `walls`: what the side nodes meet beside the spine, one for each of `predicted_sides`, or none.
 /// `dt` in seconds since the last step. Always finite and in bounded time: `converged`
 /// is false where it stopped early. Cost: 20–60 µs at 16 segments.
-/// Throws nothing but `Error`: the number of planes fits none of the three cases, or the pose
+/// Throws nothing but `Error`: the number of planes or walls fits none of these cases, or the pose
 /// is not finite and of unit rotation.
-TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt);
+TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
+               std::span<const ContactPlane> walls = {});
 
 /// Forgets everything that happened since `make_tuft`; wetness and ink stay.
 void reset(Tuft& tuft);

@@ -122,6 +122,16 @@ struct Widths {
     std::vector<double> plus, minus;
 };
 
+/// How far, beyond its rest radius, a side node may go out along `way` before it meets a wall;
+/// planes that lean away less than 20° are the ground the section lies on.
+double clearance(const SectionInput& in, std::size_t node, const ContactPlane& wall, const Vec3& way) {
+    constexpr double kGround = 0.34;  // sin 20°
+    const double nearing = -glm::dot(way, wall.normal);
+    if (nearing < kGround) return std::numeric_limits<double>::infinity();
+    const Vec3 x = in.spine.memory.node[node] * in.preset.length;
+    return glm::dot(x - wall.origin, wall.normal) / nearing - in.spine.rest_radius[node];
+}
+
 /// What pushes the side nodes out, as if it worked against the wet stretch springs alone:
 /// r (κ1 |m|/M_e0 + κ2 k_F + κ3 squash), and the friction of the surface along e.
 Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
@@ -149,6 +159,11 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
                                      p.flatten_contact * squashed[i]);
         const double drag = kSideDrag * glm::dot(in.result.contact_force[i], e[i]) * newton /
                             (in.spine.rod.weight[i] * p.length);
+        if (!in.walls.empty() && i > 0) {
+            const std::size_t from_tip = 2 * (count - 1 - i);
+            plus.clear[i] = clearance(in, i, in.walls[from_tip], e[i]);
+            minus.clear[i] = clearance(in, i, in.walls[from_tip + 1], -e[i]);
+        }
         plus.push[i] = wet * in.spine.rest_radius[i] * widen + drag;
         minus.push[i] = wet * in.spine.rest_radius[i] * widen - drag;
     }
@@ -195,7 +210,13 @@ SectionOutput make_sections(const SectionInput& in) {
     for (std::size_t i = 1; i < count && !in.obstacles.empty(); ++i) {
         out.sections[count - 1 - i].centre -= down[i] * in.obstacles[i].normal;
     }
-    out.wide = glm::conjugate(in.rotation) * e[0];
+    const Quat back = glm::conjugate(in.rotation);
+    for (std::size_t i = count; i-- > 0;) {
+        const Vec3 x = (m.node[i] - m.node[0]) * p.length;
+        out.sides.push_back(back * (x + widths.plus[i] * e[i]));
+        out.sides.push_back(back * (x - widths.minus[i] * e[i]));
+    }
+    out.wide = back * e[0];
     return out;
 }
 

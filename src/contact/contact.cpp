@@ -70,6 +70,33 @@ ContactPlane refreshed(const ContactPlane& old, const Stand& now, const Vec3& p,
     return {p + needed * n, n};
 }
 
+/// What the side nodes of the trunk meet: a ray from the spine to a little beyond each, where
+/// the spine is near a surface. Empty where nothing stands in any way.
+std::vector<ContactPlane> side_walls(const Work& w, const brush::Tuft& tuft, std::span<const Stand> stands) {
+    constexpr double kBeyond = 1e-3;  // metres a side may grow in one step
+    const std::vector<Vec3> sides = brush::predicted_sides(tuft, w.pose);
+    const std::size_t trunk = tuft.spine.rest_radius.size();
+    std::vector<ContactPlane> walls;
+    if (sides.size() != 2 * trunk || stands.size() < trunk) return walls;
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+        const Stand& stand = stands[k / 2];
+        const double radius = tuft.spine.rest_radius[trunk - 1 - k / 2];
+        if (stand.triangle == kNone || stand.height > 1.5 * radius) continue;
+        const Vec3 way = sides[k] - stand.outside;
+        const double reach = glm::length(way);
+        if (reach < 1e-9) continue;
+        const auto hit = w.surface.ray(stand.outside, way / reach, 0, reach + kBeyond);
+        if (!hit || std::abs(glm::dot(hit->face_normal, stand.plane.normal)) > 0.9) continue;
+        if (walls.empty()) {
+            // Away from any side: no wall.
+            walls.assign(sides.size(), {stand.plane.origin, Vec3{0}});
+        }
+        const double front = glm::dot(hit->face_normal, way) < 0 ? 1 : -1;
+        walls[k] = {hit->position, front * hit->face_normal};
+    }
+    return walls;
+}
+
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
 /// `planes`: those of the last solve. `rest`: stands of the trunk where it lies now, or empty.
 brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
@@ -79,10 +106,11 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
     const std::vector<Stand> predicted = stand_nodes(w, nodes, trunk);
     for (const Stand& s : predicted) planes.push_back(s.plane);
-    if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt);
+    const std::vector<ContactPlane> walls = side_walls(w, tuft, predicted);
+    if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt, walls);
 
     const brush::Tuft before = tuft;
-    brush::TuftState state = brush::step(tuft, w.pose, planes, dt);
+    brush::TuftState state = brush::step(tuft, w.pose, planes, dt, walls);
     for (int pass = 0; pass < w.options.max_refreshes && state.touching; ++pass) {
         const std::vector<Vec3> now = brush::predicted_nodes(tuft, w.pose);
         if (tuft.split != was_split && now.size() < nodes.size()) break;
@@ -106,7 +134,7 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
         planes = std::move(fresh);
         tuft = before;
         const int iterations = state.iterations;
-        state = brush::step(tuft, w.pose, planes, dt);
+        state = brush::step(tuft, w.pose, planes, dt, walls);
         state.iterations += iterations;
     }
     return state;
@@ -127,7 +155,8 @@ brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, 
 }
 
 /// Stands of every section of every branch of the solved tuft. Of a whole tuft these are the stands
-/// of the rod's nodes, from which the sections' centres differ along the planes' normals only;
+/// of the rod's nodes, from which the sections' centres differ along the planes' normals, and
+/// along the surface by what friction drags the sides;
 /// `trunk` holds them if they are known.
 std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft& solved,
                                                const brush::TuftState& tuft,

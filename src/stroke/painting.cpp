@@ -24,6 +24,13 @@ footprint::StampOptions stamp_options(const Settings& settings) {
     return o;
 }
 
+/// Hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
+double wetness_of(const ink::Reservoir& reservoir) {
+    constexpr double kWet = 0.25;
+    const double x = std::clamp(reservoir.fullness() / kWet, 0.0, 1.0);
+    return x * (2 - x);
+}
+
 double footprint_area(const footprint::Footprint& f) {
     std::size_t sum = 0;
     for (const std::uint8_t c : f.coverage) sum += c;
@@ -194,6 +201,8 @@ void Painting::act(const Stroke& entry) {
         case Action::fill:
         case Action::stroke: break;
     }
+    brush.tuft.ink_left = brush.reservoir.fullness();
+    brush.tuft.wetness = wetness_of(brush.reservoir);
     put_down(entry.id, entry.trace.brush, std::move(brush), {});
 }
 
@@ -247,6 +256,7 @@ void Painting::draw_poses() {
     Hand& h = *hand_;
     for (const brush::Pose& pose : h.poses) {
         h.tuft.ink_left = h.reservoir.fullness();
+        h.tuft.wetness = wetness_of(h.reservoir);
         const double dt = h.moved ? pose.time - h.last_time : 0.0;
         // A hair that painted before comes through the air, as it sprang back.
         if (!h.moved && h.tuft.posed) brush::step(h.tuft, pose, {}, 0);
