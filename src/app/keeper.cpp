@@ -1,4 +1,5 @@
 #include "app/keeper.h"
+#include "io/looks.h"
 
 #include <algorithm>
 
@@ -33,7 +34,8 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
                                                          .unit = unit,
                                                          .mesh = *model.mesh,
                                                          .atlas = model.atlas,
-                                                         .substrate = ink::substrate_toml(painting.substrate())});
+                                                         .substrate = ink::substrate_toml(painting.painted_on())});
+        io::store_looks(project, painting);
         for (const auto& preset : brushes_) project.put_brush(preset);
         for (const auto& preset : inks_) project.put_ink(preset);
         project.append(painting.journal().strokes());

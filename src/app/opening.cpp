@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "core/units.h"
+#include "io/looks.h"
 #include "io/read_model.h"
 
 namespace fs = std::filesystem;
@@ -116,6 +117,7 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, const 
         work.painting->adopt(std::move(strokes), std::move(saved->layers), saved->stroke_id);
     else
         work.painting->replay(std::move(strokes), progress);
+    io::show_looks(project, *work.painting);
     work.texture = std::make_unique<Texture>(*work.painting, progress);
     work.pixels = work.texture->pixels();
     work.keeper.adopt(std::move(project));

@@ -324,13 +324,18 @@ void Painter::edit(const EditStroke& command) {
     }
 }
 
-// Ground, brushes and inks as the journal's strokes were painted with.
+// Ground, brushes, inks and looks as the journal's strokes were painted with.
 void Painter::take_presets(stroke::Painting& painting) {
     stroke::Painting& own = *work_.painting;
-    painting.use_substrate(own.substrate());
+    painting.use_substrate(own.painted_on());
+    if (own.shown_elsewhere()) painting.show_on(own.substrate());
     for (const stroke::Stroke& s : own.journal().strokes()) {
         if (stroke::has_brush(s.action)) painting.use_brush(own.brush(s.trace.brush));
         if (!s.trace.ink.empty()) painting.use_ink(own.ink(s.trace.ink));
+    }
+    for (const auto& [name, wanted] : own.recolours()) {
+        painting.use_ink(own.ink(name));
+        painting.recolour(name, wanted);
     }
 }
 

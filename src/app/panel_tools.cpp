@@ -294,17 +294,9 @@ unsigned ink_colour(const std::string& name) {
     if (const auto at = known.find(name); at != known.end()) return at->second;
     unsigned colour = IM_COL32(40, 40, 40, 255);
     try {
-        const ink::Ink ink = ink::load_ink(name);
+        const ink::Rgb linear = ink::colour_of_film(ink::load_ink(name), {0.88f, 0.88f, 0.88f});
         int rgb[3];
-        for (std::size_t band = 0; band < 3; ++band) {
-            double k = 0, scatter = 0;
-            for (const ink::InkPart& part : ink.parts) {
-                k += part.fraction * part.pigment.k[band];
-                scatter += part.fraction * part.pigment.s[band];
-            }
-            const double r = ink::over(ink::layer(k, scatter, ink.film), 0.88);
-            rgb[band] = static_cast<int>(std::lround(255 * ink::srgb_encode(static_cast<float>(r))));
-        }
+        for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<int>(std::lround(255 * ink::srgb_encode(linear[c])));
         colour = IM_COL32(rgb[0], rgb[1], rgb[2], 255);
     } catch (const Error&) {
         // An unreadable preset is dark here and says why when it is painted with.

@@ -87,6 +87,14 @@ void add_layers(CLI::App* app, std::vector<std::string>& layers) {
     app->add_option("--layers", layers, "show these layers only, hidden ones too: NAME,...")->delimiter(',');
 }
 
+void add_look(CLI::App* app, Look& look) {
+    app->add_option("--substrate", look.substrate,
+                    "show the ink on this substrate (name or .toml), without painting it anew");
+    app->add_option("--recolour", look.recolours,
+                    "show what was painted with INK as another ink or recipe: INK=NAME or INK=FILE.toml")
+        ->type_name("INK=NAME");
+}
+
 void add_view(CLI::App* app, View& v) {
     app->add_option_function<std::string>(
            "--size",
@@ -203,6 +211,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     r->add_option("--brush", replay.brush, "use this brush for every stroke");
     r->add_option("--ink", replay.ink, "use this ink for every stroke");
     add_surface(r, replay.surface);
+    add_look(r, replay.look);
     r->add_option("--project", replay.out_project, "write a project file (.tuft)");
     r->add_option("--export", replay.exported, "write the textured model: .glb, .gltf or .obj");
     r->add_option("--preview", replay.preview, "write a picture (.png)");
@@ -213,7 +222,12 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* e = app.add_subcommand("export", "write a project's textured model or maps");
     e->add_option("PROJECT", exported.project, "project file (.tuft)")->required();
     e->add_option("-o,--output", exported.output,
-                  ".glb, .gltf, .obj (model); .png, .exr (base colour map)")->required();
+                  ".glb, .gltf, .obj (model); .png, .exr (one map)")->required();
+    e->add_option("--map", exported.map,
+                  "which map a .png or .exr holds: base-colour, normal, height, roughness or pigments (.exr); "
+                  "default: the file's name if it is one of these, else base-colour")
+        ->check(CLI::IsMember({"base-colour", "normal", "height", "roughness", "pigments"}));
+    add_look(e, exported.look);
     add_layers(e, exported.layers);
     add_common(e, exported.common);
 
@@ -253,6 +267,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(CLI::Range(1, 3600));
     d->add_option("--unit", render.unit, "unit of a model file")
         ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    add_look(d, render.look);
     d->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
     add_view(d, render.view);
     add_common(d, render.common);

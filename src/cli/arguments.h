@@ -73,9 +73,16 @@ struct Unwrap {
     Common common;
 };
 
+/// How painted work is shown, without painting it anew.
+struct Look {
+    std::string substrate;               ///< name or .toml; empty: as it is
+    std::vector<std::string> recolours;  ///< INK=NAME or INK=FILE.toml
+};
+
 struct Replay {
     std::filesystem::path project, model, out_project, exported, preview;
     std::string brush, ink;
+    Look look;
     Surface surface;
     View view;
     Common common;
@@ -84,6 +91,8 @@ struct Replay {
 struct Export {
     std::filesystem::path project, output;
     std::vector<std::string> layers;  ///< as in `View`
+    std::string map;                ///< of a picture; empty: by the file's name, else base-colour
+    Look look;
     Common common;
 };
 
@@ -109,6 +118,7 @@ struct Render {
     int turntable = 0;              ///< number of pictures; 0: one picture
     std::string unit = "mm";
     std::string material;           ///< empty: from the project's substrate, else porcelain
+    Look look;
     View view;
     Common common;
 };

@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/parallel.h"
+#include "ink/composite.h"
 #include "ink/deposit.h"
 #include "io/read_model.h"
 #include "stroke/painting.h"
@@ -196,6 +197,31 @@ double first_ink_milliseconds(const stroke::Model& model, int texels) {
     return quantile(runs, 0.5);
 }
 
+// Colour of a dirty square of 64 x 64 texels: 16 tiles with all of `films` films of 4 pigments.
+double microseconds_per_square(int films, const char* substrate_name) {
+    std::vector<ink::Pigment> pigments;
+    for (const char* name : {"carbon-black", "cinnabar", "gamboge", "titanium-white"})
+        pigments.push_back(ink::load_pigment(name));
+    const ink::Substrate substrate = ink::load_substrate(substrate_name);
+    std::vector<ink::Plane> planes(16 * 4);
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        for (std::size_t t = 0; t < planes[i].size(); ++t)
+            planes[i][t] = 0.01f * static_cast<float>((37 * t + 101 * i) % 200);
+    std::vector<double> runs;
+    double sink = 0;
+    for (int repeat = 0; repeat < 60; ++repeat) {
+        const double start = cpu_seconds();
+        for (std::size_t tile = 0; tile < 16; ++tile) {
+            ink::TileFilm film;
+            for (std::size_t p = 0; p < 4; ++p) film.pigments[p] = &planes[4 * tile + p];
+            const std::vector<ink::TileFilm> stack(static_cast<std::size_t>(films), film);
+            sink += ink::look_of_films(stack, nullptr, pigments, substrate).colour[0][tile];
+        }
+        runs.push_back((cpu_seconds() - start) * 1e6);
+    }
+    return sink < 0 ? 0 : quantile(runs, 0.5);
+}
+
 // Press, drag and lift on a plane, 1 kHz, friction on.
 std::pair<double, double> rod_microseconds() {
     brush::Tuft tuft = brush::make_tuft(brush::load_preset("mixed-medium"));
@@ -281,6 +307,9 @@ int run(const Bench& a) {
     j["threads"] = 1;
     const auto [median, p99] = rod_microseconds();
     j["rod_microseconds"] = {{"median", median}, {"p99", p99}, {"segments", 16}};
+    const double square = microseconds_per_square(1, "porcelain");
+    j["composite_microseconds"] = {{"one_film", square}, {"three_films", microseconds_per_square(3, "porcelain")},
+                                   {"texels", 64 * 64}, {"pigments", 4}, {"bands", ink::kBands}};
     for (Case& c : cases) {
         const std::string on = fmt::format("{} at {} x {}", c.name, size, size);
         nlohmann::json m{{"triangles", c.model.mesh->n_triangles()}, {"atlas_size", size},
@@ -294,7 +323,8 @@ int run(const Bench& a) {
             if (texels == 256) {
                 const double three = microseconds_per_stamp(c.model, texels, 160, isa, kPigments);
                 m["ns_per_texel"] = {{"one_ink", us * 1e3 / footprint_texels(texels)},
-                                     {"pigments", three * 1e3 / footprint_texels(texels)}};
+                                     {"pigments", three * 1e3 / footprint_texels(texels)},
+                                     {"composite", square * 1e3 / (64 * 64)}};
             }
             m["stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels);
         }
@@ -321,6 +351,8 @@ int run(const Bench& a) {
     fmt::print("{}, one thread (preparing: all), {}, CPU time, medians\n", j["machine"].get<std::string>(),
                j["isa"].get<std::string>());
     fmt::print("rod solve, 16 segments: median {:.1f} us, 99 % {:.1f} us\n", median, p99);
+    fmt::print("colour of 64 x 64 texels, 4 pigments, {} bands: {:.0f} us with one film, {:.0f} us with three\n",
+               ink::kBands, square, j["composite_microseconds"]["three_films"].get<double>());
     for (const auto& [name, m] : j["models"].items()) {
         fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s, texel map {:.2f} s, piece graph {:.2f} s)\n",
                    name, m["triangles"].get<std::size_t>(), size, size, m["atlas_seconds"].get<double>(),

@@ -75,6 +75,7 @@ int run(const Paint& a) {
         painting.use_substrate(before->substrate);
         use_presets(before->file, painting);
         show_strokes(before->file, painting, console);
+        show_looks(before->file, painting, {}, console);
     }
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);
     const std::size_t n_before = painting.journal().strokes().size();

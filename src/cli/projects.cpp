@@ -36,6 +36,54 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
     return stroke::rescale_model(std::move(project.model), options);
 }
 
+/// The map a picture shall hold: the one asked for, or the one the file is called.
+std::string map_name(const Export& a) {
+    const std::string extension = a.output.extension().string(), stem = a.output.stem().string();
+    const bool picture = extension == ".png" || extension == ".exr";
+    if (!a.map.empty() && !picture)
+        throw UsageError("--map: a map is written as .png or .exr, not as '" + extension + "'");
+    std::string name = a.map;
+    for (const char* known : {"base-colour", "normal", "height", "roughness", "pigments"})
+        if (name.empty() && stem == known) name = known;
+    if (name == "pigments" && extension == ".png")
+        throw UsageError(a.output.string() + ": pigment amounts need an .exr file");
+    return name.empty() ? "base-colour" : name;
+}
+
+void write_map(const std::filesystem::path& path, const std::string& name, const stroke::Painting& painting,
+               const ink::ComposeOptions& compose) {
+    const ink::Stack stack = painting.stack();
+    const stroke::Model& model = painting.model();
+    const bool png = path.extension() == ".png";
+    io::ImageOptions data;
+    data.srgb = false;
+    const auto write = [&](const io::PixelView& whole, const io::ImageOptions& options = {}) {
+        for (std::uint32_t page = 0; page < model.atlas.pages; ++page)
+            io::write_image(io::page_path(path, model.atlas, page), io::page_view(whole, model.atlas, page), options);
+    };
+    if (name == "base-colour" && png) {
+        write(io::view_of(ink::compose_srgb8(stack, model.texels, painting.substrate(), compose)));
+    } else if (name == "base-colour") {
+        write(io::view_of(ink::compose_linear(stack, model.texels, painting.substrate(), compose)), data);
+    } else if (name == "roughness") {
+        write(io::view_of(ink::compose_roughness(stack, model.texels, painting.substrate(), compose)), data);
+    } else if (name == "pigments") {
+        const std::vector<ink::Pigment>& pigments = painting.canvas().pigments();
+        if (pigments.empty() || stack.layers.empty())
+            throw Error(path.string(), "nothing is painted: there are no pigments to write");
+        const ink::AtlasMap<float> amounts = ink::compose_amounts(stack, model.texels, compose);
+        for (int p = 0; p < amounts.channels; ++p)
+            data.channel_names.push_back(io::channel_name(pigments[static_cast<std::size_t>(p)].name));
+        write(io::view_of(amounts), data);
+    } else {
+        const ink::AtlasMap<float> height = ink::compose_height(stack, model.texels, compose);
+        if (name == "normal" && png) write(io::view_of(io::normal_map16(height, model.atlas.texel_size)), data);
+        else if (name == "normal") write(io::view_of(io::normal_map_float(height, model.atlas.texel_size)), data);
+        else if (png) write(io::view_of(io::height16(height)), data);
+        else write(io::view_of(height), data);
+    }
+}
+
 }  // namespace
 
 int run(const Replay& a) {
@@ -63,6 +111,7 @@ int run(const Replay& a) {
         console.note(fmt::format("warning: stroke {} no longer touches the model; it stays {:.2f} mm away",
                                  r.stroke_id, r.nearest * 1e3));
     }
+    show_looks(project->file, painting, a.look, console);
     if (!a.out_project.empty()) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
                                         project->unit, painting, strokes);
@@ -89,6 +138,7 @@ int run(const Replay& a) {
 int run(const Export& a) {
     check_extension(a.output, {".glb", ".gltf", ".obj", ".png", ".exr"});
     check_output(a.output);
+    const std::string map = map_name(a);
     Console console(a.common.quiet);
     const auto project = open_project(a.project, console);
     stroke::Painting painting(project->model);
@@ -96,26 +146,18 @@ int run(const Export& a) {
     use_presets(project->file, painting);
     show_strokes(project->file, painting, console);
     show_layers(painting, a.layers);
+    show_looks(project->file, painting, a.look, console);
     const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
-    const atlas::Atlas& atlas = project->model.atlas;
-    const auto write_pages = [&](const auto& map, const io::ImageOptions& options) {
-        for (std::uint32_t page = 0; page < atlas.pages; ++page)
-            io::write_image(io::page_path(a.output, atlas, page),
-                            io::page_view(io::view_of(map), atlas, page), options);
-    };
-    if (extension == ".png") {
-        write_pages(ink::compose_srgb8(painting.stack(), project->model.texels,
-                                       painting.substrate(), compose), {});
-    } else if (extension == ".exr") {
-        write_pages(ink::compose_linear(painting.stack(), project->model.texels,
-                                        painting.substrate(), compose), {.srgb = false});
-    } else {
-        write_outputs({.exported = a.output, .unit = project->unit}, painting, console);
-    }
+    if (extension == ".png" || extension == ".exr") write_map(a.output, map, painting, compose);
+    else write_outputs({.exported = a.output, .unit = project->unit}, painting, console);
     console.clear();
     if (a.common.json)
-        std::cout << nlohmann::json{{"project", a.project.string()}, {"wrote", a.output.string()}}.dump(2) << '\n';
+        std::cout << nlohmann::json{{"project", a.project.string()},
+                                    {"wrote", a.output.string()},
+                                    {"canvas_hash", fmt::format("{:016x}", painting.hash())}}
+                         .dump(2)
+                  << '\n';
     else
         fmt::print("wrote {}\n", a.output.string());
     return 0;
@@ -137,6 +179,7 @@ int run(const Render& a) {
         use_presets(project->file, *painting);
         show_strokes(project->file, *painting, console);
         show_layers(*painting, a.view.layers);
+        show_looks(project->file, *painting, a.look, console);
     } else {
         bare = load_bare(a.file, a.unit, console);
     }

@@ -10,8 +10,10 @@
 
 #include "core/units.h"
 #include "ink/composite.h"
+#include "ink/recolour.h"
 #include "io/export.h"
 #include "io/image.h"
+#include "io/looks.h"
 #include "io/svg.h"
 #include "io/read_model.h"
 #include "stroke/habit.h"
@@ -173,10 +175,9 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
                            const std::string& material, const View& v, int frame, int count,
                            Console& console) {
     render::Appearance look;
-    const std::string name = !material.empty() ? material
-                             : painting        ? painting->substrate().name
-                                               : "porcelain";
-    const ink::Substrate substrate = ink::load_substrate(name);
+    const ink::Substrate substrate = material.empty() && painting
+                                         ? painting->substrate()
+                                         : ink::load_substrate(material.empty() ? "porcelain" : material);
     look.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
     look.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
     ink::AtlasMap<float> colour, height;
@@ -238,7 +239,8 @@ io::Project start_project(const fs::path& path, const std::string& source, const
                .unit = unit,
                .mesh = *model.mesh,
                .atlas = model.atlas,
-               .substrate = ink::substrate_toml(painting.substrate())});
+               .substrate = ink::substrate_toml(painting.painted_on())});
+    io::store_looks(project, painting);
     put_presets(project, painting, strokes);
     return project;
 }
@@ -299,6 +301,26 @@ void use_presets(const io::Project& project, stroke::Painting& painting) {
         ink.name = name;
         painting.use_ink(ink);
     }
+}
+
+void show_looks(const io::Project& project, stroke::Painting& painting, const Look& look, Console& console) {
+    io::show_looks(project, painting);
+    std::set<std::string> used;
+    for (const stroke::Stroke& s : painting.journal().strokes())
+        if (!s.trace.ink.empty()) used.insert(s.trace.ink);
+    for (const std::string& text : look.recolours) {
+        const auto equals = text.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+            throw UsageError("--recolour: '" + text + "' is not INK=NAME or INK=FILE.toml");
+        const std::string name = text.substr(0, equals);
+        if (!used.contains(name))
+            throw Error("nothing is painted with ink '" + name + "'; there are: " + fmt::format("{}", fmt::join(used, ", ")));
+        painting.recolour(name, ink::load_ink(text.substr(equals + 1)));
+        for (const std::string& other : used)
+            if (other != name && !ink::shared_pigments(painting.ink(name), painting.ink(other)).empty())
+                console.note(fmt::format("warning: ink {} shares pigments with {} and changes with it", other, name));
+    }
+    if (!look.substrate.empty()) painting.show_on(ink::load_substrate(look.substrate));
 }
 
 void show_strokes(const io::Project& project, stroke::Painting& painting, Console& console) {

@@ -269,12 +269,48 @@ AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
     return compose<float, 1>(
         stack, map, {0.0f}, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(stack, slot, Substrate{});
+            const TileLook look = look_of_tile(stack, slot, Substrate{}, false);
             TileOut<float, 1> out;
             for (int t = 0; t < kN; ++t) out[t][0] = look.height[t];
             return out;
         },
         FloatCode{});
+}
+
+AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map,
+                                  const Substrate& substrate, const ComposeOptions& options) {
+    return compose<float, 1>(
+        stack, map, {substrate.roughness}, options,
+        [&](std::uint32_t slot) {
+            const TileLook look = look_of_tile(stack, slot, substrate, false);
+            TileOut<float, 1> out;
+            for (int t = 0; t < kN; ++t) out[t][0] = look.roughness[t];
+            return out;
+        },
+        FloatCode{});
+}
+
+AtlasMap<float> compose_amounts(const Stack& stack, const atlas::TexelMap& map,
+                                const ComposeOptions& options) {
+    std::size_t n = 0;
+    for (const LayerView& layer : stack.layers) n = std::max(n, layer.canvas->pigments().size());
+    AtlasMap<float> all{.size = map.size, .channels = static_cast<int>(n), .texels = {}};
+    all.texels.resize(std::size_t{map.size} * map.size * n);
+    for (std::size_t p = 0; p < n; ++p) {
+        const AtlasMap<float> one = compose<float, 1>(
+            stack, map, {0.0f}, options,
+            [&](std::uint32_t slot) {
+                TileOut<float, 1> out{};
+                for (const LayerView& layer : stack.layers)
+                    for (int film = 0; film < kFilms; ++film)
+                        if (const Plane* w = layer.canvas->film_plane(slot, film, static_cast<int>(p)))
+                            for (int t = 0; t < kN; ++t) out[t][0] += layer.opacity * (*w)[t];
+                return out;
+            },
+            FloatCode{});
+        for (std::size_t i = 0; i < one.texels.size(); ++i) all.texels[i * n + p] = one.texels[i];
+    }
+    return all;
 }
 
 AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map,
@@ -284,7 +320,7 @@ AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& m
     return compose<std::uint8_t, 3>(
         stack, map, background, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(stack, slot, substrate);
+            const TileLook look = look_of_tile(stack, slot, substrate, false);
             TileOut<std::uint8_t, 3> out;
             for (int t = 0; t < kN; ++t) {
                 // Ink hides the substrate's metal as it hides its microfacets.

@@ -101,15 +101,24 @@ bool empty(const TileFilm& film) {
                                             [](const Plane* w) { return !w; });
 }
 
+/// Reflectances below the boundary; `bands` is 0 where only the surface is asked for.
+struct Reflectances {
+    explicit Reflectances(bool with_colour) : bands(with_colour ? kBands : 0) {}
+    Texels& operator[](int b) { return r[b]; }
+
+    int bands;
+    alignas(64) std::array<Texels, kBands> r;
+};
+
 /// Lays one film over the reflectances `r` of what is below it.
-void lay_film(std::array<Texels, kBands>& r, TileLook& look, const TileFilm& film,
+void lay_film(Reflectances& r, TileLook& look, const TileFilm& film,
               std::span<const Pigment> pigments) {
     alignas(64) Texels k, s, part, thickness{}, rough{}, height{};
     part.fill(film.opacity);
     if (film.mask)
         for (int t = 0; t < kN; ++t) part[t] *= (*film.mask)[t];
     const bool whole = !film.mask && film.opacity >= 1;
-    for (int b = 0; b < kBands; ++b) {
+    for (int b = 0; b < r.bands; ++b) {
         k.fill(0);
         s.fill(0);
         for (std::size_t p = 0; p < pigments.size(); ++p) {
@@ -159,15 +168,13 @@ TileLayer layer_of(const Canvas& canvas, std::uint32_t slot, float opacity) {
     return layer;
 }
 
-using Reflectances = std::array<Texels, kBands>;
-
 /// Reflectances and look of the bare substrate, below the boundary.
 void begin_look(Reflectances& r, TileLook& look, const Substrate& substrate) {
     constexpr Interface kInterface{};
     look.height.fill(0);
     look.roughness.fill(substrate.roughness);
     const Bands bare = bands_of_rgb(substrate.reflectance);
-    for (int b = 0; b < kBands; ++b)
+    for (int b = 0; b < r.bands; ++b)
         r[b].fill(static_cast<float>(saunderson_inverse(
             static_cast<double>(bare[b]),
             {.k1 = 0, .k2 = static_cast<double>(static_cast<float>(kInterface.k2) * substrate.interface)},
@@ -183,15 +190,16 @@ void end_look(Reflectances& r, TileLook& look, const Plane* water, const Substra
         const float grain = std::max(2 * substrate.relief, 1e-7f);
         wet_part(wet.data(), water->data(), static_cast<float>(kFilmUnit) / grain);
     }
+    gloss(look.roughness.data(), wet.data(), substrate.interface, substrate.roughness);
+    if (r.bands == 0) return;
     for (int c = 0; c < 3; ++c) look.colour[c].fill(0);
-    for (int b = 0; b < kBands; ++b) {
+    for (int b = 0; b < r.bands; ++b) {
         if (water || substrate.interface > 0)
             under_interface(r[b].data(), wet.data(), substrate.interface, k2);
         for (int c = 0; c < 3; ++c)
             add_scaled(look.colour[c].data(), r[b].data(), band_weights()[c][b]);
     }
     into_gamut(look.colour[0].data(), look.colour[1].data(), look.colour[2].data());
-    gloss(look.roughness.data(), wet.data(), substrate.interface, substrate.roughness);
 }
 
 void lay_layer(Reflectances& r, TileLook& look, const TileLayer& layer) {
@@ -204,11 +212,11 @@ void lay_layer(Reflectances& r, TileLook& look, const TileLayer& layer) {
         lay_all(r);
         return;
     }
-    alignas(64) Reflectances with = r;
+    Reflectances with = r;
     alignas(64) Texels part, height = look.height, roughness = look.roughness;
     part.fill(layer.opacity);
     lay_all(with);
-    for (int b = 0; b < kBands; ++b) blend(r[b].data(), with[b].data(), part.data());
+    for (int b = 0; b < r.bands; ++b) blend(r[b].data(), with[b].data(), part.data());
     blend(height.data(), look.height.data(), part.data());
     blend(roughness.data(), look.roughness.data(), part.data());
     look.height = height;
@@ -218,9 +226,10 @@ void lay_layer(Reflectances& r, TileLook& look, const TileLayer& layer) {
 }  // namespace
 
 TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
-                       std::span<const Pigment> pigments, const Substrate& substrate) {
+                       std::span<const Pigment> pigments, const Substrate& substrate,
+                       bool with_colour) {
     TileLook look;
-    alignas(64) Reflectances r;
+    Reflectances r(with_colour);
     begin_look(r, look, substrate);
     for (const TileFilm& film : films)
         if (!empty(film)) lay_film(r, look, film, pigments);
@@ -228,15 +237,17 @@ TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
     return look;
 }
 
-TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate) {
+TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
+                      bool with_colour) {
     const TileLayer layer = layer_of(canvas, slot, 1);
     return look_of_films(std::span(layer.films.data(), layer.n_films), layer.water, layer.pigments,
-                         substrate);
+                         substrate, with_colour);
 }
 
-TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate) {
+TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
+                      bool with_colour) {
     TileLook look;
-    alignas(64) Reflectances r;
+    Reflectances r(with_colour);
     begin_look(r, look, substrate);
     Plane sum;
     const Plane* water = nullptr;
@@ -268,6 +279,21 @@ std::vector<std::uint32_t> Stack::touched_slots() const {
     std::sort(slots.begin(), slots.end());
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
     return slots;
+}
+
+Rgb colour_of_film(const Ink& ink, const Rgb& ground, double film) {
+    const Bands under = bands_of_rgb(ground);
+    Bands seen;
+    for (int b = 0; b < kBands; ++b) {
+        double k = 0, s = 0;
+        for (const InkPart& part : ink.parts) {
+            k += part.fraction * static_cast<double>(part.pigment.k[b]);
+            s += part.fraction * static_cast<double>(part.pigment.s[b]);
+        }
+        seen[b] = static_cast<float>(
+            over(layer(k, s, film > 0 ? film : ink.film), static_cast<double>(under[b])));
+    }
+    return into_gamut(rgb_of_bands(seen));
 }
 
 }  // namespace tuft::ink

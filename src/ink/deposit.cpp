@@ -90,12 +90,21 @@ Mix mix_of(Canvas& canvas, const Ink& ink) {
 }
 
 float extinction_of(const Ink& ink) {
-    constexpr Bands kLuminance{0.2126f, 0.7152f, 0.0722f};  // Rec. 709
+    constexpr Rgb kLuminance{0.2126f, 0.7152f, 0.0722f};  // Rec. 709
     double sum = 0;
-    for (const InkPart& part : ink.parts)
+    for (const InkPart& part : ink.parts) {
+        const PigmentCurve& curve = part.pigment.curve;
+        if (curve.nm.empty() && !curve.k.empty()) {
+            for (int c = 0; c < 3; ++c)
+                sum += part.fraction * kLuminance[c] * curve.scale * (2 * curve.k[c] + curve.s[c]);
+            continue;
+        }
         for (int b = 0; b < kBands; ++b)
-            sum += part.fraction * kLuminance[b] * (2 * part.pigment.k[b] + part.pigment.s[b]);
-    return static_cast<float>(sum);
+            for (int c = 0; c < 3; ++c)
+                sum += part.fraction * kLuminance[c] * band_weights()[c][b] *
+                       (2 * part.pigment.k[b] + part.pigment.s[b]);
+    }
+    return static_cast<float>(std::max(sum, 0.0));
 }
 
 double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,

@@ -24,14 +24,30 @@ constexpr double film_of_millilitres(double ml) {
     return ml * 1e-6 * kFilmPerVolume;
 }
 
-struct Pigment {
-    std::string name;         ///< identifies the pigment across inks
-    Bands k{};                ///< absorption per film unit
-    Bands s{};                ///< scattering per film unit
-    float height = 2.5e-6f;   ///< metres left by one film unit when dry
-    float roughness = 0.5f;   ///< glTF perceptual roughness of the dry film
-    std::string source = {};  ///< where K and S come from
+/// K and S as a file gives them.
+struct PigmentCurve {
+    std::vector<float> nm;    ///< wavelengths, ascending; empty: k and s are red, green, blue
+    std::vector<float> k, s;  ///< one number per wavelength, times `scale` per film unit
+    float scale = 1;
 };
+
+struct Pigment {
+    std::string name;           ///< identifies the pigment across inks
+    Bands k{};                  ///< absorption per film unit
+    Bands s{};                  ///< scattering per film unit
+    float height = 2.5e-6f;     ///< metres left by one film unit when dry
+    float roughness = 0.5f;     ///< glTF perceptual roughness of the dry film
+    float density = 2000;       ///< kg/m³ of the solid
+    float granulation = 0.2f;   ///< 0–1: how much settles in the hollows of the grain
+    float staining = 0.5f;      ///< 0–1: how firmly the dry film resists being lifted
+    std::string source = {};    ///< where K and S come from
+    PigmentCurve curve = {};    ///< what `k` and `s` were made from; empty: they came as they are
+};
+
+/// Bands of a pigment from its curve: linear between the samples, level beyond them. Red, green
+/// and blue alone are made into smooth spectra first (`upsample_pigment`), so that films keep
+/// the colours they have in three bands.
+void use_curve(Pigment& pigment);
 
 struct InkPart {
     Pigment pigment;
@@ -80,15 +96,20 @@ struct Substrate {
 /// ".toml". Throws `Error` for an unknown name (with the nearest one suggested) and for
 /// a file that is malformed or out of range (with its line).
 Ink load_ink(std::string_view name);
+Pigment load_pigment(std::string_view name);  ///< from models/pigments
 Substrate load_substrate(std::string_view name);
 
 /// Names of the presets, sorted.
 std::vector<std::string> list_inks();
+std::vector<std::string> list_pigments();
 std::vector<std::string> list_substrates();
 
 /// From and to TOML text; `source` is used in messages. parse_ink(ink_toml(i)) == i.
+/// A part of an ink has its pigment written out, or `preset = "NAME"` of models/pigments.
 Ink parse_ink(std::string_view toml, const std::string& source);
 std::string ink_toml(const Ink& ink);
+Pigment parse_pigment(std::string_view toml, const std::string& source);
+std::string pigment_toml(const Pigment& pigment);
 Substrate parse_substrate(std::string_view toml, const std::string& source);
 std::string substrate_toml(const Substrate& substrate);
 

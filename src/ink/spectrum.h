@@ -5,11 +5,16 @@
 /// Colour as the ink room computes it: a few spectral bands inside, linear sRGB outside.
 namespace tuft::ink {
 
-inline constexpr int kBands = 3;
+/// Chosen by `tests/ink/fit_bands.cpp`: against sums over 41 wavelengths the colours of 6000
+/// random mixes, thicknesses and stacks differ by 0.11 ΔE2000 in the mean, 0.41 at 99 %.
+inline constexpr int kBands = 14;
 /// A number per band: reflectance, absorption or scattering.
 using Bands = std::array<float, kBands>;
 /// Linear light, sRGB primaries, D65.
 using Rgb = std::array<float, 3>;
+
+/// Wavelengths of the bands, nm: K and S of a pigment are taken there.
+const Bands& band_nm();
 
 /// Share of each band in linear red, green and blue; rows sum to 1, so that white is white.
 const std::array<Bands, 3>& band_weights();
@@ -20,7 +25,8 @@ Rgb rgb_of_bands(const Bands& reflectance);
 /// A colour in [0, 1]: the nearest on the line to the grey of the same luminance.
 Rgb into_gamut(const Rgb& colour);
 
-/// A smooth reflectance of that colour; its bands lie in [0, 1].
+/// A smooth reflectance of that colour; its bands lie in [0, 1]. `rgb_of_bands` undoes it to
+/// 1e-6 unless the colour is so deep that the bands had to be cut.
 Bands bands_of_rgb(const Rgb& colour);
 
 }  // namespace tuft::ink

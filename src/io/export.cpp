@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <system_error>
 
 #include "core/error.h"
@@ -62,33 +63,70 @@ ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels,
             .height = compose_height(stack, texels, options)};
 }
 
-ink::AtlasMap<std::uint8_t> normal_map(const ink::AtlasMap<float>& height, double texel_size) {
-    ink::AtlasMap<std::uint8_t> out{.size = height.size, .channels = 3, .texels = {}};
+ink::AtlasMap<float> normal_map_float(const ink::AtlasMap<float>& height, double texel_size) {
+    ink::AtlasMap<float> out{.size = height.size, .channels = 3, .texels = {}};
     const std::size_t n = height.size;
     out.texels.resize(n * n * 3);
     const auto scale = static_cast<float>(0.5e-6 / texel_size);
-    const auto byte = [](float v) {
-        return static_cast<std::uint8_t>(std::lround((v + 1) * 127.5f));
-    };
     parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y) {
             const float* row = &height.texels[y * n];
             const float* below = y > 0 ? row - n : row;
             const float* above = y + 1 < n ? row + n : row;
-            std::uint8_t* to = &out.texels[y * n * 3];
+            float* to = &out.texels[y * n * 3];
             for (std::size_t x = 0; x < n; ++x, to += 3) {
                 const float dx = scale * (row[x + 1 < n ? x + 1 : x] - row[x > 0 ? x - 1 : x]);
                 const float dy = scale * (above[x] - below[x]);
                 const float nx = std::fmin(std::fmax(-dx, -1.0f), 1.0f);
                 const float ny = std::fmin(std::fmax(-dy, -1.0f), 1.0f);
                 const float length = std::sqrt(nx * nx + ny * ny + 1);
-                to[0] = byte(nx / length);
-                to[1] = byte(ny / length);
-                to[2] = byte(1 / length);
+                to[0] = nx / length;
+                to[1] = ny / length;
+                to[2] = 1 / length;
             }
         }
     });
     return out;
+}
+
+namespace {
+
+template <class T>
+ink::AtlasMap<T> encoded_normals(const ink::AtlasMap<float>& height, double texel_size) {
+    const ink::AtlasMap<float> normals = normal_map_float(height, texel_size);
+    ink::AtlasMap<T> out{.size = normals.size, .channels = 3, .texels = {}};
+    out.texels.resize(normals.texels.size());
+    constexpr float kHalf = 0.5f * static_cast<float>(std::numeric_limits<T>::max());
+    parallel_for(out.texels.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            out.texels[i] = static_cast<T>(std::lround((normals.texels[i] + 1) * kHalf));
+    });
+    return out;
+}
+
+}  // namespace
+
+ink::AtlasMap<std::uint8_t> normal_map(const ink::AtlasMap<float>& height, double texel_size) {
+    return encoded_normals<std::uint8_t>(height, texel_size);
+}
+
+ink::AtlasMap<std::uint16_t> normal_map16(const ink::AtlasMap<float>& height, double texel_size) {
+    return encoded_normals<std::uint16_t>(height, texel_size);
+}
+
+ink::AtlasMap<std::uint16_t> height16(const ink::AtlasMap<float>& height) {
+    ink::AtlasMap<std::uint16_t> out{.size = height.size, .channels = 1, .texels = {}};
+    out.texels.reserve(height.texels.size());
+    for (const float h : height.texels)
+        out.texels.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(100 * h, 0.0f, 65535.0f))));
+    return out;
+}
+
+std::string channel_name(const std::string& pigment) {
+    std::string name = pigment;
+    std::replace(name.begin(), name.end(), '.', '-');
+    if (name.size() == 1 && std::string_view("RGBAYZrgbayz").find(name[0]) != std::string_view::npos) name += '-';
+    return name;
 }
 
 void write_together(const fs::path& path, const std::function<void(const fs::path&)>& write) {

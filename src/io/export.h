@@ -30,6 +30,17 @@ ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels,
 /// n ∝ (−∂h/∂u, −∂h/∂v, 1), v up, encoded as 8 bit (n + 1)/2; slopes are cut at 1.
 ink::AtlasMap<std::uint8_t> normal_map(const ink::AtlasMap<float>& height, double texel_size);
 
+/// The same with 16 bits a channel, and as plain vectors in [−1, 1].
+ink::AtlasMap<std::uint16_t> normal_map16(const ink::AtlasMap<float>& height, double texel_size);
+ink::AtlasMap<float> normal_map_float(const ink::AtlasMap<float>& height, double texel_size);
+
+/// Micrometres in steps of 0.01 µm, at most 655.35.
+ink::AtlasMap<std::uint16_t> height16(const ink::AtlasMap<float>& height);
+
+/// A pigment's name as that of an EXR channel: dots, which part layers there, become dashes;
+/// R, G, B, A, Y and Z get a dash too, so that no viewer takes them for colours.
+std::string channel_name(const std::string& pigment);
+
 struct ExportOptions {
     std::string unit = "mm";          ///< of OBJ coordinates; glTF is always in metres
     bool z_up = true;                 ///< the model's up axis is z: glTF gets (x, z, −y), y up

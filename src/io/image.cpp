@@ -91,7 +91,8 @@ Image<T> read(const fs::path& path, std::size_t max_pixels) {
     Image<T> image{.width = decoded.width,
                    .height = decoded.height,
                    .channels = decoded.channels,
-                   .pixels = {}};
+                   .pixels = {},
+                   .channel_names = std::move(decoded.channel_names)};
     image.pixels.resize(decoded.bytes.size() / sizeof(T));
     std::memcpy(image.pixels.data(), decoded.bytes.data(), image.pixels.size() * sizeof(T));
     return image;

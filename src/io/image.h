@@ -18,8 +18,12 @@ template <class T>
 struct Image {
     int width = 0, height = 0, channels = 0;
     std::vector<T> pixels;  ///< [width * height * channels]
+    std::vector<std::string> channel_names = {};  ///< of a file that was read
 
-    bool operator==(const Image&) const = default;
+    /// Same size and pixels.
+    bool operator==(const Image& o) const {
+        return width == o.width && height == o.height && channels == o.channels && pixels == o.pixels;
+    }
 };
 using Image8 = Image<std::uint8_t>;
 using Image16 = Image<std::uint16_t>;

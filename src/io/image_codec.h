@@ -27,6 +27,7 @@ struct DecodeRequest {
 
 struct DecodedImage {
     int width = 0, height = 0, channels = 0;
+    std::vector<std::string> channel_names;
     std::vector<unsigned char> bytes;  ///< top row first
 };
 

@@ -54,9 +54,11 @@ std::string encode_checked(const EncodeRequest& request, std::vector<unsigned ch
     // Pixels count as premultiplied otherwise, and colour is lost where alpha is 0.
     spec.attribute("oiio:UnassociatedAlpha", 1);
     if (!exr && request.options->srgb) spec.attribute("oiio:ColorSpace", "sRGB");
-    if (exr)
+    if (exr) {
         spec.attribute("compression", "zip");
-    else
+        // Otherwise the time of day goes into the file, and no two are the same.
+        spec.attribute("DateTime", "1970:01:01 00:00:00");
+    } else
         spec.attribute("png:compressionLevel", request.options->compression);
 
     const char* name = extension_of(request.format);
@@ -91,6 +93,7 @@ std::string decode_checked(const DecodeRequest& request, DecodedImage& out) {
     out.width = spec.width;
     out.height = spec.height;
     out.channels = spec.nchannels;
+    out.channel_names = spec.channelnames;
     const OIIO::TypeDesc type = type_of(request.type);
     out.bytes.resize(std::size_t(spec.width) * spec.height * spec.nchannels * type.size());
     if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data()))

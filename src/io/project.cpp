@@ -265,6 +265,25 @@ std::vector<PresetText> Project::inks() const {
     return state_->run([](SQLite::Database& db) { return get_presets(db, "ink"); });
 }
 
+void Project::put_recolour(const PresetText& preset) {
+    state_->change([&](SQLite::Database& db) { put_preset(db, "recolour", preset); });
+}
+
+std::vector<PresetText> Project::recolours() const {
+    return state_->run([](SQLite::Database& db) { return get_presets(db, "recolour"); });
+}
+
+void Project::put_shown_substrate(const std::string& toml) {
+    state_->change([&](SQLite::Database& db) { put_preset(db, "shown substrate", {"", toml}); });
+}
+
+std::string Project::shown_substrate() const {
+    return state_->run([](SQLite::Database& db) {
+        const std::vector<PresetText> stored = get_presets(db, "shown substrate");
+        return stored.empty() ? std::string() : stored.front().second;
+    });
+}
+
 void Project::append(std::span<const stroke::Stroke> strokes) {
     state_->change([&](SQLite::Database& db) { store_strokes(db, state_->path, strokes); });
 }

@@ -73,6 +73,13 @@ class Project {
     std::vector<PresetText> brushes() const;  ///< by name
     std::vector<PresetText> inks() const;
 
+    /// How the work is shown, apart from how it was painted: another ink in place of the one
+    /// named, another substrate (TOML text; empty: none).
+    void put_recolour(const PresetText& preset);
+    std::vector<PresetText> recolours() const;
+    void put_shown_substrate(const std::string& toml);
+    std::string shown_substrate() const;
+
     /// Adds finished strokes after the last one, in one transaction. Their ids must be new.
     void append(std::span<const stroke::Stroke> strokes);
     void append(const stroke::Stroke& stroke) { append(std::span(&stroke, 1)); }

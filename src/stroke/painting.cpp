@@ -137,7 +137,7 @@ BrushInHand Painting::take_up(const Stroke& entry) {
         return clean;
     }
     const std::string& named = entry.trace.ink;
-    const ink::Mix mix = ink::mix_of(canvas_, ink(named));
+    const ink::Mix mix = mix_of(named);
     const BrushInHand* last = entry.settings.dip == "carry" ? held(entry.trace.brush) : nullptr;
     if (!last || last->tuft.preset.spine != preset.spine) {
         BrushInHand fresh{brush::make_tuft(preset), ink::make_reservoir(preset.capacity * 1e6), named, named};
@@ -188,7 +188,7 @@ void Painting::act(const Stroke& entry) {
     BrushInHand brush = take_up(entry);
     switch (entry.action) {
         case Action::dip:
-            ink::dip(brush.reservoir, ink::mix_of(canvas_, ink(entry.trace.ink)));
+            ink::dip(brush.reservoir, mix_of(entry.trace.ink));
             brush.dipped = entry.trace.ink;
             break;
         case Action::rinse:

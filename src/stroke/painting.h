@@ -152,8 +152,17 @@ class Painting {
     void show_only(std::vector<std::uint32_t> layers);
     /// Hash of the texels of all layers; of one layer as its canvas has it.
     std::uint64_t hash() const;
-    const ink::Substrate& substrate() const { return substrate_; }
+    /// What the maps show the ink on: what it was painted on, unless `show_on` said otherwise.
+    const ink::Substrate& substrate() const { return shown_on_ ? *shown_on_ : substrate_; }
+    const ink::Substrate& painted_on() const { return substrate_; }
     void use_substrate(const ink::Substrate& substrate) { substrate_ = substrate; }
+    /// Shows the ink on another substrate; nothing is painted anew, no amount changes.
+    void show_on(std::optional<ink::Substrate> substrate);
+    bool shown_elsewhere() const { return shown_on_.has_value(); }
+    /// Shows what was and will be painted with ink `name` as if it were `wanted`
+    /// (ink/recolour.h). Amounts, and what replays paint, stay as they are.
+    void recolour(const std::string& name, const ink::Ink& wanted);
+    const std::map<std::string, ink::Ink>& recolours() const { return recolours_; }
     /// How maps are made of this painting: gutters continued over the seams. The plan behind
     /// it is made at the first call (0.3–1 s) and belongs to the painting.
     ink::ComposeOptions compose_options() const;
@@ -189,12 +198,16 @@ class Painting {
     BrushInHand take_up(const Stroke& entry);
     void put_down(std::uint64_t id, const std::string& brush, BrushInHand after, LayerTiles before);
     void keep_undo(Undo undo);
+    ink::Mix mix_of(const std::string& ink);
+    void apply_recolours();
     void repaint_all();
     std::vector<brush::Pose> poses_of(const Stroke& stroke);
 
     const Model* model_;
     PaintingOptions options_;
     ink::Substrate substrate_;
+    std::optional<ink::Substrate> shown_on_;
+    std::map<std::string, ink::Ink> recolours_;  ///< by the name of the ink painted with
     ink::Canvas canvas_;                              ///< of kFirstLayer
     std::map<std::uint32_t, ink::Canvas> upper_;      ///< of the other layers
     LayerTable layers_;

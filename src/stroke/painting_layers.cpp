@@ -170,6 +170,7 @@ void Painting::take_back_layers(Undo& undo) {
     } else {
         upper_.insert_or_assign(id, std::move(undo.canvas->canvas));
     }
+    apply_recolours();
     touch_look(id);
 }
 
@@ -204,6 +205,7 @@ void Painting::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canva
     for (auto s = rest; s != strokes.end(); ++s)
         if (!s->hidden) edit_layers(*s);
     for (Stroke& stroke : strokes) journal_.restore(std::move(stroke));
+    apply_recolours();
 }
 
 }  // namespace tuft::stroke

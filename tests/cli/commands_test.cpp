@@ -64,6 +64,57 @@ TEST_F(Commands, ExportWritesModelAndMaps) {
     }
 }
 
+TEST_F(Commands, ExportWritesEveryMap) {
+    write("s.inkml", stroke_file());
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
+    for (const char* map : {"base-colour", "normal", "height", "roughness", "pigments"})
+        for (const char* extension : {".png", ".exr"}) {
+            const std::string file = path(std::string("m") + map + extension);
+            const Ran ran = tuft("export " + path("p.tuft") + " -o " + file + " --map " + map);
+            const bool possible = std::string(map) != "pigments" || std::string(extension) == ".exr";
+            EXPECT_EQ(ran.status, possible ? 0 : 2) << file << ": " << ran.err;
+            EXPECT_EQ(std::filesystem::exists(file), possible) << file;
+        }
+    // The file's name says which map, when it is the name of one.
+    ASSERT_EQ(tuft("export " + path("p.tuft") + " -o " + path("height.exr")).status, 0);
+    EXPECT_EQ(read(path("height.exr")), read(path("mheight.exr")));
+    EXPECT_EQ(tuft("export " + path("p.tuft") + " -o " + path("m.glb") + " --map height").status, 2);
+}
+
+TEST_F(Commands, RecolouringChangesColoursButNoAmount) {
+    write("s.inkml", stroke_file());
+    const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --ink carbon --atlas-size 256 --project " +
+                             path("p.tuft") + " --json");
+    ASSERT_EQ(painted.status, 0) << painted.err;
+    const std::string hash = json::parse(painted.out)["canvas_hash"];
+    const auto colour = [&](const std::string& project, const std::string& options) {
+        const Ran ran = tuft("export " + path(project) + " -o " + path("c.exr") + " --json " + options);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        EXPECT_EQ(json::parse(ran.out)["canvas_hash"], hash) << options;
+        return read(path("c.exr"));
+    };
+    const std::string black = colour("p.tuft", ""), red = colour("p.tuft", "--recolour carbon=cinnabar"),
+                      on_clay = colour("p.tuft", "--substrate clay"),
+                      both = colour("p.tuft", "--substrate clay --recolour carbon=cinnabar");
+    EXPECT_NE(red, black);
+    EXPECT_NE(on_clay, black);
+    EXPECT_NE(both, on_clay);
+    EXPECT_EQ(colour("p.tuft", "--recolour carbon=carbon --substrate porcelain"), black);
+    // Kept in a project, the look stays a look: what is painted is as before, however often.
+    const Ran kept = tuft("replay " + path("p.tuft") + " --substrate clay --recolour carbon=cinnabar --project " + path("q.tuft") + " --json");
+    ASSERT_EQ(kept.status, 0) << kept.err;
+    EXPECT_EQ(json::parse(kept.out)["canvas_hash"], hash);
+    EXPECT_EQ(colour("q.tuft", ""), both);
+    const Ran again = tuft("replay " + path("q.tuft") + " --project " + path("r.tuft") + " --json");
+    EXPECT_EQ(json::parse(again.out)["canvas_hash"], hash);
+    EXPECT_EQ(colour("r.tuft", ""), both);
+    EXPECT_EQ(colour("r.tuft", "--recolour carbon=carbon --substrate porcelain"), black) << "and back";
+    const Ran unknown = tuft("export " + path("p.tuft") + " -o " + path("c.png") + " --recolour cobalt=carbon");
+    EXPECT_EQ(unknown.status, 1);
+    EXPECT_EQ(unknown.error_lines(), 1) << unknown.err;
+    EXPECT_EQ(tuft("export " + path("p.tuft") + " -o " + path("c.png") + " --recolour carbon").status, 2);
+}
+
 TEST_F(Commands, UnwrapTellsItsFigures) {
     const Ran ran = tuft("unwrap " + model("torus.ply") + " -o " + path("t.obj") + " --atlas-size 1024 --picture " + path("t.png") + " --json");
     ASSERT_EQ(ran.status, 0) << ran.err;

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "core/error.h"
-#include "ink/kubelka_munk.h"
+#include "ink/composite.h"
 
 namespace tuft::ink {
 namespace {
@@ -66,35 +66,24 @@ TEST(Presets, SubstratesDifferAsTheirMaterialsDo) {
     EXPECT_EQ(old.capacity, 7);
 }
 
-/// Reflectance of a full film of the ink over a substrate.
-Bands seen(const std::string& ink_name, const std::string& substrate_name) {
-    const Ink ink = load_ink(ink_name);
-    const Substrate substrate = load_substrate(substrate_name);
-    Bands out;
-    for (int b = 0; b < kBands; ++b) {
-        double k = 0, s = 0;
-        for (const InkPart& part : ink.parts) {
-            k += part.fraction * part.pigment.k[b];
-            s += part.fraction * part.pigment.s[b];
-        }
-        out[b] = static_cast<float>(over(layer(k, s, ink.film), substrate.reflectance[b]));
-    }
-    return out;
+/// Colour of a full film of the ink over a substrate.
+Rgb seen(const std::string& ink, const std::string& substrate) {
+    return colour_of_film(load_ink(ink), load_substrate(substrate).reflectance);
 }
 
 TEST(Presets, InksLookLikeTheirNames) {
-    const Bands carbon = seen("carbon", "porcelain");
+    const Rgb carbon = seen("carbon", "porcelain");
     EXPECT_LT(carbon[0], 0.03f) << "a full film on white reads as black: under 3 %";
     EXPECT_LT(carbon[2] / carbon[0], 1.3f);
-    const Bands red = seen("cinnabar", "porcelain");
+    const Rgb red = seen("cinnabar", "porcelain");
     EXPECT_GT(red[0], 5 * red[1]);
     EXPECT_GT(red[0], 5 * red[2]);
-    const Bands blue = seen("cobalt", "porcelain");
+    const Rgb blue = seen("cobalt", "porcelain");
     EXPECT_GT(blue[2], 3 * blue[1]);
-    const Bands yellow = seen("gamboge", "porcelain");
+    const Rgb yellow = seen("gamboge", "porcelain");
     EXPECT_GT(yellow[1], 5 * yellow[2]);
     EXPECT_GT(yellow[0], yellow[1]);
-    const Bands white = seen("titanium-white", "clay");
+    const Rgb white = seen("titanium-white", "clay");
     EXPECT_GT(white[1], 0.6f) << "hides clay";
 }
 

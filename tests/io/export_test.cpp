@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -58,6 +60,68 @@ TEST(Export, GlbHoldsThePicturesRightWayUp) {
     for (int y = 0; y < 64; ++y)
         for (int i = 0; i < 64 * 3; ++i)
             ASSERT_EQ(base.pixels[(63 - y) * 64 * 3 + i], maps.base_colour.texels[y * 64 * 3 + i]);
+}
+
+TEST(Export, PigmentAmountsComeBackByNameFromAnExrFile) {
+    const Folder folder("pigments");
+    const mesh::TriangleMesh mesh = cylinder();
+    const atlas::TexelMap map = atlas::build_texel_map(mesh, cylinder_atlas(mesh));
+    ink::Canvas canvas(map.n_slots());
+    for (const char* name : {"carbon black", "R", "a.b"}) {
+        ink::Pigment p;
+        p.name = name;
+        canvas.add_pigment(p);
+    }
+    for (std::uint32_t slot = 0; slot < map.n_slots(); slot += 2)
+        for (int p = 0; p < 3; ++p)
+            for (int t = 0; t < atlas::kTileTexels; ++t)
+                for (const int film : {ink::kOpenFilm, ink::kFirstDryFilm})
+                    canvas.touch_film(slot, film, p)[t] = static_cast<float>(uniform(10 * film + p, 256 * slot + t));
+    const ink::AtlasMap<float> amounts = ink::compose_amounts(canvas, map, {.gutter = 0});
+    ImageOptions options;
+    options.srgb = false;
+    for (const ink::Pigment& p : canvas.pigments()) options.channel_names.push_back(channel_name(p.name));
+    write_image(folder / "pigments.exr", view_of(amounts), options);
+    const ImageF read = read_image_float(folder / "pigments.exr");
+    ASSERT_EQ(read.channels, 3);
+    const auto channel = [&](const std::string& name) {
+        return std::find(read.channel_names.begin(), read.channel_names.end(), name) - read.channel_names.begin();
+    };
+    const std::array<std::ptrdiff_t, 3> at{channel("carbon black"), channel("R-"), channel("a-b")};
+    for (const auto c : at) ASSERT_LT(c, 3) << "each pigment has its channel";
+    int seen = 0;
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            if (map.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+            const std::uint32_t tile = map.tile_of_slot[slot];
+            const std::uint32_t x = tile % map.tiles_per_side * 16 + t % 16, y = tile / map.tiles_per_side * 16 + t / 16;
+            if (x >= map.size || y >= map.size) continue;
+            for (int p = 0; p < 3; ++p) {
+                float sum = 0;
+                for (const int film : {ink::kOpenFilm, ink::kFirstDryFilm})
+                    if (const ink::Plane* w = canvas.film_plane(slot, film, p)) sum += (*w)[t];
+                ASSERT_EQ(read.pixels[((map.size - 1 - y) * map.size + x) * 3 + static_cast<std::size_t>(at[p])], sum);
+                seen += sum > 0;
+            }
+        }
+    EXPECT_GT(seen, 1000);
+}
+
+TEST(Export, HeightAndNormalsKeepSixteenBits) {
+    const ModelMaps maps = pattern_maps(64);
+    const ink::AtlasMap<std::uint16_t> height = height16(maps.height);
+    for (std::size_t i = 0; i < height.texels.size(); ++i)
+        EXPECT_NEAR(height.texels[i] * 0.01, maps.height.texels[i], 0.0051) << "steps of 0.01 um";
+    EXPECT_EQ(height16({.size = 1, .channels = 1, .texels = {1e6f}}).texels[0], 65535) << "cut, not wrapped";
+    const ink::AtlasMap<float> vectors = normal_map_float(maps.height, 1e-5);
+    const ink::AtlasMap<std::uint16_t> fine = normal_map16(maps.height, 1e-5);
+    const ink::AtlasMap<std::uint8_t> coarse = normal_map(maps.height, 1e-5);
+    for (std::size_t i = 0; i < vectors.texels.size(); ++i) {
+        EXPECT_NEAR(fine.texels[i] / 65535.0 * 2 - 1, vectors.texels[i], 1.01 / 65535);
+        EXPECT_NEAR(coarse.texels[i] / 255.0 * 2 - 1, vectors.texels[i], 1.01 / 255);
+    }
+    for (std::size_t i = 0; i < vectors.texels.size(); i += 3)
+        EXPECT_NEAR(std::hypot(vectors.texels[i], vectors.texels[i + 1], vectors.texels[i + 2]), 1, 1e-6);
 }
 
 TEST(Export, WithoutHeightThereIsNoNormalMap) {

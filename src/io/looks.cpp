@@ -1,0 +1,20 @@
+#include "io/looks.h"
+
+namespace tuft::io {
+
+void show_looks(const Project& project, stroke::Painting& painting) {
+    const std::string file = project.path().string();
+    for (const auto& [name, toml] : project.recolours())
+        painting.recolour(name, ink::parse_ink(toml, file + ": ink " + name + " shown"));
+    if (const std::string toml = project.shown_substrate(); !toml.empty())
+        painting.show_on(ink::parse_substrate(toml, file + ": substrate shown"));
+}
+
+void store_looks(Project& project, const stroke::Painting& painting) {
+    for (const auto& [name, ink] : painting.recolours())
+        project.put_recolour({name, ink::ink_toml(ink)});
+    if (painting.shown_elsewhere())
+        project.put_shown_substrate(ink::substrate_toml(painting.substrate()));
+}
+
+}  // namespace tuft::io
