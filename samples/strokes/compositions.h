@@ -13,6 +13,8 @@ std::vector<stroke::Trace> bowl_inside();
 std::vector<stroke::Trace> bowl_outside();
 /// Leaves on a winding stem around the plate's rim.
 std::vector<stroke::Trace> plate_ornament();
+/// The strokes of three brushes, and what a tilted, a split and a dry tuft does, on the flat sheet.
+std::vector<stroke::Trace> stroke_sheet();
 /// Pinstripes along the right flank of the car.
 std::vector<stroke::Trace> car_pinstripe();
 

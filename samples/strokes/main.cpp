@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
         save("qi-shang-ba-xia.inkml", "七上八下", samples::bowl_inside());
         save("man-bu-ren-sheng.inkml", "漫步人生", samples::bowl_outside());
         save("plate-ornament.inkml", "Leaves on a winding stem", samples::plate_ornament());
+        save("stroke-sheet.inkml", "Strokes of wolf, goat and mixed hair", samples::stroke_sheet());
         save("car-pinstripe.inkml", "Pinstripes", samples::car_pinstripe());
     } catch (const Error& e) {
         fmt::print(stderr, "tuft-strokes: {}\n", e.what());

@@ -69,7 +69,25 @@ constexpr std::array kFields = {
     Field{"force", "limit_n", &Preset::force_limit, 1, 0, 100},
 };
 
-constexpr const char* kHardLimitNote = "segments must be a whole number from 4 to 64";
+/// Values that are whole numbers.
+struct WholeField {
+    const char* table;
+    const char* key;
+    int Preset::* member;
+    int lo, hi;
+};
+
+constexpr std::array kWholeFields = {
+    WholeField{"shape", "segments", &Preset::segments, 4, 64},
+    WholeField{"split", "into", &Preset::split_into, 2, 5},
+    WholeField{"hair", "bundles", &Preset::bundles, 1, 200},
+    WholeField{"hair", "bristles", &Preset::bristles, 1, 4000},
+};
+
+std::string whole_note(const WholeField& f) {
+    return std::string(f.key) + " must be a whole number from " + std::to_string(f.lo) + " to " +
+           std::to_string(f.hi);
+}
 
 long line_of(const toml::node& node) { return static_cast<long>(node.source().begin.line); }
 
@@ -86,7 +104,8 @@ std::string number(double v) {
 
 /// Every known key as "table.key", for hints.
 std::vector<std::string> known_keys() {
-    std::vector<std::string> keys{"name", "note", "bending.spine", "shape.segments"};
+    std::vector<std::string> keys{"name", "note", "bending.spine"};
+    for (const WholeField& f : kWholeFields) keys.push_back(std::string(f.table) + "." + f.key);
     for (const Field& f : kFields) keys.push_back(std::string(f.table) + "." + f.key);
     return keys;
 }
@@ -121,10 +140,11 @@ void read_value(Preset& p, const std::string& table, const std::string& key, con
         p.spine = v == "rod" ? SpineMethod::rod : SpineMethod::table;
         return;
     }
-    if (full == "shape.segments") {
+    for (const WholeField& f : kWholeFields) {
+        if (table != f.table || key != f.key) continue;
         const double v = number_of(node, source, full);
-        if (!(v >= 4 && v <= 64) || v != std::floor(v)) fail(source, line_of(node), kHardLimitNote);
-        p.segments = static_cast<int>(v);
+        if (!(v >= f.lo && v <= f.hi) || v != std::floor(v)) fail(source, line_of(node), whole_note(f));
+        p.*f.member = static_cast<int>(v);
         return;
     }
     for (const Field& f : kFields) {
@@ -153,7 +173,8 @@ void check_preset(const Preset& p, const std::string& source) {
                                     ", outside " + number(f.lo) + " to " + number(f.hi));
         }
     }
-    if (p.segments < 4 || p.segments > 64) throw Error(source, kHardLimitNote);
+    for (const WholeField& f : kWholeFields)
+        if (p.*f.member < f.lo || p.*f.member > f.hi) throw Error(source, whole_note(f));
     if (p.radius > 0.5 * p.length) {
         throw Error(source, "'shape.radius_mm' must not exceed half of 'shape.length_mm'");
     }
@@ -243,13 +264,17 @@ std::string preset_toml(const Preset& p) {
         if (table != f.table) {
             table = f.table;
             out << "\n[" << table << "]\n";
-            if (table == "shape") out << "segments = " << p.segments << "\n";
             if (table == "bending") {
                 out << "spine = \"" << (p.spine == SpineMethod::rod ? "rod" : "table") << "\"\n";
             }
+            for (const WholeField& w : kWholeFields)
+                if (table == w.table) out << w.key << " = " << p.*w.member << "\n";
         }
         out << f.key << " = " << number(p.*f.member / f.unit) << "\n";
     }
+    out << "\n[hair]\n";
+    for (const WholeField& w : kWholeFields)
+        if (std::string_view(w.table) == "hair") out << w.key << " = " << p.*w.member << "\n";
     return out.str();
 }
 

@@ -70,6 +70,11 @@ struct Preset {
     double split_factor = 3;      ///< ξ of SP = ξ k (1 - Z_i/Z)
     double split_at = 1, merge_at = 0.7;  ///< thresholds on SP
     double split_yaw = 0.12;      ///< Δ, radians between sub-spines
+    int split_into = 3;           ///< sub-spines of the last third, 2–5
+
+    // Hair.
+    int bundles = 40;             ///< of hair that stick together, each with ink of its own
+    int bristles = 500;           ///< drawn and inked one by one
 
     // Force to the hand.
     double force_gain = 15;       ///< G: hair gives 0.05–0.5 N, the hand feels G times it

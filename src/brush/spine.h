@@ -39,8 +39,10 @@ Solved stand_spine(const Preset& preset, const QueryTable& table, Spine& spine,
 /// lies flat.
 double split_measure(const Preset& preset, double ink_left, double root_moment);
 
-/// Parts the last third of the spine into three sub-spines of a third of the hair each.
-void split(Tuft& tuft);
+/// Parts the last third of the spine into `split_into` sub-spines n with as much hair each:
+/// radius r/√n, stiffness B/n, ink Z/n, yaw Δ (j − (n − 1)/2).
+/// They begin side by side over the width of the trunk and meet in the tip; `Tuft::spread` parts them.
+void split(Tuft& tuft, const Branch& whole);
 
 /// Solves the sub-spines on the bent trunk and puts them in place of the last third.
 void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt);

@@ -20,6 +20,11 @@ std::size_t expected_planes(const Tuft& tuft) {
     return count;
 }
 
+constexpr double kCoheres = 0.25;  ///< of the capacity: ink from which water draws parted hair together
+constexpr double kMergingTime = 0.03;    ///< s in which it does
+constexpr double kPartingLength = 6e-3;  ///< m of the hand's way in which sub-spines part
+constexpr double kMerged = 0.02;         ///< spread at which they are one again
+
 }  // namespace
 
 double rest_radius(const Preset& p, double u) {
@@ -32,7 +37,7 @@ Profile profile_of(const Preset& p) {
     return {p.alpha, p.beta, p.yield, p.gamma, p.tip_stiffness};
 }
 
-Tuft make_tuft(const Preset& preset) {
+Tuft make_tuft(const Preset& preset, std::uint64_t seed) {
     check_preset(preset, preset.name.empty() ? "brush" : preset.name);
     Tuft tuft;
     tuft.preset = preset;
@@ -41,6 +46,7 @@ Tuft make_tuft(const Preset& preset) {
     rod.plastic_share = preset.plastic_share;
     tuft.spine = make_spine(preset, rod, clamp_of(preset, {}), 0, 1);
     if (preset.spine == SpineMethod::table) tuft.table = make_table(preset);
+    tuft.bundles = make_bundles(preset, seed);
     return tuft;
 }
 
@@ -100,6 +106,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     Solved solved = p.spine == SpineMethod::table
                         ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness)
                         : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part, walls);
+    const double moved = glm::length(pose.position - tuft.pose.position);
     tuft.pose = pose;
 
     const rod::Result& r = solved.result;
@@ -116,16 +123,19 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
 
     const double measure = split_measure(p, tuft.ink_left, state.root_moment);
     if (tuft.split) {
+        // Too dry for water to draw it together, it stays split until it is wetted or combed.
+        if (measure < p.merge_at && tuft.ink_left > kCoheres) tuft.spread *= std::exp(-std::max(dt, 0.0) / kMergingTime);
+        else tuft.spread = 1 - (1 - tuft.spread) * std::exp(-moved / kPartingLength);
         solve_twigs(tuft, planes, state, dt);
-        if (measure < p.merge_at) tuft.split = false;
+        if (measure < p.merge_at && tuft.spread < kMerged) tuft.split = false;
     } else if (measure > p.split_at) {
-        split(tuft);
+        split(tuft, state.branches.front());
     }
     return state;
 }
 
 void reset(Tuft& tuft) {
-    Tuft fresh = make_tuft(tuft.preset);
+    Tuft fresh = make_tuft(tuft.preset, tuft.bundles.seed);
     fresh.wetness = tuft.wetness;
     fresh.ink_left = tuft.ink_left;
     tuft = std::move(fresh);
@@ -136,6 +146,7 @@ void reshape(Tuft& tuft) {
     tuft.spine.side.clear();
     tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
     tuft.split = false;
+    gather(tuft.bundles);
 }
 
 Vec3 hand_force(const Preset& p, const TuftState& state) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
+#include "brush/bundles.h"
 #include "brush/preset.h"
 #include "brush/rod.h"
 #include "brush/table.h"
@@ -35,12 +35,15 @@ struct Tuft {
     bool posed = false;             ///< false until the first step
     Spine spine;
     bool split = false;
-    std::array<Spine, 3> twigs;     ///< sub-spines of the last third, used while split
+    std::vector<Spine> twigs;       ///< sub-spines of the last third, `split_into` of them while split
+    double spread = 0;              ///< how far they have parted: 0 still one point … 1 fully
+    double branch_width = 0;        ///< m, semi-axis of the section that they leave from
+    Bundles bundles;                ///< the hair within
     QueryTable table;               ///< for the table method only
 };
 
-/// A straight tuft of this make. Throws `Error` for values out of range.
-Tuft make_tuft(const Preset& preset);
+/// A straight tuft of this make; `seed` lays its hair. Throws `Error` for values out of range.
+Tuft make_tuft(const Preset& preset, std::uint64_t seed = 0);
 
 /// Nodes whose nearest surface `step` wants to know, metres, world: the spine carried
 /// rigidly with the ferrule to `pose`; tip first, root last; while split, the nodes of
@@ -64,8 +67,8 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
 /// Forgets everything that happened since `make_tuft`; wetness and ink stay.
 void reset(Tuft& tuft);
 
-/// The hand combs the hair straight and together: permanent set, branches and
-/// contacts are gone; the pose stays.
+/// The hand combs the hair straight and together: permanent set, branches, parted bundles
+/// and contacts are gone; the pose stays.
 void reshape(Tuft& tuft);
 
 /// What the hand feels, newtons, world: min(G |F|, limit) along the force on the tuft.

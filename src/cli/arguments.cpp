@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "core/error.h"
 #include "core/units.h"
+#include "stroke/trace.h"
 
 namespace tuft::cli {
 namespace {
@@ -163,6 +165,18 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
                   "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
         ->check(CLI::Range(0.0, 86400.0))
         ->type_name("SECONDS");
+    p->add_option("--prepare", paint.prepare,
+                  "done with the full brush before it paints, in this order: rinse, wipe[,amount=0.6][,depth=0.3], "
+                  "dip[:INK][,depth=0.2][,amount=0.5], reshape")
+        ->check([](const std::string& text) -> std::string {
+            try {
+                stroke::care_of_text(text);
+                return {};
+            } catch (const Error& e) {
+                return e.what();
+            }
+        })
+        ->type_name("CARE");
     p->add_option("--pressure", paint.pressure,
                   "pressure for flat strokes that have none: none, speed, dwell or speed+dwell")
         ->check(CLI::IsMember({"none", "speed", "dwell", "speed+dwell"}));

@@ -50,6 +50,7 @@ struct Paint {
     std::string contact = "exact";  ///< exact | vertices
     std::string dip = "each";       ///< each | carry
     double dry = -1;                ///< seconds that the ink dries after each stroke file; 0: until dry; < 0: not at all
+    std::vector<std::string> prepare;  ///< what is done with a full brush first; see stroke::care_text
     std::string pressure = "none";  ///< none | speed | dwell | speed+dwell, for strokes without any
     double smooth = 0;              ///< strength of the hand's filter; 0: off
     double stabilise_mm = 0;        ///< length of the string; 0: off

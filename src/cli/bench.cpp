@@ -167,11 +167,19 @@ stroke::Stroke drag(const stroke::Model& model, stroke::Painting& painting, int 
     return s;
 }
 
-double stamps_per_second(const stroke::Model& model, int texels) {
+// With `wiped` of its ink gone the tuft no longer closes: every one of its bristles is drawn and
+// inked by itself.
+double stamps_per_second(const stroke::Model& model, int texels, double wiped = 0) {
     stroke::Painting painting(model);
-    const stroke::Stroke s = drag(model, painting, texels);
+    stroke::Stroke s = drag(model, painting, texels);
+    stroke::Stroke wipe{.action = stroke::Action::wipe, .extent = {.amount = wiped}};
+    wipe.trace.flat = false;
+    wipe.trace.brush = s.trace.brush;
+    wipe.trace.ink = s.trace.ink;
+    if (wiped > 0) s.settings.dip = "carry";
     std::vector<double> runs;
     for (int repeat = 0; repeat < 5; ++repeat) {
+        if (wiped > 0) painting.paint(wipe);
         const double start = cpu_seconds();
         const stroke::StrokeReport report = painting.paint(s);
         runs.push_back(static_cast<double>(report.stamps) / (cpu_seconds() - start));
@@ -327,6 +335,7 @@ int run(const Bench& a) {
                                      {"composite", square * 1e3 / (64 * 64)}};
             }
             m["stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels);
+            m["bristle_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0.75);
         }
         m["atlas_seconds"] = c.atlas_seconds;
         m["texel_map_seconds"] = c.map_seconds;
@@ -334,7 +343,7 @@ int run(const Bench& a) {
         m["first_ink_ms"] = first_ink_milliseconds(c.model, 64);
         j["models"][c.name] = m;
         if (!j.contains("microseconds_per_stamp")) {
-            for (const char* key : {"microseconds_per_stamp", "stamps_per_second", "ns_per_texel", "atlas_seconds",
+            for (const char* key : {"microseconds_per_stamp", "stamps_per_second", "bristle_stamps_per_second", "ns_per_texel", "atlas_seconds",
                                     "texel_map_seconds", "piece_graph_seconds", "first_ink_ms"})
                 j[key] = m[key];
             j["model"] = on;
@@ -361,9 +370,10 @@ int run(const Bench& a) {
                    m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
                    m["ns_per_texel"]["pigments"].get<double>());
         for (const char* texels : {"64", "128", "256"})
-            fmt::print("  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s\n", texels,
-                       m["microseconds_per_stamp"][texels].get<double>(),
-                       m["stamps_per_second"][texels].get<double>());
+            fmt::print("  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s; dry, by 500 bristles {:>6.0f}\n",
+                       texels, m["microseconds_per_stamp"][texels].get<double>(),
+                       m["stamps_per_second"][texels].get<double>(),
+                       m["bristle_stamps_per_second"][texels].get<double>());
     }
     fmt::print("peak memory {:.0f} MiB, at the end {:.0f} MiB\n", j["peak_mb"].get<double>(),
                j["resident_mb"].get<double>());

@@ -43,6 +43,8 @@ int inspect_project(const Inspect& a) {
             j["strokes"].push_back({{"id", s.id},
                                     {"action", stroke::name_of(s.action)},
                                     {"dip", s.settings.dip},
+                                    {"depth", s.extent.depth},
+                                    {"amount", s.extent.amount},
                                     {"label", s.trace.label},
                                     {"layer", s.layer},
                                     {"brush", s.trace.brush},

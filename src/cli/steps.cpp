@@ -98,6 +98,24 @@ void check_extension(const fs::path& path, const std::vector<std::string>& allow
     throw UsageError(path.string() + ": the name must end in " + fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
+namespace {
+
+/// What is done with the brush before this trace; with what the command line wants done before
+/// its first stroke.
+std::vector<stroke::Care> care_before(const Paint& a, const stroke::Trace& trace,
+                                      const std::vector<stroke::Stroke>& painted) {
+    std::vector<stroke::Care> care;
+    const bool first = std::none_of(painted.begin(), painted.end(), [&](const stroke::Stroke& s) {
+        return s.trace.brush == trace.brush;
+    });
+    if (first || a.dip == "each")
+        for (const std::string& text : a.prepare) care.push_back(stroke::care_of_text(text));
+    care.insert(care.end(), trace.before.begin(), trace.before.end());
+    return care;
+}
+
+}  // namespace
+
 std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     stroke::Settings settings;
     settings.spine = a.spine;
@@ -117,8 +135,11 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
             if (trace.brush.empty() || !a.brush.empty())
                 trace.brush = a.brush.empty() ? "wolf-medium" : a.brush;
             if (trace.ink.empty() || !a.ink.empty()) trace.ink = a.ink.empty() ? "carbon" : a.ink;
-            for (const stroke::Care& care : std::exchange(trace.before, {})) {
-                stroke::Stroke entry{.settings = settings, .action = care.action, .seconds = care.seconds};
+            // What is done with a brush shows in the stroke after it: that goes on with this brush.
+            stroke::Settings with = settings;
+            for (const stroke::Care& care : care_before(a, trace, strokes)) {
+                stroke::Stroke entry{.settings = with, .action = care.action, .seconds = care.seconds, .extent = care.extent};
+                if (stroke::has_brush(care.action)) with.dip = "carry";
                 entry.trace.flat = false;
                 entry.trace.brush = trace.brush;
                 entry.trace.ink = care.ink.empty() ? trace.ink : care.ink;
@@ -126,7 +147,8 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
                 entry.fill = care.fill;
                 strokes.push_back(std::move(entry));
             }
-            stroke::Stroke s{.settings = settings};
+            trace.before.clear();
+            stroke::Stroke s{.settings = with};
             if (trace.flat && !trace.pressed) s.settings.pressure = a.pressure;
             trace.erases = trace.erases || a.erases;
             s.trace = std::move(trace);

@@ -5,194 +5,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "atlas/log_map.h"
+#include "footprint/cuts.h"
 
 namespace tuft::footprint {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kSearchSteps = 4;  // per segment, to find where the skin meets the surface
-constexpr int kSamples = 48;     // sections taken from a stretch that touches
 constexpr int kDirections = 24;  // points of a whole section's shadow
-
-/// A section seen from the surface: everything in the stamp's (u, v) and height over it.
-struct Cut {
-    Vec2 centre{0};       ///< metres, foot of the section's centre
-    double z = 0;         ///< metres, height of the centre
-    double a = 0, b = 0;  ///< metres, semi-axes with the film
-    Vec3 e{1, 0, 0};      ///< unit axes: (u, v, height)
-    Vec3 m{0, 0, 1};
-
-    double half_height() const { return std::sqrt(a * a * e.z * e.z + b * b * m.z * m.z); }
-    double overlap() const { return half_height() - z; }
-    Vec2 at(double cos_w, double sin_w) const {
-        return centre + a * cos_w * Vec2(e) + b * sin_w * Vec2(m);
-    }
-};
-
-Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlane* plane,
-           double film) {
-    const Vec3 normal = plane ? plane->normal : frame.n;
-    const Vec3 origin = plane ? plane->origin : frame.origin;
-    Cut cut;
-    cut.z = glm::dot(s.centre - origin, normal);
-    cut.a = s.a + film;
-    cut.b = s.b + film;
-    const Vec3 foot = s.centre - cut.z * normal;
-    Frame local = frame;
-    if (plane && glm::dot(normal, frame.n) > atlas::kLogMapMinCos) {
-        cut.centre = atlas::log_map(frame, foot, normal);
-        local.n = normal;
-        local.t = parallel_transport(frame.t, frame.n, normal);
-        local.b = glm::cross(local.n, local.t);
-    } else {
-        cut.centre = Vec2(frame.to_local(foot));
-    }
-    const auto components = [&](const Vec3& v) {
-        return Vec3{glm::dot(v, local.t), glm::dot(v, local.b), glm::dot(v, local.n)};
-    };
-    cut.e = components(s.e);
-    cut.m = components(s.m);
-    return cut;
-}
-
-/// Slope of a monotone cubic at a node from the slopes on both sides (Fritsch and Butland 1984).
-double monotone_slope(double before, double after, double h_before, double h_after) {
-    if (!(before * after > 0)) return 0;
-    const double w1 = 2 * h_after + h_before, w2 = h_after + 2 * h_before;
-    return (w1 + w2) / (w1 / before + w2 / after);
-}
-
-double hermite(double p0, double p1, double m0, double m1, double h, double f) {
-    const double f2 = f * f, f3 = f2 * f;
-    return p0 + (p1 - p0) * (3 * f2 - 2 * f3) + h * (m0 * (f3 - 2 * f2 + f) + m1 * (f3 - f2));
-}
-
-/// The skin of a branch between its nodes: node parameter 0 (tip) … n − 1 (root).
-class Skin {
-  public:
-    Skin(const brush::Branch& branch, const Frame& frame, const NodePlanes* planes, double film) {
-        const auto& sections = branch.sections;
-        const auto plane = [&](std::size_t i) {
-            return planes && i < planes->size() ? &(*planes)[i] : nullptr;
-        };
-        add_cap(sections.front(), frame, plane(0), film);
-        for (std::size_t i = 0; i < sections.size(); ++i) {
-            if (i > 0) steps_.push_back(glm::length(sections[i].centre - sections[i - 1].centre));
-            nodes_.push_back(cut_of(sections[i], frame, plane(i), film));
-        }
-        for (double& h : steps_) h = std::max(h, 1e-9);
-        set_slopes();
-    }
-
-    double end() const { return nodes_.empty() ? 0 : double(nodes_.size() - 1); }
-
-    Cut at(double s) const {
-        if (nodes_.size() == 1) return nodes_[0];
-        const auto last = static_cast<int>(nodes_.size()) - 2;
-        const int i = std::clamp(static_cast<int>(s), 0, last);
-        const double f = std::clamp(s - i, 0.0, 1.0), h = steps_[i];
-        const Cut &p = nodes_[i], &q = nodes_[i + 1];
-        const Slope &g = slopes_[i], &k = slopes_[i + 1];
-        Cut cut;
-        cut.centre = {hermite(p.centre.x, q.centre.x, g.centre.x, k.centre.x, h, f),
-                      hermite(p.centre.y, q.centre.y, g.centre.y, k.centre.y, h, f)};
-        cut.z = hermite(p.z, q.z, g.z, k.z, h, f);
-        cut.a = hermite(p.a, q.a, g.a, k.a, h, f);
-        cut.b = hermite(p.b, q.b, g.b, k.b, h, f);
-        cut.e = between(p.e, q.e, f);
-        cut.m = between(p.m, q.m, f);
-        return cut;
-    }
-
-  private:
-    struct Slope {
-        Vec2 centre{0};
-        double z = 0, a = 0, b = 0;
-    };
-
-    /// Closes a blunt tip by half an ellipsoid.
-    void add_cap(const brush::Section& tip, const Frame& frame, const brush::ContactPlane* plane,
-                 double film) {
-        const double r = std::sqrt((tip.a + film) * (tip.b + film));
-        if (!(r > 1e-7)) return;
-        static constexpr std::array<double, 5> kAhead{1, 0.98, 0.9, 0.7, 0.4};
-        for (std::size_t k = 0; k < kAhead.size(); ++k) {
-            brush::Section ring = tip;
-            const double shrink = std::sqrt(1 - kAhead[k] * kAhead[k]);
-            ring.centre += kAhead[k] * r * tip.tangent;
-            nodes_.push_back(cut_of(ring, frame, plane, film));
-            nodes_.back().a *= shrink;
-            nodes_.back().b *= shrink;
-            steps_.push_back((kAhead[k] - (k + 1 < kAhead.size() ? kAhead[k + 1] : 0)) * r);
-        }
-    }
-
-    static Vec3 between(const Vec3& p, const Vec3& q, double f) {
-        const Vec3 v = (1 - f) * p + f * q;
-        const double length = glm::length(v);
-        return length > 1e-9 ? v / length : p;
-    }
-
-    void set_slopes() {
-        const std::size_t n = nodes_.size();
-        slopes_.resize(n);
-        const auto rate = [&](std::size_t i, auto get) {
-            return (get(nodes_[i + 1]) - get(nodes_[i])) / steps_[i];
-        };
-        const auto z = [](const Cut& c) { return c.z; };
-        const auto a = [](const Cut& c) { return c.a; };
-        const auto b = [](const Cut& c) { return c.b; };
-        const auto centre = [](const Cut& c) { return c.centre; };
-        for (std::size_t i = 0; i < n && n > 1; ++i) {
-            if (i == 0 || i == n - 1) {
-                const std::size_t j = i == 0 ? 0 : n - 2;
-                slopes_[i] = {rate(j, centre), rate(j, z), rate(j, a), rate(j, b)};
-                continue;
-            }
-            const double h0 = steps_[i - 1], h1 = steps_[i];
-            const auto slope = [&](auto get) {
-                return monotone_slope(rate(i - 1, get), rate(i, get), h0, h1);
-            };
-            slopes_[i] = {(h1 * rate(i - 1, centre) + h0 * rate(i, centre)) / (h0 + h1), slope(z),
-                          slope(a), slope(b)};
-        }
-    }
-
-    std::vector<Cut> nodes_;
-    std::vector<double> steps_;
-    std::vector<Slope> slopes_;
-};
-
-/// Part [begin, end] of the skin that touches the surface.
-struct Stretch {
-    double begin = 0, end = 0;
-};
-
-/// Parameter between `out` (not touching) and `in` (touching) where the skin meets the surface.
-double meeting(const Skin& skin, double out, double in) {
-    for (int i = 0; i < 26; ++i) {
-        const double middle = 0.5 * (out + in);
-        (skin.at(middle).overlap() >= 0 ? in : out) = middle;
-    }
-    return in;
-}
-
-std::vector<Stretch> touching_stretches(const Skin& skin) {
-    std::vector<Stretch> found;
-    const int n = static_cast<int>(skin.end()) * kSearchSteps;
-    bool before = false;
-    for (int i = 0; i <= n; ++i) {
-        const double s = double(i) / kSearchSteps;
-        const bool now = skin.at(s).overlap() >= 0;
-        if (now && !before)
-            found.push_back({i == 0 ? 0 : meeting(skin, double(i - 1) / kSearchSteps, s), s});
-        if (now) found.back().end = s;
-        if (!now && before) found.back().end = meeting(skin, s, double(i - 1) / kSearchSteps);
-        before = now;
-    }
-    return found;
-}
 
 const std::array<Vec2, kDirections>& directions() {
     static const auto table = [] {
@@ -317,17 +136,17 @@ std::vector<Vec2> spline_control(const std::vector<Vec2>& p) {
     return c;
 }
 
-Outline stretch_outline(const Skin& skin, const Stretch& stretch, int points) {
-    std::vector<Cut> cuts(kSamples);
-    for (int k = 0; k < kSamples; ++k) {
-        const double f = 0.5 - 0.5 * std::cos(kPi * k / (kSamples - 1));
-        cuts[k] = skin.at(stretch.begin + f * (stretch.end - stretch.begin));
-    }
+}  // namespace
+
+Outline outline_of(const Trail& trail, int points) {
+    const std::vector<Cut>& cuts = trail.cuts;
+    const std::size_t n = cuts.size();
+    points = std::max(points, 4);
     const Vec2 forward = forward_direction(cuts), left{-forward.y, forward.x};
-    const Vec2 middle = cuts[kSamples / 2].centre;
-    std::vector<std::vector<Vec2>> shadows(kSamples);
+    const Vec2 middle = cuts[n / 2].centre;
+    std::vector<std::vector<Vec2>> shadows(n);
     Vec2 front{-1e9, 0}, rear{1e9, 0};
-    for (int k = 0; k < kSamples; ++k) {
+    for (std::size_t k = 0; k < n; ++k) {
         shadow(cuts[k], shadows[k]);
         for (Vec2& q : shadows[k]) {
             q = {glm::dot(q - middle, forward), glm::dot(q - middle, left)};
@@ -337,7 +156,7 @@ Outline stretch_outline(const Skin& skin, const Stretch& stretch, int points) {
     }
     Envelope envelope(rear.x, front.x, points);
     const auto by_y = [](const Vec2& a, const Vec2& b) { return a.y < b.y; };
-    for (int k = 0; k < kSamples; ++k) {
+    for (std::size_t k = 0; k < n; ++k) {
         const auto& s = shadows[k];
         for (std::size_t i = 0; i < s.size(); ++i) envelope.add(s[i], s[(i + 1) % s.size()]);
         if (k == 0) continue;
@@ -363,8 +182,6 @@ Outline stretch_outline(const Skin& skin, const Stretch& stretch, int points) {
     outline.control = spline_control(closed);
     return outline;
 }
-
-}  // namespace
 
 std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
                                     std::span<const brush::ContactPlane> planes) {
@@ -395,14 +212,9 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
 std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame,
                              std::span<const NodePlanes> planes, const OutlineOptions& options) {
     std::vector<Outline> outlines;
-    for (std::size_t k = 0; k < tuft.branches.size(); ++k) {
-        if (tuft.branches[k].sections.size() < 2) continue;
-        const Skin skin(tuft.branches[k], frame, k < planes.size() ? &planes[k] : nullptr,
-                        std::max(options.film, 0.0));
-        for (const Stretch& stretch : touching_stretches(skin)) {
-            Outline o = stretch_outline(skin, stretch, std::max(options.points, 4));
-            if (o.left.size() >= 3) outlines.push_back(std::move(o));
-        }
+    for (const Trail& trail : trails(tuft, frame, planes, 0, options.film)) {
+        Outline o = outline_of(trail, options.points);
+        if (o.left.size() >= 3) outlines.push_back(std::move(o));
     }
     return outlines;
 }

@@ -10,9 +10,9 @@ namespace {
 
 /// Part of the supply that comes without any bending: hair wets what it touches.
 constexpr double kCapillarySupply = 0.25;
-constexpr double kFlowStep = 0.01;   // seconds
+constexpr double kFlowStep = 0.005;  // seconds
 constexpr int kNeighbours = 4;       // of a bundle that it shares ink with, at least
-constexpr std::size_t kMostSteps = 1000;  // of flow at once: 10 s, after which all is even
+constexpr std::size_t kMostSteps = 1000;  // of flow at once: 5 s, after which all is even
 
 using Content = Reservoir::Content;
 constexpr int kPlanes = Reservoir::kPlanes;

@@ -17,8 +17,8 @@ struct ReservoirLayout {
     std::vector<double> cell_ends{1};    ///< where each cell ends, part of the length from the root;
                                          ///< rising, the last one is 1
     std::vector<double> cell_rooms{1};   ///< part of a bundle's capacity in each cell; sums to one
-    double refill_time = 0.3;            ///< s in which a dry cell draws from a wet one above or below it
-    double side_time = 3;                ///< s the same between neighbouring bundles
+    double refill_time = 0.04;           ///< s in which a dry cell draws from a wet one above or below it
+    double side_time = 0.25;             ///< s the same between neighbouring bundles
     double mix_time = 30;                ///< s in which cells one above the other become one mixture
 };
 
@@ -100,7 +100,7 @@ double saturation_at(const Reservoir& tuft, const Touch& touch);
 ///     F = g (s_i − s_j),   s = content over room,
 ///
 /// of the giver's mixture, and a slow exchange of equal parts that makes mixtures alike. In
-/// steps of 10 ms on the tuft's own clock, so any division of a time gives the same within a
+/// steps of 5 ms on the tuft's own clock, so any division of a time gives the same within a
 /// step. What one cell loses another gains: the sum of each plane is kept to rounding.
 /// About 2 µs a step for 40 bundles of 4 cells.
 void flow(Reservoir& tuft, double dt);

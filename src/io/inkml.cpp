@@ -343,7 +343,7 @@ class Reader {
     }
 
     static bool is_care(std::string_view type) {
-        return type == "dip" || type == "rinse" || type == "reshape" || type == "dry" || type == "fill";
+        return type == "dip" || type == "rinse" || type == "reshape" || type == "dry" || type == "fill" || type == "wipe";
     }
 
     stroke::Fill fill_of(const xml_node& node) const {
@@ -388,6 +388,20 @@ class Reader {
         return x;
     }
 
+    stroke::Extent extent_of(const xml_node& node) const {
+        stroke::Extent extent;
+        const auto read = [&](const char* name, double& value) {
+            const std::string_view text = node.attribute(name).value();
+            if (text.empty()) return;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0 && value <= 1))
+                fail(node, std::string(name) + " of a dip or wipe is a number from 0 to 1");
+        };
+        read("depth", extent.depth);
+        read("amount", extent.amount);
+        return extent;
+    }
+
     /// What is to be done with the brush before this trace, in the order written.
     std::vector<stroke::Care> care_of(const xml_node& trace) const {
         std::vector<stroke::Care> care;
@@ -403,6 +417,7 @@ class Reader {
             if (action == stroke::Action::dip || action == stroke::Action::fill) one.ink = trimmed(text);
             if (action == stroke::Action::fill) one.fill = fill_of(node);
             if (action == stroke::Action::dry) one.seconds = seconds_of(node, trimmed(text));
+            one.extent = extent_of(node);
         }
         return care;
     }

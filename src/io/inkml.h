@@ -46,10 +46,11 @@ struct InkmlOptions {
 ///     tuft:layer    name of a layer      tuft:tool    brush | eraser
 ///
 /// and, on a `trace` only, what is done with the brush before it, in the order written:
-/// tuft:dip (an ink's name, or empty: the trace's own), tuft:rinse, tuft:reshape, tuft:dry
-/// (seconds, or empty: until all is dry), tuft:fill (an ink's name, or empty: the trace's own) with the
+/// tuft:dip (an ink's name, or empty: the trace's own), tuft:wipe, tuft:rinse,
+/// tuft:reshape, tuft:dry (seconds, or empty: until all is dry), tuft:fill (an ink's name, or empty: the trace's own) with the
 /// attributes film, region (all, part, chart), at, gradient (none, along, round), to_film, to_ink,
-/// from, to: see stroke::Fill, points "x y z" in mm.
+/// from, to: see stroke::Fill, points "x y z" in mm. A dip or wipe may have attributes depth and
+/// amount, 0–1: see stroke::Extent.
 ///
 /// Flat traces without P and F get pressure that swells in and tapers out over their length
 /// and falls with speed; P without a declared range is 0–1, or scaled by its largest value.

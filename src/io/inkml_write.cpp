@@ -115,10 +115,15 @@ void add_format(std::string& out, Kind kind) {
 void add_trace(std::string& out, const Trace& trace, Kind kind) {
     out += fmt::format("    <trace contextRef=\"#{}\">\n", name_of(kind));
     add_annotation(out, "      ", "label", trace.label);
-    for (const stroke::Care& care : trace.before)
-        out += fmt::format("      <annotation type=\"tuft:{}\"{}>{}</annotation>\n", stroke::name_of(care.action),
+    for (const stroke::Care& care : trace.before) {
+        const auto part = [](const char* name, double value) {
+            return value == 1 ? std::string() : fmt::format(" {}=\"{}\"", name, value);
+        };
+        out += fmt::format("      <annotation type=\"tuft:{}\"{}{}{}>{}</annotation>\n", stroke::name_of(care.action),
                            care.action == stroke::Action::fill ? fill_attributes(care.fill) : "",
+                           part("depth", care.extent.depth), part("amount", care.extent.amount),
                            care.seconds > 0 ? fmt::format("{}", care.seconds) : escaped(care.ink));
+    }
     if (trace.seed) add_annotation(out, "      ", "seed", std::to_string(trace.seed));
     const int decimals = trace.flat ? 3 : 7;
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "stroke/journal.h"
 
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -13,7 +14,7 @@ namespace {
 constexpr double kLongestString = 1.0;    // metres
 constexpr double kStrongestFilter = 100;
 constexpr double kLongestWait = 86400;    // seconds
-constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "fill"};
+constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "fill", "wipe"};
 
 nlohmann::json json_of(const Settings& s) {
     return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
@@ -80,6 +81,10 @@ std::string entry_json(const Stroke& entry) {
     if (entry.layer != kFirstLayer) j["layer"] = entry.layer;
     if (entry.action == Action::fill) j["fill"] = json_of(entry.fill);
     if (entry.trace.erases) j["tool"] = "eraser";
+    if (entry.extent != Extent{}) {
+        j["depth"] = entry.extent.depth;
+        j["amount"] = entry.extent.amount;
+    }
     return j.dump();
 }
 
@@ -104,19 +109,70 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     if (entry.action == Action::layer) entry.edit = layer_edit_of(j.value("edit", nlohmann::json::object()));
     if (entry.action == Action::fill) entry.fill = fill_of(j.value("fill", nlohmann::json::object()));
     const auto seconds = j.find("seconds");
-    if (seconds == j.end()) return;
-    if (!seconds->is_number()) throw Error("the seconds of a journal's entry cannot be read");
-    entry.seconds = seconds->get<double>();
+    if (seconds != j.end() && !seconds->is_number()) throw Error("the seconds of a journal's entry cannot be read");
+    entry.seconds = seconds == j.end() ? 0 : seconds->get<double>();
     check_seconds(entry.seconds);
+    entry.extent = {};
+    try {
+        entry.extent = {j.value("depth", 1.0), j.value("amount", 1.0)};
+    } catch (const nlohmann::json::exception&) {
+        throw Error("how far a brush was dipped or wiped cannot be read");
+    }
+    check_extent(entry.extent);
 }
 
 std::string name_of(Action action) { return kActions[static_cast<int>(action)]; }
 
 Action action_of(const std::string& name) {
-    for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape,
-                           Action::dry, Action::layer, Action::fill})
+    for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape, Action::dry, Action::layer,
+                           Action::fill, Action::wipe})
         if (name == name_of(a)) return a;
-    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer and fill");
+    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, fill and wipe");
+}
+
+void check_extent(const Extent& e) {
+    if (!(e.depth >= 0 && e.depth <= 1)) throw Error("the depth of a dip or wipe is a part of the tuft, 0 to 1");
+    if (!(e.amount >= 0 && e.amount <= 1)) throw Error("the amount of a dip or wipe is 0 to 1");
+}
+
+std::string care_text(const Care& care) {
+    std::string text = name_of(care.action);
+    if (!care.ink.empty()) text += ":" + care.ink;
+    const auto add = [&](const char* name, double value) {
+        if (value == 1) return;
+        char number[40];
+        *std::to_chars(number, number + sizeof number - 1, value).ptr = 0;
+        text += std::string(",") + name + "=" + number;
+    };
+    add("depth", care.extent.depth);
+    add("amount", care.extent.amount);
+    return text;
+}
+
+Care care_of_text(const std::string& text) {
+    Care care;
+    std::size_t end = std::min(text.find(','), text.size());
+    const std::string head = text.substr(0, end);
+    const std::size_t colon = std::min(head.find(':'), head.size());
+    care.action = action_of(head.substr(0, colon));
+    if (care.action == Action::stroke) throw Error("'" + text + "' is no care of a brush");
+    if (colon < head.size()) care.ink = head.substr(colon + 1);
+    if (!care.ink.empty() && care.action != Action::dip) throw Error("'" + text + "': only a dip names an ink");
+    while (end < text.size()) {
+        const std::size_t next = std::min(text.find(',', end + 1), text.size());
+        const std::string part = text.substr(end + 1, next - end - 1);
+        const std::size_t equal = part.find('=');
+        const std::string name = part.substr(0, std::min(equal, part.size()));
+        double* value = name == "depth" ? &care.extent.depth : name == "amount" ? &care.extent.amount : nullptr;
+        if (!value || equal == std::string::npos || (care.action != Action::dip && care.action != Action::wipe))
+            throw Error("'" + part + "' in '" + text + "' is neither depth=PART nor amount=PART of a dip or wipe");
+        const char* last = part.data() + part.size();
+        const auto [rest, error] = std::from_chars(part.data() + equal + 1, last, *value);
+        if (error != std::errc{} || rest != last) throw Error("'" + part + "' in '" + text + "' is no number");
+        end = next;
+    }
+    check_extent(care.extent);
+    return care;
 }
 
 bool has_brush(Action action) {

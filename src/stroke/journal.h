@@ -34,6 +34,7 @@ Settings settings_from_json(const std::string& json);
 void check_settings(const Settings& settings);
 /// Throws `Error` for a time that ink cannot dry for.
 void check_seconds(double seconds);
+void check_extent(const Extent& extent);
 
 /// An entry of the journal: a stroke, or an action between strokes. An action has no samples;
 /// it names a brush, and for a dip the ink. Drying, fills and changes of layers leave the brush
@@ -48,13 +49,14 @@ struct Stroke {
     std::uint32_t layer = kFirstLayer;  ///< that is painted on
     LayerEdit edit = {};      ///< of `Action::layer`
     Fill fill = {};           ///< of `Action::fill`, which names its first ink as strokes do
+    Extent extent = {};       ///< of a dip or a wipe
 };
 
-/// The settings of an entry as above, with the entry's action and seconds as further keys.
+/// The settings of an entry as above, with the entry's action, seconds and extent as more keys.
 std::string entry_json(const Stroke& entry);
 void read_entry_json(const std::string& json, Stroke& entry);
 
-/// "stroke", "dip", "rinse", "reshape", "dry", "layer", "fill"; and back, throwing `Error` for any other word.
+/// "stroke", "dip", "rinse", "reshape", "dry", "layer", "fill", "wipe"; and back, throwing `Error` for any other word.
 std::string name_of(Action action);
 Action action_of(const std::string& name);
 

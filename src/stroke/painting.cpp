@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "contact/contact.h"
-#include "footprint/outline.h"
+#include "footprint/hair.h"
 #include "ink/drying.h"
 #include "stroke/hand.h"
 #include "stroke/resample.h"
@@ -17,6 +17,12 @@ constexpr std::size_t kPosesPerReport = 16;
 // Bending moment of a firm press over B0/L: what a hand reaches at the working depth.
 constexpr double kFirmPress = 0.1;
 constexpr double kForceTime = 5e-3;  // seconds of the low-pass on the force to the hand
+constexpr double kSpeedLength = 2e-3;   // metres of travel over which the hand's speed is taken
+constexpr double kSkinFilm = 0.1e-3;    // metres of ink round wet hair
+// Metres of ink under hair that brings just what closes its gaps: twice the grain of rough
+// paper, three times that of bisque.
+constexpr double kGrainFilm = 30e-6;
+constexpr double kSplays = 0.4;         // lack of wetness at which no water holds the tip together
 
 footprint::StampOptions stamp_options(const Settings& settings) {
     footprint::StampOptions o;
@@ -29,6 +35,13 @@ double wetness_of(const ink::Reservoir& reservoir) {
     constexpr double kWet = 0.25;
     const double x = std::clamp(reservoir.fullness() / kWet, 0.0, 1.0);
     return x * (2 - x);
+}
+
+ink::Reservoir empty_reservoir(const brush::Tuft& tuft) {
+    brush::HairCells cells = brush::hair_cells(tuft.preset);
+    return ink::make_reservoir(tuft.preset.capacity * 1e6, {.bundles = tuft.bundles.place,
+                                                           .cell_ends = std::move(cells.ends),
+                                                           .cell_rooms = std::move(cells.rooms)});
 }
 
 double footprint_area(const footprint::Footprint& f) {
@@ -56,19 +69,24 @@ struct Painting::Hand {
     StrokeReport report;
     brush::TuftState state;
     double last_time = 0;
+    double speed = 0, travel = 0;  // m/s; metres drawn so far
+    ink::Touch touched;            // by the last stamp
+    ink::Touch touch;              // of the stamps since the last flush, summed
+    double closed_area = 0;        // m², of the last stamp with its gaps; 0: it has none
+    double parted = 0;             // travel up to which bundles have parted
     bool moved = false, was_touching = false;
     Vec3 force{0};  // to the hand
     Vec3 last_position{0};
 
     Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& model, ink::Canvas& canvas,
-         double step_, double texel)
+         const ink::Substrate& substrate, double step_, double texel)
         : stroke(std::move(s)),
           tuft(std::move(held.tuft)),
           ink(i),
           reservoir(held.reservoir),
           dipped(std::move(held.dipped)),
           resampler({.step = step_, .lever = tuft.preset.length}),
-          stamper(model, canvas, stamp_options(stroke.settings)),
+          stamper(model, canvas, stamp_options(stroke.settings), substrate),
           step(step_),
           cell(0.5 * texel) {
         contact_options.method = stroke.settings.contact == "vertices" ? contact::Method::vertices
@@ -78,10 +96,72 @@ struct Painting::Hand {
 
     void flush() {
         const double given = stamper.flush();
-        ink::take(reservoir, std::min(given, reservoir.remaining()));
+        float sum = 0;
+        for (const float t : touch) sum += t;
+        for (float& t : touch) t /= sum;
+        ink::take(reservoir, given, touch);
+        touch.clear();
         report.ink_given += given;
     }
+
+    void move_on(const brush::Pose& pose, double dt) {
+        const double way = glm::length(pose.position - last_position);
+        travel += way;
+        if (dt > 0) speed += -std::expm1(-way / kSpeedLength) * (way / dt - speed);
+    }
+
+    /// k = |M| / M_max of the ink's laws.
+    double stress(const contact::Result& contact) const {
+        const double limit = kFirmPress * tuft.preset.stiffness / tuft.preset.length;
+        return std::min(1.0, std::abs(contact.tuft.root_moment) / limit);
+    }
+
+    /// The hair on the surface: `touched`, and the footprint with the gaps that lack of ink leaves.
+    Stamp make_stamp(const contact::Result& contact, double dt);
 };
+
+Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
+    const int branches = static_cast<int>(contact.tuft.branches.size());
+    std::vector<footprint::Trail> trails = footprint::trails(
+        contact.tuft, contact.frame, contact.branch_planes, tuft.preset.length, kSkinFilm);
+    touched = footprint::touched_cells(trails, tuft.bundles, branches, reservoir.layout.cell_ends);
+    touch.resize(touched.size(), 0);
+    for (std::size_t i = 0; i < touch.size(); ++i) touch[i] += touched[i];
+
+    // Saturation and film of each bundle along what touches of the tuft.
+    const std::size_t n = reservoir.n_bundles(), cells = reservoir.n_cells();
+    std::vector<double> saturation(n, 0), wet(n), depth(cells, 0);
+    for (std::size_t i = 0; i < touched.size(); ++i) depth[i % cells] += static_cast<double>(touched[i]);
+    double least = 1e9, mean = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t c = 0; c < cells; ++c) saturation[k] += depth[c] * reservoir.saturation(k * cells + c);
+        wet[k] = footprint::wetness_of_bundle(saturation[k], tuft.bundles.holds[k], speed);
+        mean += wet[k] / static_cast<double>(n);
+        least = std::min(least, wet[k]);
+    }
+    brush::part_bundles(tuft.bundles, tuft.preset, stress(contact), saturation, travel - parted, dt);
+    parted = travel;
+
+    Stamp stamp;
+    const bool closed = least >= 1;
+    closed_area = 0;
+    if (!closed) footprint::splay(trails, std::clamp((1 - mean) / kSplays, 0.0, 1.0));
+    std::vector<footprint::Outline> outlines;
+    for (const footprint::Trail& trail : trails) {
+        footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points);
+        if (o.left.size() >= 3) outlines.push_back(std::move(o));
+    }
+    if (closed) {
+        stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, cell);
+    } else {
+        footprint::HairMarks marks = footprint::hair_marks(trails, outlines, tuft.bundles, branches,
+                                                           {wet, travel}, contact.frame, contact.triangle, cell);
+        stamp.footprint = std::move(marks.footprint);
+        stamp.grain_film = kGrainFilm * mean;
+        closed_area = marks.closed_area;
+    }
+    return stamp;
+}
 
 Painting::Painting(const Model& model, const PaintingOptions& options)
     : model_(&model),
@@ -132,7 +212,8 @@ BrushInHand Painting::take_up(const Stroke& entry) {
     if (entry.settings.spine == "table") preset.spine = brush::SpineMethod::table;
     if (entry.trace.erases) {
         // A clean brush of its own, full of water: its hair lies together, it leaves nothing.
-        BrushInHand clean{brush::make_tuft(preset), ink::make_reservoir(preset.capacity * 1e6), {}, {}};
+        BrushInHand clean{brush::make_tuft(preset), {}, {}, {}};
+        clean.reservoir = empty_reservoir(clean.tuft);
         ink::dip(clean.reservoir, ink::Mix{});
         return clean;
     }
@@ -140,7 +221,8 @@ BrushInHand Painting::take_up(const Stroke& entry) {
     const ink::Mix mix = mix_of(named);
     const BrushInHand* last = entry.settings.dip == "carry" ? held(entry.trace.brush) : nullptr;
     if (!last || last->tuft.preset.spine != preset.spine) {
-        BrushInHand fresh{brush::make_tuft(preset), ink::make_reservoir(preset.capacity * 1e6), named, named};
+        BrushInHand fresh{brush::make_tuft(preset, entry.trace.seed), {}, named, named};
+        fresh.reservoir = empty_reservoir(fresh.tuft);
         ink::dip(fresh.reservoir, mix);
         return fresh;
     }
@@ -188,9 +270,11 @@ void Painting::act(const Stroke& entry) {
     BrushInHand brush = take_up(entry);
     switch (entry.action) {
         case Action::dip:
-            ink::dip(brush.reservoir, mix_of(entry.trace.ink));
+            ink::dip(brush.reservoir, mix_of(entry.trace.ink),
+                     {.depth = entry.extent.depth, .level = entry.extent.amount});
             brush.dipped = entry.trace.ink;
             break;
+        case Action::wipe: ink::wipe(brush.reservoir, entry.extent.amount, entry.extent.depth); break;
         case Action::rinse:
             ink::rinse(brush.reservoir);
             brush::reset(brush.tuft);
@@ -231,7 +315,8 @@ void Painting::begin_hand(Stroke stroke) {
     const double texel = model_->texels.texel_size;
     const double spacing = stroke.settings.spacing * texel;
     ink::Canvas& canvas = this->canvas(stroke.layer);
-    hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, *model_, canvas, spacing, texel);
+    hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, *model_, canvas, substrate_,
+                                   spacing, texel);
 }
 
 void Painting::extend(std::span<const brush::Pose> poses) {
@@ -258,6 +343,7 @@ void Painting::draw_poses() {
         h.tuft.ink_left = h.reservoir.fullness();
         h.tuft.wetness = wetness_of(h.reservoir);
         const double dt = h.moved ? pose.time - h.last_time : 0.0;
+        ink::flow(h.reservoir, dt);
         // A hair that painted before comes through the air, as it sprang back.
         if (!h.moved && h.tuft.posed) brush::step(h.tuft, pose, {}, 0);
         contact::Result contact =
@@ -277,10 +363,8 @@ void Painting::draw_poses() {
         }
         if (!contact.tuft.converged) ++h.report.unconverged;
 
-        const std::vector<footprint::Outline> outlines =
-            footprint::outline(contact.tuft, contact.frame, contact.branch_planes);
-        Stamp stamp;
-        stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, h.cell);
+        if (h.was_touching) h.move_on(pose, dt);
+        Stamp stamp = h.make_stamp(contact, dt);
         if (stamp.footprint.empty()) {
             h.was_touching = false;
             continue;
@@ -294,12 +378,12 @@ void Painting::draw_poses() {
         h.was_touching = true;
         h.last_position = pose.position;
         const double area = footprint_area(stamp.footprint);
-        const double moment_limit = kFirmPress * h.tuft.preset.stiffness / h.tuft.preset.length;
         const ink::StampContact touch{
-            .moment_factor = std::min(1.0, std::abs(contact.tuft.root_moment) / moment_limit),
-            .width = std::sqrt(area),
+            .moment_factor = h.stress(contact),
+            .width = h.closed_area > 0 ? area / std::sqrt(h.closed_area) : std::sqrt(area),
             // A batch shares what is left.
-            .area = area * static_cast<double>(Stamper::kBatch)};
+            .area = area * static_cast<double>(Stamper::kBatch),
+            .touch = h.touched};
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, substrate_);
         stamp.ink.capacity = substrate_.capacity;
         stamp.ds = h.step;

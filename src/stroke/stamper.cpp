@@ -4,12 +4,30 @@
 #include <array>
 
 #include "core/parallel.h"
+#include "ink/relief.h"
 
 namespace tuft::stroke {
 
-Stamper::Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options)
-    : model_(model), canvas_(canvas), options_(options), scratch_(kBatch), jobs_(kBatch) {
+Stamper::Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options,
+                 const ink::Substrate& substrate)
+    : model_(model),
+      canvas_(canvas),
+      options_(options),
+      scratch_(kBatch),
+      jobs_(kBatch),
+      grain_rms_(substrate.relief),
+      grain_length_(substrate.relief_length) {
     batch_.reserve(kBatch);
+}
+
+// Called by the one thread that works on the slot.
+const Stamper::Grain& Stamper::grain(std::uint32_t slot) {
+    if (!grain_[slot]) {
+        grain_[slot] = std::make_unique<Grain>();
+        atlas::TexelShape room;
+        ink::relief_of_tile(atlas::shape_of(model_.texels, slot, room), static_cast<double>(grain_length_), *grain_[slot]);
+    }
+    return *grain_[slot];
 }
 
 bool Stamper::add(Stamp stamp) {
@@ -53,6 +71,8 @@ double Stamper::flush() {
         const std::uint32_t slot = order[runs[r]].slot;
         if (!starts_.contains(slot)) starts_.emplace(slot, ink::erase_start(canvas_, slot));
     }
+    if (grain_.empty() && std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.grain_film > 0; }))
+        grain_.resize(model_.texels.n_slots());
     std::vector<double> given(order.size(), 0.0);
     std::vector<ink::Amounts> erased(erases ? order.size() : 0);
     parallel_for(runs.size() - 1, 4, [&](std::size_t begin, std::size_t end) {
@@ -73,6 +93,9 @@ double Stamper::flush() {
                                            starts_.at(job.slot), {.strength = stamp.erases});
                     continue;
                 }
+                if (stamp.grain_film > 0)
+                    ink::expose_relief(exposure, grain(slot), grain_rms_,
+                                       static_cast<float>(stamp.grain_film));
                 given[k] = ink::deposit(canvas_, slot, exposure, tile.area, stamp.ds, stamp.ink);
             }
         }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -17,6 +19,7 @@ struct Stamp {
     ink::DepositParams ink;
     double ds = 0;               ///< metres of travel it stands for
     double erases = 0;           ///< strength of an eraser, which takes ink instead; 0: it is none
+    double grain_film = 0;       ///< metres of ink under the hair, to fill the surface's grain; 0: it does
 };
 
 /// Puts stamps onto the texels, a batch at a time: tiles in parallel, on each tile the
@@ -26,7 +29,8 @@ class Stamper {
   public:
     static constexpr std::size_t kBatch = 8;
 
-    Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options);
+    Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options,
+            const ink::Substrate& substrate);
 
     /// Takes a stamp; true when the batch is full and must be flushed.
     bool add(Stamp stamp);
@@ -40,6 +44,9 @@ class Stamper {
     std::vector<ink::TileSnapshot> take_before();
 
   private:
+    using Grain = std::array<float, atlas::kTileTexels>;
+    const Grain& grain(std::uint32_t slot);
+
     const Model& model_;
     ink::Canvas& canvas_;
     footprint::StampOptions options_;
@@ -47,6 +54,8 @@ class Stamper {
     std::vector<footprint::PlanScratch> scratch_;  ///< one per place in the batch
     std::vector<footprint::StampJobs> jobs_;       ///< likewise; their memory is used again
     bool piecewise_ = false;
+    float grain_rms_ = 0, grain_length_ = 0;       ///< metres, of the substrate
+    std::vector<std::unique_ptr<Grain>> grain_;    ///< by slot, made when a dry hair comes there
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
     std::unordered_map<std::uint32_t, ink::EraseStart> starts_;  ///< of tiles an eraser came to
     ink::Amounts erased_;

@@ -44,6 +44,16 @@ enum class Action {
     dry,      ///< waits while the ink on the model flows and dries
     layer,    ///< changes the table of layers; no brush has a part in it
     fill,     ///< lays ink over a whole part of the model; likewise
+    wipe,     ///< draws it over a rag: part of its ink goes
+};
+
+/// How far a brush is dipped, or wiped.
+struct Extent {
+    double depth = 1;    ///< part of the tuft's length, from the tip, 0–1
+    double amount = 1;   ///< dip: part of its room up to which hair is filled; wipe: part of its ink
+                         ///< that goes; 0–1
+
+    bool operator==(const Extent&) const = default;
 };
 
 /// Something done with the brush between two strokes.
@@ -52,7 +62,13 @@ struct Care {
     std::string ink;   ///< to dip into; empty: the ink of the stroke after it
     double seconds = 0;  ///< to dry for; 0: until all is dry
     Fill fill = {};
+    Extent extent = {};
 };
+
+/// A care in words, "ACTION[:INK][,depth=PART][,amount=PART]": "dip:cinnabar,depth=0.2",
+/// "wipe,amount=0.6"; and back, throwing `Error` for anything else.
+std::string care_text(const Care& care);
+Care care_of_text(const std::string& text);
 
 /// One stroke from touch to lift.
 struct Trace {

@@ -33,7 +33,8 @@ Texels random_texels(std::uint64_t seed, double lo, double hi) {
 }
 
 ReservoirLayout layout_of(int bundles) {
-    ReservoirLayout l{.bundles = {}, .cell_ends = {0.4, 0.7, 0.9, 1}, .cell_rooms = {0.5, 0.3, 0.15, 0.05}};
+    ReservoirLayout l{.bundles = {}, .cell_ends = {0.4, 0.7, 0.9, 1}, .cell_rooms = {0.5, 0.3, 0.15, 0.05},
+                      .refill_time = 0.3, .side_time = 3};
     for (int k = 0; k < bundles; ++k) {
         const double r = std::sqrt((k + 0.5) / bundles), w = 2.4 * k;
         l.bundles.push_back({r * std::cos(w), r * std::sin(w)});
@@ -231,7 +232,7 @@ TEST(Reservoir, FlowDoesNotDependOnHowTimeIsDivided) {
 
 TEST(Reservoir, HalfTheStepMakesHalfTheError) {
     // Against the closed form of two cells: the difference falls by e^{−t (g/r1 + g/r2)}.
-    ReservoirLayout l{.bundles = {Vec2{0}}, .cell_ends = {0.5, 1}, .cell_rooms = {0.8, 0.2}, .mix_time = 1e9};
+    ReservoirLayout l{.bundles = {Vec2{0}}, .cell_ends = {0.5, 1}, .cell_rooms = {0.8, 0.2}, .refill_time = 0.3, .mix_time = 1e9};
     Reservoir tuft = make_reservoir(0.5, l);
     dip(tuft, kBlack, {.depth = 0.5});
     flow(tuft, 0.3);

@@ -228,7 +228,7 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
         "<trace><annotation type=\"tuft:rinse\"/><annotation type=\"tuft:dip\"> cinnabar </annotation>"
         "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dry\"/>"
         "<annotation type=\"tuft:dry\"> 2.5 </annotation>0 0, 1 1</trace>"
-        "<trace><annotation type=\"tuft:dip\"/>0 0, 1 1</trace><trace>0 0, 1 1</trace></traceGroup></ink>";
+        "<trace><annotation type=\"tuft:dip\" depth=\"0.2\"/><annotation type=\"tuft:wipe\" amount=\"0.3\"/>0 0, 1 1</trace><trace>0 0, 1 1</trace></traceGroup></ink>";
     const auto traces = parse_inkml(text, "care.inkml");
     ASSERT_EQ(traces.size(), 3u);
     ASSERT_EQ(traces[0].before.size(), 5u);
@@ -239,8 +239,12 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
     EXPECT_EQ(traces[0].before[3].action, stroke::Action::dry);
     EXPECT_EQ(traces[0].before[3].seconds, 0);
     EXPECT_EQ(traces[0].before[4].seconds, 2.5);
-    ASSERT_EQ(traces[1].before.size(), 1u);
+    EXPECT_EQ(traces[0].before[1].extent, stroke::Extent{});
+    ASSERT_EQ(traces[1].before.size(), 2u);
     EXPECT_EQ(traces[1].before[0].ink, "");
+    EXPECT_EQ(traces[1].before[0].extent, (stroke::Extent{.depth = 0.2}));
+    EXPECT_EQ(traces[1].before[1].action, stroke::Action::wipe);
+    EXPECT_EQ(traces[1].before[1].extent, (stroke::Extent{.amount = 0.3}));
     EXPECT_TRUE(traces[2].before.empty());
     EXPECT_FALSE(traces[0].pressed) << "no P and no F";
 
@@ -250,6 +254,7 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
         for (std::size_t k = 0; k < traces[i].before.size(); ++k) {
             EXPECT_EQ(back[i].before[k].action, traces[i].before[k].action);
             EXPECT_EQ(back[i].before[k].ink, traces[i].before[k].ink);
+            EXPECT_EQ(back[i].before[k].extent, traces[i].before[k].extent);
             EXPECT_EQ(back[i].before[k].seconds, traces[i].before[k].seconds);
         }
     }
@@ -257,6 +262,9 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
         EXPECT_THROW(parse_inkml(std::string("<ink><trace><annotation type=\"tuft:dry\">") + bad +
                                      "</annotation>0 0, 1 1</trace></ink>", "bad.inkml"),
                      Error);
+    EXPECT_THROW(parse_inkml("<ink><trace><annotation type=\"tuft:wipe\" amount=\"1.5\"/>0 0, 1 1</trace></ink>",
+                             "amount.inkml"),
+                 Error);
     // For a whole group it would say nothing about when.
     EXPECT_THROW(parse_inkml("<ink><traceGroup><annotation type=\"tuft:dip\"/><trace>0 0</trace></traceGroup></ink>",
                              "group.inkml"),

@@ -249,13 +249,14 @@ TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
     entries[0].settings.dip = "carry";
     entries[0].settings.stabilise = 1.0 / 3;
     entries[0].settings.pressure = "speed";
-    for (const auto action : {stroke::Action::rinse, stroke::Action::dip, stroke::Action::reshape}) {
+    for (const auto action : {stroke::Action::rinse, stroke::Action::dip, stroke::Action::reshape, stroke::Action::wipe}) {
         stroke::Stroke entry;
         entry.id = entries.size() + 1;
         entry.action = action;
         entry.trace.brush = "wolf-small";
         entry.trace.ink = "cinnabar";
         entry.settings.dip = "carry";
+        if (action == stroke::Action::wipe) entry.extent = {.depth = 1.0 / 3, .amount = 0.1};
         entries.push_back(entry);
     }
     entries[2].action = stroke::Action::dry;
@@ -270,6 +271,7 @@ TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
         expect_equal(back[i], entries[i]);
         EXPECT_EQ(back[i].action, entries[i].action);
         EXPECT_EQ(back[i].seconds, entries[i].seconds);
+        EXPECT_EQ(back[i].extent, entries[i].extent);
         EXPECT_EQ(back[i].settings, entries[i].settings);
     }
 }

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "brush/tuft_state.h"
+#include "footprint/outline.h"
+
+/// The tuft's sections seen from the surface they touch: what outlines and hair are made of.
+namespace tuft::footprint {
+
+/// A section seen from the surface: everything in the stamp's (u, v) and height over it.
+struct Cut {
+    Vec2 centre{0};       ///< metres, foot of the section's centre
+    double z = 0;         ///< metres, height of the centre
+    double a = 0, b = 0;  ///< metres, semi-axes with the film
+    Vec3 e{1, 0, 0};      ///< unit axes: (u, v, height)
+    Vec3 m{0, 0, 1};
+
+    double half_height() const { return std::sqrt(a * a * e.z * e.z + b * b * m.z * m.z); }
+    double overlap() const { return half_height() - z; }
+    /// Point of the ellipse at ω, and of its inside.
+    Vec2 at(double cos_w, double sin_w) const {
+        return centre + a * cos_w * Vec2(e) + b * sin_w * Vec2(m);
+    }
+};
+
+/// A stretch of one branch that touches the surface, from its tip side to its root side.
+struct Trail {
+    int branch = 0;             ///< of the tuft
+    std::vector<Cut> cuts;      ///< close together at both ends
+    std::vector<double> along;  ///< place of each cut along the hair, part of the length from the root
+    std::size_t trunk = 0;      ///< from this cut on it is the whole tuft, not the sub-spine
+};
+
+/// The stretches that touch, each cut into sections; see `outline` for the arguments.
+/// `length` is the tuft's, metres.
+std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame,
+                          std::span<const NodePlanes> planes, double length, double film);
+
+/// Spreads a tuft that no water holds to a point: towards the tip, hair keeps the width it has
+/// where it is widest, as far as `amount` (0–1) goes, and lies as much flatter.
+void splay(std::vector<Trail>& trails, double amount);
+
+/// The outline of a trail; without points when it is too small for one.
+Outline outline_of(const Trail& trail, int points);
+
+}  // namespace tuft::footprint

@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "sheet.h"
+
+/// Bundles with ink of their own on the whole path: flying white.
+namespace tuft::stroke {
+namespace {
+
+const std::string kBrush = "mixed-small";
+
+Stroke wipe(double amount, std::uint64_t seed) {
+    Stroke s{.action = Action::wipe, .extent = {.amount = amount}};
+    s.trace.flat = false;
+    s.trace.brush = kBrush;
+    s.trace.ink = "carbon";
+    s.trace.seed = seed;
+    return s;
+}
+
+Stroke drag(std::uint64_t seed, double speed = 0.06, int rate = 200) {
+    Stroke s = line(kBrush, 5e-3, {}, speed, rate);
+    s.trace.seed = seed;
+    s.settings.spacing = 2;  // coarse is enough here, and quick
+    return s;
+}
+
+/// A brush wiped to `left` of its ink draws one stroke.
+Painting dry_stroke(const Model& model, double left, std::uint64_t seed, const PaintingOptions& options = {}, Stroke s = {}) {
+    Painting painting(model, options);
+    if (s.trace.samples.empty()) s = drag(seed);
+    if (left < 1) {
+        painting.paint(wipe(1 - left, seed));
+        s.settings.dip = "carry";
+    }
+    painting.paint(s);
+    return painting;
+}
+
+/// Inked area between two places along the stroke, m².
+double covered(const Painting& p, double from = -1, double to = 1) {
+    double sum = 0;
+    const atlas::TexelMap& map = p.model().texels;
+    for (const std::uint32_t slot : p.canvas().touched_slots()) {
+        const ink::Plane* plane = p.canvas().plane(slot, 0);
+        for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
+            const auto x = static_cast<double>(map.position(slot, t).x);
+            if (x >= from && x < to && map.tiles[slot].area[t] > 0)
+                sum += static_cast<double>(std::min(1.0f, (*plane)[t]) * map.tiles[slot].area[t]);
+        }
+    }
+    return sum;
+}
+
+/// Of the area that either covers, the part that only one does.
+double apart(const Painting& a, const Painting& b) {
+    double difference = 0, all = 0;
+    const atlas::TexelMap& map = a.model().texels;
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        const ink::Plane *p = a.canvas().plane(slot, 0), *q = b.canvas().plane(slot, 0);
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            const double x = p ? std::min(1.0f, (*p)[t]) : 0, y = q ? std::min(1.0f, (*q)[t]) : 0;
+            difference += std::abs(x - y);
+            all += std::max(x, y);
+        }
+    }
+    return difference / all;
+}
+
+TEST(DryBrush, AFullOneClosesWhateverItsHair) {
+    const Model model = sheet();
+    const Painting a = dry_stroke(model, 1, 1), b = dry_stroke(model, 1, 2);
+    // The shape is the outline's; only how much each bundle gives differs, and so the film by a little.
+    EXPECT_LT(apart(a, b), 0.005);
+}
+
+TEST(DryBrush, LessInkLeavesMoreWhite) {
+    const Model model = sheet();
+    double before = covered(dry_stroke(model, 1, 3));
+    const double full = before;
+    for (const double left : {0.3, 0.15, 0.05}) {
+        const double now = covered(dry_stroke(model, left, 3));
+        EXPECT_LT(now, 0.9 * before) << left;
+        before = now;
+    }
+    EXPECT_LT(before, 0.35 * full);
+    EXPECT_GT(before, 0);
+}
+
+TEST(DryBrush, AnotherSeedOtherStreaksTheSameSeedTheSameBits) {
+    const Model model = sheet();
+    const Painting a = dry_stroke(model, 0.15, 1), b = dry_stroke(model, 0.15, 1), c = dry_stroke(model, 0.15, 2);
+    EXPECT_EQ(a.canvas().hash(), b.canvas().hash());
+    EXPECT_GT(apart(a, c), 0.3);
+    EXPECT_NEAR(covered(a) / covered(c), 1, 0.4) << "as dry as the other";
+}
+
+TEST(DryBrush, ThreadsDoNotChangeABit) {
+    const Model model = sheet();
+    set_thread_count(1);
+    const std::uint64_t one = dry_stroke(model, 0.2, 4, {.substrate = "rice-paper"}).canvas().hash();
+    set_thread_count(3);
+    EXPECT_EQ(dry_stroke(model, 0.2, 4, {.substrate = "rice-paper"}).canvas().hash(), one);
+    set_thread_count(0);
+}
+
+TEST(DryBrush, StreaksLieWhereTheyLieAtAnySamplingRate) {
+    const Model model = sheet();
+    const Painting slow = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 100)), fast = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 800));
+    // Another seed differs in more than 0.3; the corners of the press are rounded by a sample.
+    EXPECT_LT(apart(slow, fast), 0.1);
+}
+
+TEST(DryBrush, TuftAndTexelsKeepTheInk) {
+    const Model model = sheet();
+    Painting painting(model);
+    painting.paint(wipe(0.8, 6));
+    const double start = painting.held(kBrush)->reservoir.remaining();
+    Stroke s = drag(6);
+    s.settings.dip = "carry";
+    const StrokeReport r = painting.paint(s);
+    EXPECT_NEAR(r.ink_given + painting.held(kBrush)->reservoir.remaining(), start, 1e-12 * start);
+    // Texels are floats: 1e-6 of the sum, for each pigment by itself.
+    EXPECT_NEAR(painting.canvas().total(model.texels, 0), r.ink_given, 1e-6 * start);
+}
+
+TEST(DryBrush, AStrokeRunsDryByItself) {
+    const Model model = sheet();
+    Painting painting(model);
+    brush::Preset small = painting.brush(kBrush);
+    small.capacity *= 0.006;  // about what the stroke asks for
+    painting.use_brush(small);
+    painting.paint(drag(7));
+    double before = 1e9;
+    // Quarters of the stroke's even part; the rolling of single bristles is smaller than what runs out.
+    for (double x = -0.009; x < 0.0085; x += 0.006) {
+        const double now = covered(painting, x, x + 0.006);
+        EXPECT_LT(now, before) << x;
+        before = now;
+    }
+    EXPECT_LT(before, 0.9 * covered(painting, -0.009, -0.003));
+}
+
+TEST(DryBrush, FastHairIsDrierAndRoughGroundShowsItsGrain) {
+    const Model model = sheet();
+    const double slow = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.02))), fast = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.5)));
+    EXPECT_LT(fast, 0.97 * slow);
+    const double glaze = covered(dry_stroke(model, 0.12, 8)), paper = covered(dry_stroke(model, 0.12, 8, {.substrate = "rice-paper"}));
+    EXPECT_LT(paper, 0.9 * glaze);
+    const double full_glaze = covered(dry_stroke(model, 1, 8)), full_paper = covered(dry_stroke(model, 1, 8, {.substrate = "rice-paper"}));
+    EXPECT_NEAR(full_paper / full_glaze, 1, 1e-3) << "a full tuft fills it";
+}
+
+TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
+    const Model model = sheet();
+    Painting painting(model);
+    Stroke rinse = wipe(1, 9);
+    painting.paint(rinse);
+    Stroke dip = wipe(1, 9);
+    dip.action = Action::dip;
+    dip.settings.dip = "carry";
+    dip.trace.ink = "cinnabar";
+    dip.extent = {.depth = 1, .amount = 0.7};
+    painting.paint(dip);
+    EXPECT_NEAR(painting.held(kBrush)->reservoir.fullness(), 0.7, 1e-12);
+    dip.trace.ink = "carbon";
+    dip.extent = {.depth = 0.15, .amount = 1};
+    painting.paint(dip);
+    const ink::Reservoir& tuft = painting.held(kBrush)->reservoir;
+    const std::size_t cells = tuft.n_cells();
+    EXPECT_GT(tuft.saturation(cells - 1), 0.99) << "the tip is filled up";
+    EXPECT_NEAR(tuft.saturation(0), 0.7, 1e-12) << "the belly is as it was";
+    Stroke s = drag(9);
+    s.trace.ink = "cinnabar";
+    s.settings.dip = "carry";
+    painting.paint(s);
+    Painting again(model);
+    again.replay(painting.journal().strokes());
+    EXPECT_EQ(again.canvas().hash(), painting.canvas().hash());
+    EXPECT_EQ(again.held(kBrush)->reservoir.remaining(), painting.held(kBrush)->reservoir.remaining());
+}
+
+}  // namespace
+}  // namespace tuft::stroke
