@@ -26,5 +26,11 @@ paint bowl-outside bowl man-bu-ren-sheng "" --view 0,12
 paint plate plate plate-ornament "" --view 0,60
 paint car car car-pinstripe "--substrate clay" --view 25,12
 
+say "stroke sheet"
+"$tuft" paint models/sheet.ply --strokes samples/strokes/stroke-sheet.inkml --atlas-size 4096 \
+  --project "$out/stroke-sheet.tuft"
+mkdir -p "$out/stroke-sheet"
+"$tuft" export "$out/stroke-sheet.tuft" -o "$out/stroke-sheet/base-colour.png"
+
 say "done: models (.glb), projects (.tuft) and pictures (.png) are in $out/"
 ls -1 "$out"
