@@ -9,8 +9,8 @@ namespace tuft::stroke {
 StrokeReport Painting::lay_fill(const Stroke& entry) {
     check_fill(entry.fill);
     const Fill& fill = entry.fill;
-    const ink::Mix first = ink::mix_of(canvas_, ink(entry.trace.ink));
-    const ink::Mix second = fill.to_ink.empty() ? first : ink::mix_of(canvas_, ink(fill.to_ink));
+    const ink::Mix first = mix_of(entry.trace.ink);
+    const ink::Mix second = fill.to_ink.empty() ? first : mix_of(fill.to_ink);
     const std::vector<std::uint8_t> charts = charts_of(fill, *model_);
     ink::Canvas& canvas = this->canvas(entry.layer);
     const atlas::TexelMap& map = model_->texels;
