@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 . .ci/setup.sh
 install_missing "${packages_build[@]}"
 cmake_options=()
-build tuft tuft_images
+build tuft tuft_images tuft-chart
 tuft=build/release/src/cli/tuft
 out=${1:-results}
 mkdir -p "$out"
@@ -31,6 +31,9 @@ say "stroke sheet"
   --project "$out/stroke-sheet.tuft"
 mkdir -p "$out/stroke-sheet"
 "$tuft" export "$out/stroke-sheet.tuft" -o "$out/stroke-sheet/base-colour.png"
+
+say "colour chart"
+build/release/samples/chart/tuft-chart "$out/colour-chart.png"
 
 say "done: models (.glb), projects (.tuft) and pictures (.png) are in $out/"
 ls -1 "$out"
