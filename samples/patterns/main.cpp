@@ -1,0 +1,178 @@
+// Three things that cross many seams, each drawn twice: as it is, and with the seams of the
+// atlas in red. Nobody should be able to tell from the first where they are.
+//   tuft-patterns FOLDER [car | bowl | plate]
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "atlas/seams.h"
+#include "core/error.h"
+#include "core/files.h"
+#include "core/units.h"
+#include "io/image.h"
+#include "io/read_model.h"
+#include "render/picture.h"
+#include "roller.h"
+#include "stroke/painting.h"
+
+namespace tuft::samples {
+namespace {
+
+using std::numbers::pi;
+
+stroke::Model load(const char* name) {
+    stroke::ModelOptions options;
+    options.unwrap.size = 4096;
+    return stroke::prepare_model(
+        io::read_model(data_folder() / "models" / (std::string(name) + ".ply")), options);
+}
+
+void draw_seams(const stroke::Model& model, ink::AtlasMap<float>& colour) {
+    std::vector<atlas::SeamSample> samples;
+    for (const atlas::SeamEdge& edge : atlas::find_seams(*model.mesh, model.atlas))
+        atlas::sample_seam(*model.mesh, model.atlas, edge, 0.5, samples);
+    const auto size = static_cast<int>(colour.size);
+    for (const atlas::SeamSample& s : samples) {
+        for (const atlas::SeamSide* side : {&s.a, &s.b}) {
+            for (int dy = -2; dy <= 2; ++dy) {
+                for (int dx = -2; dx <= 2; ++dx) {
+                    const int x = static_cast<int>(side->uv.x) + dx,
+                              y = static_cast<int>(side->uv.y) + dy;
+                    if (x < 0 || y < 0 || x >= size || y >= size) continue;
+                    float* texel = &colour.texels[3 * (std::size_t(y) * size + x)];
+                    texel[0] = 0.8f;
+                    texel[1] = texel[2] = 0.02f;
+                }
+            }
+        }
+    }
+}
+
+void draw(const stroke::Painting& painting, const render::View& view,
+          const std::filesystem::path& out) {
+    const stroke::Model& model = painting.model();
+    for (const bool seams : {false, true}) {
+        ink::AtlasMap<float> colour = ink::compose_linear(
+            painting.canvas(), model.texels, painting.substrate(), painting.compose_options());
+        if (seams) draw_seams(model, colour);
+        render::Appearance look;
+        const ink::Substrate& substrate = painting.substrate();
+        look.finish =
+            substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
+        look.body_colour =
+            Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
+        look.maps.size = colour.size;
+        look.maps.corner_uvs = model.atlas.corner_uvs;
+        look.maps.base_colour = {reinterpret_cast<const Vec3f*>(colour.texels.data()),
+                                 std::size_t{colour.size} * colour.size};
+        render::PictureOptions options{.width = 1600, .height = 1000, .view = view};
+        const render::Image image =
+            render::render_picture(*model.mesh, *model.query, look, options);
+        std::filesystem::path file = out;
+        file += seams ? "-seams.png" : ".png";
+        io::write_image(file, io::view_of(image.width, image.height, 3, image.rgb.data()));
+        std::printf("%s\n", file.c_str());
+    }
+}
+
+/// 20 mm checks, four abreast, over bonnet, shoulder and wheel arch.
+void car(const std::filesystem::path& folder) {
+    const stroke::Model model = load("car");
+    stroke::Painting painting(model, {.substrate = "clay"});
+    const int pigment = painting.canvas().add_pigment(painting.ink("carbon").parts[0].pigment);
+    constexpr int kRows = 48;  // of a check
+    const double check = 20 * kMillimetre, step = check / kRows;
+    const auto way = straight_way(model, {0.35, 0.04, 0.25}, {0, -1, 0}, step, 12 * kRows);
+    roll(model, painting.canvas(), pigment, 2.5f, way, step, 4 * check, [&](int row, double v) {
+        if (std::abs(v) > 2 * check) return false;
+        return (row / kRows + static_cast<int>(std::floor(v / check))) % 2 == 0;
+    });
+    render::View view{.azimuth = 30 * kDegree, .elevation = 30 * kDegree};
+    view.target = Vec3{0.35, -0.16, 0.19};
+    view.width_at_target = 0.55;
+    draw(painting, view, folder / "car-checks");
+}
+
+/// A band of waves between two lines round the plate's rim; its ends meet.
+void plate(const std::filesystem::path& folder) {
+    const stroke::Model model = load("plate");
+    stroke::Painting painting(model);
+    const int pigment = painting.canvas().add_pigment(painting.ink("cobalt").parts[0].pigment);
+    const double radius = 113.5 * kMillimetre;
+    constexpr int kPeriods = 48, kRows = 180;  // of a period
+    const double step = 2 * pi * radius / (kPeriods * kRows), period = kRows * step;
+    const auto way = ring(model, radius, 0.1, kPeriods * kRows);
+    roll(model, painting.canvas(), pigment, 2.0f, way, step, 18 * kMillimetre,
+         [&](int row, double v) {
+             const double mm = v / kMillimetre, x = 2 * pi * (row % kRows) / kRows;
+             if (std::abs(std::abs(mm) - 8) < 0.4) return true;
+             if (std::abs(mm - 3.6 * std::sin(x)) < 0.7) return true;
+             // Dots in the bends.
+             const double s = (row % kRows) * step;
+             return std::hypot(s - 0.25 * period, v + 0.5 * kMillimetre) < 1.3 * kMillimetre ||
+                    std::hypot(s - 0.75 * period, v - 0.5 * kMillimetre) < 1.3 * kMillimetre;
+         });
+    draw(painting, {.azimuth = 0, .elevation = 60 * kDegree}, folder / "plate-ring");
+}
+
+/// A stroke with a brush from inside over the rim to the outside.
+void bowl(const std::filesystem::path& folder) {
+    const stroke::Model model = load("bowl");
+    stroke::Painting painting(model);
+    stroke::Stroke s;
+    s.trace.flat = false;
+    s.trace.brush = "wolf-small";
+    s.trace.ink = "cinnabar";
+    const double length = painting.brush(s.trace.brush).length, step = 0.25 * kMillimetre;
+    const auto way =
+        straight_way(model, {0, -0.045, 0.03}, glm::normalize(Vec3{0.5, -1, 0.6}), step, 330);
+    double time = 0;
+    Vec3 before{0};
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        const double part = double(i) / double(way.size() - 1);
+        const double press = 3.2 * kMillimetre * std::min({1.0, part / 0.15, (1 - part) / 0.15});
+        // The holder turns over the rim gently: its axis is the mean normal of 15 mm of the way.
+        Vec3 n{0};
+        for (int k = -30; k <= 30; ++k)
+            n += way[std::clamp<std::ptrdiff_t>(std::ptrdiff_t(i) + k, 0,
+                                                std::ptrdiff_t(way.size()) - 1)]
+                     .frame.n;
+        n = glm::normalize(n);
+        const Frame f = make_frame(Vec3{0}, n, way[i].frame.t);
+        stroke::TraceSample p;
+        p.position = way[i].frame.origin + (length - press) * n;
+        p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
+        if (i > 0) time += std::max(step, glm::length(p.position - before)) / 0.06;
+        before = p.position;
+        p.time = time;
+        s.trace.samples.push_back(p);
+    }
+    const stroke::StrokeReport report = painting.paint(s);
+    std::printf("%zu stamps, %.1f mm³ of ink\n", report.stamps, report.ink_given * 1e9);
+    draw(painting, {.azimuth = 15 * kDegree, .elevation = 38 * kDegree}, folder / "bowl-rim");
+}
+
+}  // namespace
+}  // namespace tuft::samples
+
+int main(int argc, char** argv) {
+    if (argc < 2) {
+        std::fprintf(stderr, "usage: tuft-patterns FOLDER [car | bowl | plate]\n");
+        return 2;
+    }
+    const std::filesystem::path folder = argv[1];
+    const std::string only = argc > 2 ? argv[2] : "";
+    try {
+        std::filesystem::create_directories(folder);
+        if (only.empty() || only == "car") tuft::samples::car(folder);
+        if (only.empty() || only == "bowl") tuft::samples::bowl(folder);
+        if (only.empty() || only == "plate") tuft::samples::plate(folder);
+    } catch (const tuft::Error& error) {
+        std::fprintf(stderr, "tuft-patterns: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}

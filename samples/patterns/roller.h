@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "ink/canvas.h"
+#include "stroke/model.h"
+
+/// A pattern rolled over a model, as an engraved wheel prints it: row by row, each laid out along
+/// the surface by the log map, so that nothing in it knows of charts.
+namespace tuft::samples {
+
+/// Where the wheel touches, and the turn of its way in the surface since the place before.
+struct Contact {
+    Frame frame;  ///< t: the way it goes
+    std::uint32_t triangle = kNone;
+    double turn = 0;  ///< radians, to the left
+};
+
+/// Straight on from the surface near `from` towards `heading`, `n` places `step` metres apart.
+std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, const Vec3& heading,
+                                  double step, int n);
+
+/// Round the z axis at `radius` metres on the surface that lies under `height`, closed.
+std::vector<Contact> ring(const stroke::Model& model, double radius, double height, int n);
+
+/// Black or white at `row` of the way and v metres to the left of it.
+using Pattern = std::function<bool(int row, double v)>;
+
+/// Prints `film` film units of the canvas's pigment along the way, `width` metres wide.
+void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film,
+          const std::vector<Contact>& way, double step, double width, const Pattern& pattern);
+
+}  // namespace tuft::samples
