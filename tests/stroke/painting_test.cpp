@@ -153,11 +153,29 @@ TEST(Painting, TurningSheetAndHandTogetherKeepsTheWidth) {
 
 TEST(Painting, TheStrokeIsTheSameAtAnySamplingRate) {
     const Model model = sheet();
-    Painting slow(model), fast(model);
-    slow.paint(line("wolf-small", 4e-3, {}, 0.03, 100));
+    Painting fast(model);
     fast.paint(line("wolf-small", 4e-3, {}, 0.03, 1000));
-    // The press and lift are corners of the motion; the spline rounds them by part of a sample.
-    EXPECT_NEAR(slow.canvas().total(model.texels, 0) / fast.canvas().total(model.texels, 0), 1, 0.01);
+    const double total = fast.canvas().total(model.texels, 0);
+    for (const double rate : {100.0, 125.0, 250.0}) {
+        Painting slow(model);
+        slow.paint(line("wolf-small", 4e-3, {}, 0.03, rate));
+        // The press and lift are corners of the motion; the spline rounds them by part of a sample.
+        EXPECT_NEAR(slow.canvas().total(model.texels, 0) / total, 1, 0.01) << rate;
+        double square = 0, peak = 0;
+        std::size_t n = 0;
+        for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot) {
+            const ink::Plane *a = slow.canvas().plane(slot, 0), *b = fast.canvas().plane(slot, 0);
+            for (int t = 0; t < atlas::kTileTexels; ++t) {
+                const double wa = a ? (*a)[t] : 0, wb = b ? (*b)[t] : 0;
+                square += (wa - wb) * (wa - wb);
+                peak = std::max(peak, wb);
+                n += wa > 0 || wb > 0;
+            }
+        }
+        // The same corners at both ends of the line, where a row of texels is inked or not: the
+        // part of a sample falls with the rate.
+        EXPECT_LT(std::sqrt(square / double(n)) / peak, 5 / rate) << rate;
+    }
 }
 
 }  // namespace
