@@ -97,6 +97,20 @@ void add_look(CLI::App* app, Look& look) {
         ->type_name("INK=NAME");
 }
 
+void add_view_direction(CLI::App* app, View& v) {
+    app->add_option_function<std::string>(
+           "--view",
+           [&v](const std::string& text) {
+               const auto n = numbers(text, ',', 2);
+               if (n.empty())
+                   throw CLI::ValidationError("--view", "'" + text + "' is not AZIMUTH,ELEVATION in degrees");
+               v.azimuth = n[0];
+               v.elevation = n[1];
+           },
+           "where to look from, in degrees: AZIMUTH,ELEVATION")
+        ->type_name("AZ,EL");
+}
+
 void add_view(CLI::App* app, View& v) {
     app->add_option_function<std::string>(
            "--size",
@@ -110,17 +124,7 @@ void add_view(CLI::App* app, View& v) {
            "size of the picture, WIDTHxHEIGHT")
         ->type_name("WxH");
     add_layers(app, v.layers);
-    app->add_option_function<std::string>(
-           "--view",
-           [&v](const std::string& text) {
-               const auto n = numbers(text, ',', 2);
-               if (n.empty())
-                   throw CLI::ValidationError("--view", "'" + text + "' is not AZIMUTH,ELEVATION in degrees");
-               v.azimuth = n[0];
-               v.elevation = n[1];
-           },
-           "where to look from, in degrees: AZIMUTH,ELEVATION")
-        ->type_name("AZ,EL");
+    add_view_direction(app, v);
     app->add_option("--light", v.light, "turn the lights by so many degrees (they follow the camera)");
     app->add_option("--zoom", v.zoom, "magnification (1: the whole model)")->check(CLI::Range(0.05, 100.0));
     app->add_option_function<std::string>(
@@ -149,6 +153,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
     p->add_option("--brush", paint.brush, "brush for strokes that name none ('tuft brush' lists them)");
     p->add_option("--ink", paint.ink, "ink for strokes that name none");
+    p->add_option("--mask", paint.mask, "mask of the project to keep to, for strokes that name none");
     p->add_flag_callback("--erase", [&paint] { paint.erases = true; },
                          "the strokes take ink away, wet and dry, instead of leaving some");
     p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
@@ -208,6 +213,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     i->add_option("FILE", inspect.file, "mesh or project")->required();
     i->add_option("--unit", inspect.unit, "unit of the model file (default: a guess from its size)")
         ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    auto* spot = add_point(i, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
+    i->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
     add_common(i, inspect.common);
 
     Unwrap unwrap;
@@ -271,8 +278,28 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     f->add_flag("--round", fill.round, "grade by the distance from the first point")->needs(from);
     auto* part = add_point(f, "--part", fill.part_mm, "fill only what hangs together with the surface here");
     add_point(f, "--chart", fill.chart_mm, "fill only the chart of the atlas here")->excludes(part);
+    f->add_option("--mask", fill.mask, "fill only what lies in this mask");
     f->add_option("--layer", fill.layer, "layer to fill; it is made when there is none yet");
     add_common(f, fill.common);
+
+    MaskWork mask;
+    auto* k = app.add_subcommand("mask", "make a mask in a project: strokes and fills that name it keep to it");
+    k->add_option("PROJECT", mask.project, "project file (.tuft)")->required();
+    k->add_option("NAME", mask.name, "name of the mask")->required();
+    k->require_option(2, 0);
+    k->add_option("--group", mask.groups, "the mesh's groups of these names")->delimiter(',');
+    add_point(k, "--facing", mask.direction, "where the surface faces this direction");
+    k->add_option("--within", mask.within, "to within so many degrees")->check(CLI::Range(0.0, 180.0));
+    k->add_option("--soft", mask.soft, "with an edge of so many degrees to either side")->check(CLI::Range(0.0, 180.0));
+    add_point(k, "--chart", mask.chart_mm, "the chart of the atlas at this point, in millimetres");
+    k->add_option("--lasso", mask.lasso, "what this polygon encloses: 'X,Y X,Y X,Y ...', millimetres right and up of the middle as seen from --view");
+    add_view_direction(k, mask.view);
+    k->add_flag("--through", mask.through, "the lasso also takes what faces away or is hidden");
+    k->add_option("--invert", mask.invert, "what this mask leaves out");
+    k->add_option("--intersect", mask.intersect, "what lies in all of these masks: NAME,...")->delimiter(',');
+    k->add_option("--unite", mask.unite, "what lies in any of these masks: NAME,...")->delimiter(',');
+    k->add_flag("--remove", mask.remove, "end the mask; what was painted under it stays");
+    add_common(k, mask.common);
 
     Render render;
     auto* d = app.add_subcommand("render", "draw a picture of a model or a project");
@@ -342,6 +369,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     else if (h->parsed()) command = habit;
     else if (l->parsed()) command = layer;
     else if (f->parsed()) command = fill;
+    else if (k->parsed()) command = mask;
     else command = bench;
     return true;
 }

@@ -44,6 +44,7 @@ struct Paint {
     std::vector<std::filesystem::path> strokes;
     std::string brush, ink;         ///< empty: as the stroke file says, else the default
     std::string layer;              ///< name; empty: as the stroke file says, else the first one
+    std::string mask;               ///< name; empty: as the stroke file says, else none
     bool erases = false;            ///< all strokes take ink away
     std::string spine = "rod";      ///< rod | table
     std::string footprint = "surface";  ///< surface | plane
@@ -65,6 +66,8 @@ struct Paint {
 struct Inspect {
     std::filesystem::path file;
     std::string unit;               ///< empty: guess
+    std::vector<double> at_mm;      ///< of a project: three numbers, or empty
+    std::filesystem::path save_ink; ///< write what lies there as an ink, or empty
     Common common;
 };
 
@@ -107,10 +110,24 @@ struct LayerWork {
 /// `tuft fill PROJECT`
 struct FillWork {
     std::filesystem::path project;
-    std::string ink = "carbon", to_ink, layer;
+    std::string ink = "carbon", to_ink, layer, mask;
     double film = -1, to_film = -1;   ///< film units; < 0: what a full brush leaves of the ink
     std::vector<double> from_mm, to_mm, part_mm, chart_mm;  ///< three numbers, or empty
     bool round = false;
+    Common common;
+};
+
+/// `tuft mask PROJECT NAME`
+struct MaskWork {
+    std::filesystem::path project;
+    std::string name;
+    std::vector<std::string> groups, intersect, unite;
+    std::string invert;
+    std::vector<double> direction, chart_mm;  ///< three numbers, or empty
+    double within = 45, soft = 0;
+    std::string lasso;                        ///< "X,Y X,Y ..." in mm as seen from `view`
+    View view;
+    bool through = false, remove = false;
     Common common;
 };
 
@@ -145,7 +162,7 @@ struct Bench {
     Common common;
 };
 
-using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench, LayerWork, FillWork>;
+using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench, LayerWork, FillWork, MaskWork>;
 
 /// Reads the command line. Prints help or version and returns false with `status` set
 /// when there is nothing to run; a wrong command line gives one line on standard error

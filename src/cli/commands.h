@@ -17,5 +17,6 @@ int run(const Habit& arguments);
 int run(const Bench& arguments);
 int run(const LayerWork& arguments);
 int run(const FillWork& arguments);
+int run(const MaskWork& arguments);
 
 }  // namespace tuft::cli

@@ -44,8 +44,9 @@ int run(const FillWork& a) {
     painting.use_substrate(project->substrate);
     use_presets(project->file, painting);
     show_strokes(project->file, painting, console);
-    const std::vector<stroke::Stroke> entries =
+    std::vector<stroke::Stroke> entries =
         stroke::onto_named_layers({entry_of(a, painting)}, painting.layers(), a.layer);
+    stroke::keep_to_named_masks(entries, painting.masks(), a.mask);
     find_presets(painting, entries);
     stroke::StrokeReport report;
     std::vector<stroke::Stroke> done;

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
+#include "core/files.h"
 #include "core/units.h"
 #include "io/read_model.h"
 
@@ -17,7 +18,59 @@ nlohmann::json vector_json(const Vec3& v_metres) {
     return {v_metres.x / kMillimetre, v_metres.y / kMillimetre, v_metres.z / kMillimetre};
 }
 
+// What lies at one point, as pigments of films.
+int inspect_point(const Inspect& a) {
+    check_extension(a.save_ink, {".toml"});
+    check_output(a.save_ink);
+    Console console(a.common.quiet);
+    const auto project = open_project(a.file, console);
+    stroke::Painting painting(project->model);
+    painting.use_substrate(project->substrate);
+    use_presets(project->file, painting);
+    show_strokes(project->file, painting, console);
+    console.clear();
+    const stroke::Pick pick = painting.pick(kMillimetre * Vec3(a.at_mm[0], a.at_mm[1], a.at_mm[2]));
+    const std::string name = a.save_ink.empty() ? "picked" : a.save_ink.stem().string();
+    const std::optional<ink::Ink> ink = painting.ink_of(pick, name);
+    if (!a.save_ink.empty()) {
+        if (!ink) throw Error(a.file.string(), "has no ink at this point to make an ink of");
+        const std::string toml = ink::ink_toml(*ink);
+        write_file(a.save_ink, toml.data(), toml.size());
+    }
+    const std::vector<ink::Pigment>& pigments = painting.canvas().pigments();
+    const auto amounts = [&](const auto& of) {
+        nlohmann::json j = nlohmann::json::object();
+        for (std::size_t p = 0; p < pigments.size(); ++p)
+            if (of[p] > 0) j[pigments[p].name] = of[p];
+        return j;
+    };
+    if (a.common.json) {
+        nlohmann::json j{{"project", a.file.string()},
+                         {"at_mm", vector_json(pick.at.position)},
+                         {"distance_mm", pick.at.distance / kMillimetre},
+                         {"film", amounts(pick.amounts)},
+                         {"liquid", pick.liquid},
+                         {"films", nlohmann::json::array()},
+                         {"parts", nlohmann::json::object()}};
+        for (const stroke::PickedFilm& f : pick.films)
+            j["films"].push_back({{"layer", painting.layers().find(f.layer)->name},
+                                  {"film", f.film == ink::kOpenFilm     ? "open"
+                                           : f.film == ink::kSoakedFilm ? "soaked"
+                                                                        : "dry " + std::to_string(f.film)},
+                                  {"amounts", amounts(f.amounts)}});
+        if (ink)
+            for (const ink::InkPart& part : ink->parts) j["parts"][part.pigment.name] = part.fraction;
+        std::cout << j.dump(2) << '\n';
+        return 0;
+    }
+    if (!ink) fmt::print("bare\n");
+    for (std::size_t p = 0; p < pigments.size(); ++p)
+        if (pick.amounts[p] > 0) fmt::print("{:<16} {:.3f} film units\n", pigments[p].name, pick.amounts[p]);
+    return 0;
+}
+
 int inspect_project(const Inspect& a) {
+    if (!a.at_mm.empty()) return inspect_point(a);
     const io::Project project = io::Project::open(a.file);
     const io::ProjectModel model = project.model();
     const std::vector<stroke::Stroke> strokes = project.strokes();
@@ -32,7 +85,10 @@ int inspect_project(const Inspect& a) {
                          {"size_mm", vector_json(model.mesh.bounds.size())},
                          {"atlas", to_json(model.atlas, quality)},
                          {"layers", nlohmann::json::array()},
+                         {"masks", nlohmann::json::array()},
                          {"strokes", nlohmann::json::array()}};
+        for (const stroke::Mask& m : stroke::masks_after(strokes).masks)
+            j["masks"].push_back({{"id", m.id}, {"name", m.name}, {"kind", stroke::name_of(m.kind)}});
         for (const stroke::Layer& l : layers.layers)  // the lowest first
             j["layers"].push_back({{"id", l.id},
                                    {"name", l.name},
@@ -47,6 +103,8 @@ int inspect_project(const Inspect& a) {
                                     {"amount", s.extent.amount},
                                     {"label", s.trace.label},
                                     {"layer", s.layer},
+                                    {"mask", s.mask},
+                                    {"tool", s.trace.erases ? "eraser" : "brush"},
                                     {"brush", s.trace.brush},
                                     {"ink", s.trace.ink},
                                     {"samples", s.trace.samples.size()},
@@ -73,6 +131,7 @@ int inspect_project(const Inspect& a) {
 
 int run(const Inspect& a) {
     if (a.file.extension() == ".tuft" || io::is_project(a.file)) return inspect_project(a);
+    if (!a.at_mm.empty()) throw UsageError("--at looks at a project, not at a mesh");
     Console console(a.common.quiet);
     mesh::PolygonSoup soup = io::read_model(a.file);
     Box bounds;

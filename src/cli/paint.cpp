@@ -78,6 +78,7 @@ int run(const Paint& a) {
         show_looks(before->file, painting, {}, console);
     }
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);
+    stroke::keep_to_named_masks(strokes, painting.masks(), a.mask);
     const std::size_t n_before = painting.journal().strokes().size();
     const double prepared = seconds_since(start);
     find_presets(painting, strokes);

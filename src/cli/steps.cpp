@@ -144,6 +144,7 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
                 entry.trace.brush = trace.brush;
                 entry.trace.ink = care.ink.empty() ? trace.ink : care.ink;
                 entry.trace.layer = trace.layer;
+                entry.trace.mask = trace.mask;
                 entry.fill = care.fill;
                 strokes.push_back(std::move(entry));
             }

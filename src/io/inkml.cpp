@@ -27,7 +27,7 @@ constexpr int kMaxNesting = 64;  // groups in groups, references to references
 struct Marks {
     stroke::Placement placement;
     bool placed = false;
-    std::string brush, ink, label, layer;
+    std::string brush, ink, label, layer, mask;
     std::uint64_t seed = 0;
     bool erases = false;
 };
@@ -309,6 +309,8 @@ class Reader {
                 fail(node, "tuft:tool is neither brush nor eraser");
             else if (type == "tool")
                 marks.erases = text == "eraser";
+            else if (type == "mask")
+                marks.mask = name_of(node, text, "mask");
             else if (type == "layer")
                 marks.layer = name_of(node, text, "layer");
             else if (type == "origin") {
@@ -513,6 +515,7 @@ class Reader {
         d.trace.brush = state.marks.brush;
         d.trace.ink = state.marks.ink;
         d.trace.layer = state.marks.layer;
+        d.trace.mask = state.marks.mask;
         d.trace.erases = state.marks.erases;
         d.trace.seed = state.marks.seed;
         d.trace.label = state.marks.label;

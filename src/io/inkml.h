@@ -43,6 +43,7 @@ struct InkmlOptions {
 ///     tuft:ink      preset name          tuft:right   "x y z" direction of +x
 ///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
 ///     tuft:label    any text             tuft:laying  wrap | project
+///     tuft:mask     name of a mask that the project has
 ///     tuft:layer    name of a layer      tuft:tool    brush | eraser
 ///
 /// and, on a `trace` only, what is done with the brush before it, in the order written:

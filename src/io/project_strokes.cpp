@@ -82,7 +82,7 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         insert.bind(12, blob.data(), static_cast<int>(blob.size()));
         insert.exec();
         insert.reset();
-        if (stroke.action == stroke::Action::layer || stroke.action == stroke::Action::fill ||
+        if (stroke::keeps_texels(stroke.action) || stroke.action == stroke::Action::fill || stroke.mask != 0 ||
             stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
             raise_format(db, kProjectFormat);
     }

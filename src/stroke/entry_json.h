@@ -4,6 +4,7 @@
 
 #include "stroke/fill.h"
 #include "stroke/layers.h"
+#include "stroke/mask.h"
 
 /// The parts of a journal's entry as JSON; included by sources of this room only. Readers
 /// throw `Error` for wrong types and values.
@@ -14,5 +15,8 @@ LayerEdit layer_edit_of(const nlohmann::json& json);
 
 nlohmann::json json_of(const Fill& fill);
 Fill fill_of(const nlohmann::json& json);
+
+nlohmann::json json_of(const MaskEdit& edit);
+MaskEdit mask_edit_of(const nlohmann::json& json);
 
 }  // namespace tuft::stroke

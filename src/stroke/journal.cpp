@@ -14,7 +14,7 @@ namespace {
 constexpr double kLongestString = 1.0;    // metres
 constexpr double kStrongestFilter = 100;
 constexpr double kLongestWait = 86400;    // seconds
-constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "fill", "wipe"};
+constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe"};
 
 nlohmann::json json_of(const Settings& s) {
     return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
@@ -79,6 +79,8 @@ std::string entry_json(const Stroke& entry) {
     if (entry.action == Action::dry) j["seconds"] = entry.seconds;
     if (entry.action == Action::layer) j["edit"] = json_of(entry.edit);
     if (entry.layer != kFirstLayer) j["layer"] = entry.layer;
+    if (entry.action == Action::mask) j["mask_edit"] = json_of(entry.mask_edit);
+    if (entry.mask != 0) j["mask"] = entry.mask;
     if (entry.action == Action::fill) j["fill"] = json_of(entry.fill);
     if (entry.trace.erases) j["tool"] = "eraser";
     if (entry.extent != Extent{}) {
@@ -92,11 +94,15 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     const nlohmann::json j = parsed(json);
     entry.settings = settings_of(j);
     entry.action = Action::stroke;
-    if (const auto layer = j.find("layer"); layer != j.end()) {
-        if (!layer->is_number_unsigned() || layer->get<std::uint64_t>() >= kNone)
-            throw Error("the layer of a journal's entry cannot be read");
-        entry.layer = layer->get<std::uint32_t>();
-    }
+    const auto id = [&j](const char* key, std::uint32_t otherwise) {
+        const auto value = j.find(key);
+        if (value == j.end()) return otherwise;
+        if (!value->is_number_unsigned() || value->get<std::uint64_t>() >= kNone)
+            throw Error(std::string("the ") + key + " of a journal's entry cannot be read");
+        return value->get<std::uint32_t>();
+    };
+    entry.layer = id("layer", entry.layer);
+    entry.mask = id("mask", entry.mask);
     entry.trace.erases = false;
     if (const auto tool = j.find("tool"); tool != j.end()) {
         if (*tool != "eraser" && *tool != "brush") throw Error("the tool of a stroke is brush or eraser, not " + tool->dump().substr(0, 40));
@@ -107,6 +113,8 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     if (!action->is_string()) throw Error("the action of a journal's entry cannot be read");
     entry.action = action_of(action->get<std::string>());
     if (entry.action == Action::layer) entry.edit = layer_edit_of(j.value("edit", nlohmann::json::object()));
+    if (entry.action == Action::mask)
+        entry.mask_edit = mask_edit_of(j.value("mask_edit", nlohmann::json::object()));
     if (entry.action == Action::fill) entry.fill = fill_of(j.value("fill", nlohmann::json::object()));
     const auto seconds = j.find("seconds");
     if (seconds != j.end() && !seconds->is_number()) throw Error("the seconds of a journal's entry cannot be read");
@@ -125,9 +133,9 @@ std::string name_of(Action action) { return kActions[static_cast<int>(action)]; 
 
 Action action_of(const std::string& name) {
     for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape, Action::dry, Action::layer,
-                           Action::fill, Action::wipe})
+                           Action::mask, Action::fill, Action::wipe})
         if (name == name_of(a)) return a;
-    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, fill and wipe");
+    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill and wipe");
 }
 
 void check_extent(const Extent& e) {
@@ -176,12 +184,14 @@ Care care_of_text(const std::string& text) {
 }
 
 bool has_brush(Action action) {
-    return action != Action::dry && action != Action::layer && action != Action::fill;
+    return action != Action::dry && action != Action::fill && !keeps_texels(action);
 }
+
+bool keeps_texels(Action action) { return action == Action::layer || action == Action::mask; }
 
 std::vector<std::string> inks_of(const Stroke& entry) {
     std::vector<std::string> inks;
-    const bool none = entry.action == Action::dry || entry.action == Action::layer || entry.trace.erases;
+    const bool none = entry.action == Action::dry || keeps_texels(entry.action) || entry.trace.erases;
     if (!none && !entry.trace.ink.empty()) inks.push_back(entry.trace.ink);
     if (entry.action == Action::fill && !entry.fill.to_ink.empty()) inks.push_back(entry.fill.to_ink);
     return inks;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stroke/layers.h"
+#include "stroke/mask.h"
 #include "stroke/trace.h"
 
 /// The document: what the hand did, in order. Texels are made from it.
@@ -37,7 +38,7 @@ void check_seconds(double seconds);
 void check_extent(const Extent& extent);
 
 /// An entry of the journal: a stroke, or an action between strokes. An action has no samples;
-/// it names a brush, and for a dip the ink. Drying, fills and changes of layers leave the brush
+/// it names a brush, and for a dip the ink. Drying, fills and changes of layers and masks leave the brush
 /// as it is and need not name one.
 struct Stroke {
     std::uint64_t id = 0;     ///< unique in its journal, never used again
@@ -47,7 +48,9 @@ struct Stroke {
     Action action = Action::stroke;
     double seconds = 0;       ///< of `Action::dry`; 0: until all is dry
     std::uint32_t layer = kFirstLayer;  ///< that is painted on
+    std::uint32_t mask = 0;   ///< that a stroke or fill keeps to; 0: none
     LayerEdit edit = {};      ///< of `Action::layer`
+    MaskEdit mask_edit = {};  ///< of `Action::mask`
     Fill fill = {};           ///< of `Action::fill`, which names its first ink as strokes do
     Extent extent = {};       ///< of a dip or a wipe
 };
@@ -56,12 +59,15 @@ struct Stroke {
 std::string entry_json(const Stroke& entry);
 void read_entry_json(const std::string& json, Stroke& entry);
 
-/// "stroke", "dip", "rinse", "reshape", "dry", "layer", "fill", "wipe"; and back, throwing `Error` for any other word.
+/// "stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe"; and back, throwing `Error`
+/// for any other word.
 std::string name_of(Action action);
 Action action_of(const std::string& name);
 
 /// Whether an entry with this action has a brush in it.
 bool has_brush(Action action);
+/// Whether an entry with this action leaves all texels as they are.
+bool keeps_texels(Action action);
 /// Names of the inks that an entry uses.
 std::vector<std::string> inks_of(const Stroke& entry);
 

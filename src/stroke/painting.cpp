@@ -200,6 +200,8 @@ const BrushInHand* Painting::held(const std::string& brush) const {
 void Painting::settle(Stroke& entry) const {
     if (entry.action == Action::layer && entry.edit.what == LayerChange::add && entry.edit.layer.id == 0)
         entry.edit.layer.id = layers_.next_id;
+    if (entry.action == Action::mask && !entry.mask_edit.remove && entry.mask_edit.mask.id == 0)
+        entry.mask_edit.mask.id = masks_.next_id;
     if (!has_brush(entry.action) || entry.trace.erases) return;
     const BrushInHand* last = held(entry.trace.brush);
     if (!last) entry.settings.dip = "each";
@@ -267,6 +269,7 @@ void Painting::keep_undo(Undo undo) {
 void Painting::act(const Stroke& entry) {
     if (entry.action == Action::dry) return dry(entry);
     if (entry.action == Action::layer) return edit_layers(entry);
+    if (entry.action == Action::mask) return edit_masks(entry);
     BrushInHand brush = take_up(entry);
     switch (entry.action) {
         case Action::dip:
@@ -282,6 +285,7 @@ void Painting::act(const Stroke& entry) {
         case Action::reshape: brush::reshape(brush.tuft); break;
         case Action::dry:
         case Action::layer:
+        case Action::mask:
         case Action::fill:
         case Action::stroke: break;
     }
@@ -315,8 +319,10 @@ void Painting::begin_hand(Stroke stroke) {
     const double texel = model_->texels.texel_size;
     const double spacing = stroke.settings.spacing * texel;
     ink::Canvas& canvas = this->canvas(stroke.layer);
+    const MaskTexels* mask = stroke.mask ? &this->mask(stroke.mask) : nullptr;
     hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, *model_, canvas, substrate_,
                                    spacing, texel);
+    hand_->stamper.keep_to(mask);
 }
 
 void Painting::extend(std::span<const brush::Pose> poses) {
@@ -513,13 +519,18 @@ bool Painting::undo() {
     if (!journal_.can_undo()) return false;
     const std::uint64_t id = journal_.strokes().back().id;
     const bool hidden = journal_.strokes().back().hidden;
-    const bool table_only = journal_.strokes().back().action == Action::layer &&
-                            journal_.strokes().back().edit.what != LayerChange::remove;
+    const bool table_only = keeps_texels(journal_.strokes().back().action) &&
+                            (journal_.strokes().back().action == Action::mask ||
+                             journal_.strokes().back().edit.what != LayerChange::remove);
     journal_.undo();
     if (hidden) return true;
     if (undo_.empty() || undo_.back().stroke_id != id) {
-        if (table_only) set_layers(layers_after(journal_.strokes()));
-        else repaint_all();
+        if (table_only) {
+            set_layers(layers_after(journal_.strokes()));
+            masks_ = masks_after(journal_.strokes());
+        } else {
+            repaint_all();
+        }
         return true;
     }
     Undo& last = undo_.back();
@@ -543,6 +554,7 @@ void Painting::repaint_all() {
     canvas_.clear();
     upper_.clear();
     layers_ = {};
+    masks_ = {};
     held_.clear();
     undo_.clear();
     undo_bytes_ = 0;

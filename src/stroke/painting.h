@@ -61,16 +61,39 @@ struct PaintingOptions {
     bool record_forces = false;
 };
 
+/// One film of a texel, film units by pigment plane.
+struct PickedFilm {
+    std::uint32_t layer = kFirstLayer;
+    int film = ink::kOpenFilm;      ///< as in ink::Canvas, from the soaked one to the open one
+    std::array<double, ink::kMaxPigments> amounts{};
+};
+
+/// What lies on the surface at a point.
+struct Pick {
+    mesh::SurfacePoint at;          ///< nearest to the point asked for
+    atlas::TexelRef texel;
+    std::vector<PickedFilm> films;  ///< of the layers to be seen, the lowest first, none empty
+    std::array<double, ink::kMaxPigments> amounts{};  ///< of them all, by plane of `Painting::canvas`
+    double liquid = 0;              ///< film units, on the surface and in it
+};
+
 /// The layers that these entries of a journal make. Throws `Error` where one cannot be.
 LayerTable layers_after(std::span<const Stroke> entries);
 
-/// Whether texels stored after entry `stroke_id` show all these entries, but for changes of the
-/// layers since, so that `Painting::adopt` takes them.
+/// The masks that they make.
+MaskTable masks_after(std::span<const Stroke> entries);
+
+/// Whether texels stored after entry `stroke_id` show all these entries, but for changes of
+/// layers and masks since, so that `Painting::adopt` takes them.
 bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id);
 
 /// Gives each stroke the layer that its trace names (or `name` where it names none; empty: the
 /// one it has), before it an entry that adds the layer on top where it is not there yet.
 std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable table, const std::string& name = {});
+
+/// Gives each stroke and fill the mask that its trace names, or `name` where it names none. Throws
+/// `Error` for a mask that is not there.
+void keep_to_named_masks(std::vector<Stroke>& strokes, const MaskTable& table, const std::string& name = {});
 
 /// A model being painted: its journal and the texels made from it. The model must
 /// outlive it. All strokes take one path, whether they come from a file, a project or a
@@ -150,6 +173,19 @@ class Painting {
     ink::Stack stack() const;
     /// Shows these layers alone, whatever the table says; empty: as it says. Not kept.
     void show_only(std::vector<std::uint32_t> layers);
+    /// The masks now; entries with `Action::mask` change them. A stroke or fill that names one in
+    /// `Stroke::mask` leaves everything outside it as it is.
+    const MaskTable& masks() const { return masks_; }
+    /// The mask on this model's texels; made at the first call and kept. Throws `Error` when there
+    /// is none of this id, or when it cannot be on this mesh.
+    const MaskTexels& mask(std::uint32_t id);
+
+    /// The eyedropper: what lies at the surface point nearest to `point`.
+    Pick pick(const Vec3& point) const;
+    /// An ink that is all pigment, in the proportions picked, and leaves as thick a film; nothing
+    /// where the surface is bare. Take it up by `use_ink`.
+    std::optional<ink::Ink> ink_of(const Pick& pick, const std::string& name) const;
+
     /// Hash of the texels of all layers; of one layer as its canvas has it.
     std::uint64_t hash() const;
     /// What the maps show the ink on: what it was painted on, unless `show_on` said otherwise.
@@ -175,6 +211,7 @@ class Painting {
         std::uint64_t stroke_id = 0;
         std::vector<LayerTiles> before;
         std::optional<LayerTable> layers;         ///< before an edit of them
+        std::optional<MaskTable> masks;           ///< before an edit of them
         std::optional<LayerCanvas> canvas;        ///< that the edit took away
         std::string brush;                        ///< empty: none had a part in it
         std::optional<BrushInHand> brush_before;  ///< nothing: it was not held
@@ -189,6 +226,8 @@ class Painting {
     void dry(const Stroke& entry);
     void edit_layers(const Stroke& entry);
     StrokeReport lay_fill(const Stroke& entry);
+    void edit_masks(const Stroke& entry);
+    std::vector<LayerTexels> shown_layers() const;
     void take_back_layers(Undo& undo);
     void set_layers(LayerTable table);
     void check_layer(const Stroke& entry) const;
@@ -211,6 +250,8 @@ class Painting {
     ink::Canvas canvas_;                              ///< of kFirstLayer
     std::map<std::uint32_t, ink::Canvas> upper_;      ///< of the other layers
     LayerTable layers_;
+    MaskTable masks_;
+    std::map<std::uint32_t, MaskTexels> mask_texels_;  ///< of those that were asked for
     std::vector<std::uint32_t> shown_;                ///< of `show_only`
     std::vector<std::uint32_t> changed_;              ///< slots whose look changed, not their films
     Journal journal_;

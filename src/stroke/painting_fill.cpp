@@ -13,12 +13,14 @@ StrokeReport Painting::lay_fill(const Stroke& entry) {
     const ink::Mix second = fill.to_ink.empty() ? first : mix_of(fill.to_ink);
     const std::vector<std::uint8_t> charts = charts_of(fill, *model_);
     ink::Canvas& canvas = this->canvas(entry.layer);
+    const MaskTexels* mask = entry.mask ? &this->mask(entry.mask) : nullptr;
     const atlas::TexelMap& map = model_->texels;
 
     std::vector<std::uint32_t> slots;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (std::uint32_t k = map.piece_start[slot]; k < map.piece_start[slot + 1]; ++k)
             if (charts[map.piece_chart[k]] && (slots.empty() || slots.back() != slot)) slots.push_back(slot);
+    if (mask) std::erase_if(slots, [mask](std::uint32_t slot) { return mask->none(slot); });
     Undo undo{.stroke_id = entry.id};
     LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = entry.layer, .tiles = {}});
     for (const std::uint32_t slot : slots) before.tiles.push_back(canvas.snapshot(slot));
@@ -40,6 +42,7 @@ StrokeReport Painting::lay_fill(const Stroke& entry) {
                 coat.film[t] = in ? static_cast<float>(film) : 0.0f;
                 coat.towards[t] = static_cast<float>(along);
             }
+            if (mask) mask->apply(slots[i], coat.film);
             laid[i] = ink::lay_coat(canvas, slots[i], tile.area, coat, substrate_.capacity);
         }
     });

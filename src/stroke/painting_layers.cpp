@@ -16,7 +16,7 @@ LayerTable layers_after(std::span<const Stroke> entries) {
 bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id) {
     for (auto s = entries.rbegin(); s != entries.rend(); ++s) {
         if (s->id == stroke_id) return true;
-        if (s->action != Action::layer) return false;
+        if (!keeps_texels(s->action)) return false;
     }
     return entries.empty() && stroke_id == 0;
 }
@@ -55,17 +55,21 @@ std::vector<LayerTexels> Painting::canvases() const {
     return all;
 }
 
+std::vector<LayerTexels> Painting::shown_layers() const {
+    std::vector<LayerTexels> shown;
+    for (const LayerTexels& texels : canvases()) {
+        const Layer& layer = *layers_.find(texels.layer);
+        const bool is = shown_.empty() ? layer.visible
+                                       : std::find(shown_.begin(), shown_.end(), layer.id) != shown_.end();
+        if (is && layer.opacity > 0) shown.push_back(texels);
+    }
+    return shown;
+}
+
 ink::Stack Painting::stack() const {
     ink::Stack stack{std::vector<ink::LayerView>{}};
-    const std::vector<LayerTexels> texels = canvases();
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-        const Layer& layer = layers_.layers[i];
-        const bool shown = shown_.empty()
-                               ? layer.visible
-                               : std::find(shown_.begin(), shown_.end(), layer.id) != shown_.end();
-        if (shown && layer.opacity > 0)
-            stack.layers.push_back({texels[i].canvas, static_cast<float>(layer.opacity)});
-    }
+    for (const LayerTexels& texels : shown_layers())
+        stack.layers.push_back({texels.canvas, static_cast<float>(layers_.find(texels.layer)->opacity)});
     return stack;
 }
 
@@ -113,6 +117,7 @@ void Painting::check_layer(const Stroke& entry) const {
     if (entry.action != Action::stroke && entry.action != Action::fill) return;
     const Layer* layer = layers_.find(entry.layer);
     if (!layer) throw Error("there is no layer " + std::to_string(entry.layer) + " to paint on");
+    if (entry.mask && !masks_.find(entry.mask)) throw Error("there is no mask " + std::to_string(entry.mask));
     if (layer->locked)
         throw Error("layer '" + layer->name + "' is locked; unlock it or paint on another one");
 }
@@ -159,6 +164,7 @@ void Painting::take_back_layers(Undo& undo) {
         ink::Canvas& canvas = this->canvas(before.layer);
         for (const ink::TileSnapshot& tile : before.tiles) canvas.restore(tile);
     }
+    if (undo.masks) masks_ = std::move(*undo.masks);
     if (!undo.layers) return;
     set_layers(std::move(*undo.layers));
     if (!undo.canvas) return;
@@ -183,6 +189,7 @@ void Painting::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canva
                                    [stroke_id](const Stroke& s) { return s.id == stroke_id; });
     const auto rest = last == strokes.end() ? last : last + 1;
     LayerTable table = layers_after({strokes.begin(), rest});
+    MaskTable masks = masks_after({strokes.begin(), rest});
     ink::Canvas first(model_->texels.n_slots());
     std::map<std::uint32_t, ink::Canvas> upper;
     for (LayerCanvas& layer : canvases) {
@@ -199,11 +206,12 @@ void Painting::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canva
     canvas_ = std::move(first);
     upper_ = std::move(upper);
     layers_ = std::move(table);
+    masks_ = std::move(masks);
     held_.clear();
     undo_.clear();
     undo_bytes_ = 0;
     for (auto s = rest; s != strokes.end(); ++s)
-        if (!s->hidden) edit_layers(*s);
+        if (!s->hidden) act(*s);
     for (Stroke& stroke : strokes) journal_.restore(std::move(stroke));
     apply_recolours();
 }

@@ -81,6 +81,7 @@ double Stamper::flush() {
         for (std::size_t r = begin; r < end; ++r) {
             const std::uint32_t slot = order[runs[r]].slot;
             const atlas::TexelTile& tile = model_.texels.tiles[slot];
+            if (mask_ && mask_->none(slot)) continue;
             for (std::uint32_t k = runs[r]; k < runs[r + 1]; ++k) {
                 const Job& job = order[k];
                 const footprint::StampJobs& plan = jobs_[job.stamp];
@@ -88,6 +89,7 @@ double Stamper::flush() {
                                               exposure))
                     continue;
                 const Stamp& stamp = batch_[job.stamp];
+                if (mask_) mask_->apply(slot, exposure);
                 if (erases) {
                     erased[k] = ink::erase(canvas_, job.slot, exposure, tile.area, stamp.ds,
                                            starts_.at(job.slot), {.strength = stamp.erases});

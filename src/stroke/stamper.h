@@ -8,6 +8,7 @@
 #include "footprint/stamp.h"
 #include "ink/deposit.h"
 #include "ink/erase.h"
+#include "stroke/mask.h"
 #include "stroke/model.h"
 
 namespace tuft::stroke {
@@ -31,6 +32,9 @@ class Stamper {
 
     Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options,
             const ink::Substrate& substrate);
+
+    /// Keeps to a mask from now on, which must outlive the stamper; null: to none.
+    void keep_to(const MaskTexels* mask) { mask_ = mask; }
 
     /// Takes a stamp; true when the batch is full and must be flushed.
     bool add(Stamp stamp);
@@ -59,6 +63,7 @@ class Stamper {
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
     std::unordered_map<std::uint32_t, ink::EraseStart> starts_;  ///< of tiles an eraser came to
     ink::Amounts erased_;
+    const MaskTexels* mask_ = nullptr;
 };
 
 }  // namespace tuft::stroke

@@ -43,6 +43,7 @@ enum class Action {
     reshape,  ///< combs it: hair straight and together, ink stays
     dry,      ///< waits while the ink on the model flows and dries
     layer,    ///< changes the table of layers; no brush has a part in it
+    mask,     ///< changes the table of masks; likewise
     fill,     ///< lays ink over a whole part of the model; likewise
     wipe,     ///< draws it over a rag: part of its ink goes
 };
@@ -78,6 +79,7 @@ struct Trace {
     std::vector<TraceSample> samples;    ///< time never falls
     std::string brush, ink;              ///< preset names; empty: as the command line says
     bool erases = false;                 ///< takes ink away, wet and dry, where it would leave some
+    std::string mask;                    ///< name of the mask it keeps to; empty: as the command line says
     std::string layer;                   ///< name of the layer; empty: as the command line says
     std::uint64_t seed = 0;
     std::string label;                   ///< free text for people: a character, a stroke's name

@@ -1,0 +1,283 @@
+#include "stroke/mask.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/units.h"
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+const Model& model() {
+    static const Model m = sheet();
+    return m;
+}
+
+// A sphere of 20 mm by latitudes, its upper half one group, its lower another.
+const Model& ball() {
+    static const Model m = [] {
+        mesh::PolygonSoup soup;
+        constexpr std::uint32_t kRings = 24, kSides = 48;
+        for (std::uint32_t j = 0; j <= kRings; ++j)
+            for (std::uint32_t i = 0; i < kSides; ++i) {
+                const double a = std::numbers::pi * j / kRings, b = 2 * std::numbers::pi * i / kSides;
+                soup.points.push_back(0.02 * Vec3{std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)});
+            }
+        soup.polygon_start.push_back(0);
+        soup.group_names = {"upper", "lower"};
+        for (std::uint32_t j = 0; j < kRings; ++j)
+            for (std::uint32_t i = 0; i < kSides; ++i) {
+                const std::uint32_t k = (i + 1) % kSides;
+                for (const std::uint32_t corner : {j * kSides + i, (j + 1) * kSides + i, (j + 1) * kSides + k, j * kSides + k})
+                    soup.corners.push_back(corner);
+                soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+                soup.polygon_groups.push_back(j < kRings / 2 ? 0 : 1);
+            }
+        ModelOptions options;
+        options.repair.metres_per_unit = 1;
+        options.unwrap.size = 512;
+        return prepare_model(std::move(soup), options);
+    }();
+    return m;
+}
+
+// Surface that the mask covers, over the whole one.
+double share(const Mask& mask, const MaskTable& table, const Model& m) {
+    const MaskTexels texels = evaluate(mask, table, m);
+    double in = 0, all = 0;
+    for (std::uint32_t slot = 0; slot < m.texels.n_slots(); ++slot)
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            const double area = static_cast<double>(m.texels.tiles[slot].area[t]);
+            all += area;
+            in += area * texels.coverage(slot, t) / 255;
+        }
+    return in / all;
+}
+
+Mask lasso(std::vector<Vec2> polygon, bool through = false) {
+    // Seen from above.
+    return {.name = "lasso", .kind = MaskKind::lasso,
+            .view = {.origin = {0, 0, 0}, .right = {1, 0, 0}, .up = {0, 1, 0}, .through = through},
+            .polygon = std::move(polygon)};
+}
+
+Stroke entry(const MaskEdit& edit) {
+    Stroke s;
+    s.action = Action::mask;
+    s.trace.flat = false;
+    s.mask_edit = edit;
+    return s;
+}
+
+Stroke quick() {
+    Stroke s = line("wolf-small", 3e-3);
+    s.settings.spacing = 3;
+    return s;
+}
+
+TEST(Mask, ByAngleIsACap) {
+    const double half = 50 * kDegree;
+    const Mask hard{.name = "cap", .kind = MaskKind::angle, .direction = {0, 0, 3}, .within = half};
+    // Archimedes: a cap has the part (1 − cos a)/2 of the sphere. Normals are those of facets of
+    // 7.5 degrees, interpolated; the soft edge is even about the same angle to second order.
+    EXPECT_NEAR(share(hard, {}, ball()), (1 - std::cos(half)) / 2, 2e-3);
+    Mask soft = hard;
+    soft.soft = 10 * kDegree;
+    EXPECT_NEAR(share(soft, {}, ball()), (1 - std::cos(half)) / 2, 3e-3);
+}
+
+TEST(Mask, ByGroupIsTheGroupAndItsInverseTheRest) {
+    MaskTable table;
+    apply(table, {.mask = {.name = "upper", .kind = MaskKind::group, .groups = {"upper"}}});
+    apply(table, {.mask = {.name = "rest", .kind = MaskKind::invert, .of = {1}}});
+    apply(table, {.mask = {.name = "both", .kind = MaskKind::unite, .of = {1, 2}}});
+    apply(table, {.mask = {.name = "none", .kind = MaskKind::intersect, .of = {1, 2}}});
+    EXPECT_NEAR(share(*table.find("upper"), table, ball()), 0.5, 2e-3);  // a texel along the equator
+    EXPECT_NEAR(share(*table.find("upper"), table, ball()) + share(*table.find("rest"), table, ball()), 1, 1e-9);
+    EXPECT_EQ(share(*table.find("both"), table, ball()), 1);
+    EXPECT_EQ(share(*table.find("none"), table, ball()), 0);
+    const MaskTexels upper = evaluate(*table.find("upper"), table, ball());
+    for (std::uint32_t slot = 0; slot < ball().texels.n_slots(); ++slot)
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            if (ball().texels.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+            const float z = ball().texels.position(slot, t).z;
+            if (std::abs(z) > 1e-4f) {
+                ASSERT_EQ(upper.coverage(slot, t), z > 0 ? 255 : 0);
+            }
+        }
+    EXPECT_THROW(evaluate({.name = "x", .kind = MaskKind::group, .groups = {"uper"}}, {}, ball()), Error);
+}
+
+TEST(Mask, ByLassoIsWhatIsSeen) {
+    const std::vector<Vec2> square{{-0.01, -0.01}, {0.01, -0.01}, {0.01, 0.01}, {-0.01, 0.01}};
+    // On the sheet the square itself, its rim a texel soft.
+    EXPECT_NEAR(share(lasso(square), {}, model()), 4e-4 / (kSide * kSide), 1e-4);
+    // On the ball what lies above the square and is seen: half of what lies in the column.
+    const double seen = share(lasso(square), {}, ball()), all = share(lasso(square, true), {}, ball());
+    EXPECT_GT(seen, 0);
+    EXPECT_NEAR(all / seen, 2, 1e-2);
+    // Everything that is seen of a ball from far away is half of it.
+    const double r = 0.021;
+    EXPECT_NEAR(share(lasso({{-r, -r}, {r, -r}, {r, r}, {-r, r}}), {}, ball()), 0.5, 1e-2);  // grazing facets
+    // From an eye at the distance d the cap 1 − R/d of the half.
+    Mask eye = lasso({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}});
+    eye.view.origin = {0, 0, 0.05};
+    eye.view.perspective = true;
+    EXPECT_NEAR(share(eye, {}, ball()), 0.5 * (1 - 0.4), 1e-2);
+}
+
+TEST(Mask, NothingOutsideAndTheSameInside) {
+    Painting free(model()), kept(model());
+    free.paint(quick());
+    kept.paint(entry({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}, {-0.005, 1}})}));
+    Stroke s = quick();
+    s.mask = 1;
+    EXPECT_GT(kept.paint(s).ink_given, 0);
+    const MaskTexels& mask = kept.mask(1);
+    const double fresh = free.canvas().total(model().texels, 0);
+    EXPECT_LT(kept.canvas().total(model().texels, 0), 0.5 * fresh);
+    double difference = 0;
+    for (const std::uint32_t slot : free.canvas().touched_slots()) {
+        const ink::Plane* there = free.canvas().plane(slot, 0);
+        const ink::Plane* here = kept.canvas().plane(slot, 0);
+        for (int t = 0; there && t < atlas::kTileTexels; ++t) {
+            const float w = here ? (*here)[t] : 0;
+            if (mask.coverage(slot, t) == 0) {
+                ASSERT_EQ(w, 0);
+            }
+            // The brush keeps the ink it does not leave, so it is a little fuller inside.
+            if (mask.coverage(slot, t) == 255)
+                difference = std::max(difference, static_cast<double>(std::abs(w - (*there)[t])));
+        }
+    }
+    EXPECT_LT(difference, 0.02);
+    // A mask of everything is none, to the bit.
+    Painting all(model());
+    all.paint(entry({.mask = {.name = "all", .kind = MaskKind::angle, .within = 3.14159}}));
+    s.mask = 1;
+    all.paint(s);
+    EXPECT_TRUE(all.canvas().same_contents(free.canvas()));
+}
+
+TEST(Mask, UndoReplayAndTextKeepIt) {
+    std::uint64_t hash = 0;
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        Painting p(model());
+        p.paint(entry({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}})}));
+        p.paint(entry({.mask = {.name = "金", .kind = MaskKind::invert, .of = {1}}}));
+        Stroke fill;
+        fill.action = Action::fill;
+        fill.trace.ink = "cinnabar";
+        fill.mask = 2;
+        p.paint(fill);
+        Stroke s = quick();
+        s.mask = 1;
+        p.paint(s);
+        const MaskTable table = p.masks();
+        if (threads == 1) hash = p.hash();
+        EXPECT_EQ(p.hash(), hash);
+        std::vector<Stroke> strokes = p.journal().strokes();
+        for (Stroke& e : strokes) {
+            Stroke back = e;
+            back.mask_edit = {};
+            back.mask = 0;
+            read_entry_json(entry_json(e), back);
+            EXPECT_EQ(back.mask_edit, e.mask_edit);
+            e = back;
+        }
+        Painting again(model());
+        again.replay(strokes);
+        EXPECT_EQ(again.hash(), hash);
+        EXPECT_EQ(again.masks(), table);
+        while (p.undo()) {}
+        EXPECT_EQ(p.masks(), MaskTable{});
+        while (p.redo()) {}
+        EXPECT_EQ(p.masks(), table);
+        EXPECT_EQ(p.hash(), hash);
+    }
+    set_thread_count(0);
+}
+
+TEST(Mask, NonsenseIsRefused) {
+    MaskTable t;
+    EXPECT_THROW(apply(t, {.mask = {.name = "", .kind = MaskKind::angle}}), Error);
+    EXPECT_THROW(apply(t, {.mask = {.name = "a", .kind = MaskKind::angle, .direction = {0, 0, 0}}}), Error);
+    EXPECT_THROW(apply(t, {.mask = {.name = "a", .kind = MaskKind::angle, .within = std::nan("")}}), Error);
+    EXPECT_THROW(apply(t, {.mask = {.name = "a", .kind = MaskKind::group}}), Error);
+    EXPECT_THROW(apply(t, {.mask = {.name = "a", .kind = MaskKind::invert, .of = {1}}}), Error);
+    EXPECT_THROW(apply(t, {.mask = lasso({{0, 0}, {1, 1}})}), Error);
+    Mask skewed = lasso({{0, 0}, {1, 1}, {0, 1}});
+    skewed.view.up = {1, 0, 0};
+    EXPECT_THROW(apply(t, {.mask = skewed}), Error);
+    EXPECT_THROW(apply(t, {.remove = true, .mask = {.id = 1}}), Error);
+    EXPECT_EQ(t, MaskTable{});
+    // Masks of masks of masks cost each mask once, however often it is named.
+    apply(t, {.mask = {.name = "0", .kind = MaskKind::angle}});
+    apply(t, {.mask = {.name = "1", .kind = MaskKind::invert, .of = {1}}});
+    EXPECT_THROW(apply(t, {.remove = true, .mask = {.id = 1}}), Error) << "in use";
+    for (std::uint32_t i = 2; i < 40; ++i)
+        apply(t, {.mask = {.name = std::to_string(i), .kind = MaskKind::unite, .of = {i - 1, i}}});
+    EXPECT_EQ(share(t.masks.back(), t, ball()), 1);
+    Stroke s;
+    for (const char* text : {R"({"action":"mask"})", R"({"mask":-1})", R"({"mask":"all"})",
+                             R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"moon"}})",
+                             R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"lasso","polygon":[[1]]}})"})
+        EXPECT_THROW(read_entry_json(text, s), Error) << text;
+    Painting p(model());
+    Stroke masked = quick();
+    masked.mask = 3;
+    EXPECT_THROW(p.paint(masked), Error);
+}
+
+TEST(Eyedropper, ReturnsWhatWasDepositedAndMakesAnInkOfIt) {
+    Painting p(model());
+    const auto fill = [&](const std::string& ink, double film) {
+        Stroke s;
+        s.action = Action::fill;
+        s.trace.ink = ink;
+        s.fill.film = film;
+        p.paint(s);
+    };
+    const Vec3 at{0.0123, -0.007, 0.001};
+    EXPECT_TRUE(p.pick(at).films.empty());
+    EXPECT_FALSE(p.ink_of(p.pick(at), "none"));
+    fill("cinnabar", 1.5);
+    Stroke dry;
+    dry.action = Action::dry;
+    p.paint(dry);
+    fill("indigo", 0.5);
+    const Pick pick = p.pick(at);
+    EXPECT_NEAR(pick.at.distance, 1e-3, 1e-9);
+    ASSERT_EQ(pick.films.size(), 2u);
+    EXPECT_EQ(pick.films[0].film, ink::kFirstDryFilm);
+    EXPECT_EQ(pick.films[1].film, ink::kOpenFilm);
+    const double red = 1.5 * p.ink("cinnabar").strength(), blue = 0.5 * p.ink("indigo").strength();
+    EXPECT_NEAR(pick.amounts[0], red, 1e-6);  // single precision
+    EXPECT_NEAR(pick.amounts[1], blue, 1e-6);
+    ink::Ink picked = *p.ink_of(pick, "picked");
+    ASSERT_EQ(picked.parts.size(), 2u);
+    EXPECT_NEAR(picked.parts[0].fraction, red / (red + blue), 1e-6);
+    EXPECT_LE(picked.strength(), 1);
+    EXPECT_NEAR(picked.film, red + blue, 1e-6);
+    // It is an ink like any other: it goes through a file and paints what was picked.
+    picked = ink::parse_ink(ink::ink_toml(picked), "picked");
+    picked.name = "picked";
+    Painting other(model());
+    other.use_ink(picked);
+    Stroke s;
+    s.action = Action::fill;
+    s.trace.ink = "picked";
+    s.fill.film = picked.film;
+    other.paint(s);
+    EXPECT_NEAR(other.pick(at).amounts[0], red, 1e-5);
+    EXPECT_NEAR(other.pick(at).amounts[1], blue, 1e-5);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
