@@ -60,6 +60,7 @@ struct UnwrapOptions {
     UvPolicy uvs = UvPolicy::automatic;  ///< automatic: the file's UVs if they are valid
     AskedSeams seams;              ///< these, and pages, make new UVs unless `keep` is asked
     std::uint32_t max_size = 16384;  ///< of all pages together
+    bool tight = false;  ///< cut large charts where one page of `size` is covered better then
     ProgressFn progress;
 };
 

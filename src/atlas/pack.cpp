@@ -116,9 +116,10 @@ class Packer {
     /// The largest scale found at which everything fits the page: after a first fit, a
     /// search on coarse masks raises the scale step by step and looks for an order and
     /// turns that fit, then the masks are refined. Not complete when nothing fits.
-    Layout largest(std::uint32_t size, bool quick) {
-        const int trials = std::clamp(
-            static_cast<int>(kTrials / std::max<std::size_t>(shapes_.size(), 1)), 8, 300);
+    Layout largest(std::uint32_t size, bool quick, int trials) {
+        if (trials == 0)
+            trials = std::clamp(
+                static_cast<int>(kTrials / std::max<std::size_t>(shapes_.size(), 1)), 8, 300);
         const double full = size / std::sqrt(area_);
         const double least = std::sqrt(kLeastUse) * full;
         const Page coarse = page(size, kCoarseCells), fine = page(size, kCells);
@@ -299,7 +300,7 @@ Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& o
                    ? packer.on_pages(options.size, kCells, options.texels_per_unit, options.pages)
                    : packer.fill_pages(options.size, options.pages, options.quick);
     if (options.size > 0) {
-        Layout layout = packer.largest(options.size, options.quick);
+        Layout layout = packer.largest(options.size, options.quick, options.trials);
         packing.size = options.size;
         packing.fits = layout.complete();
         packing.texels_per_unit = layout.scale;

@@ -14,6 +14,7 @@ struct PackOptions {
     double texels_per_unit = 0;  ///< scale; 0: the largest that fits `size`
     std::uint32_t gutter = 4;    ///< texels free between charts; half of it along the page's edge
     bool quick = false;          ///< take the first layout that fits
+    int trials = 0;              ///< layouts to try; 0: by the number of charts
     std::uint32_t pages = 1;     ///< most pages; above 1, `size` must be given
     ProgressFn progress;
 };

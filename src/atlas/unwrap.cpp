@@ -6,6 +6,7 @@
 #include "atlas/atlas.h"
 #include "atlas/charts.h"
 #include "atlas/coverage.h"
+#include "atlas/cut_to_pack.h"
 #include "atlas/file_uvs.h"
 #include "atlas/merge.h"
 #include "atlas/pack.h"
@@ -77,22 +78,21 @@ void check_packing(const CutMesh& cut, const UnwrapOptions& options, const Packi
     refuse_size(options, cut, 2.0 * options.size);
 }
 
-Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options, bool quick) {
-    std::vector<std::vector<Vec2>> borders;
-    borders.reserve(cut.charts.size());
-    for (const FlatChart& chart : cut.charts) {
-        std::vector<Vec2>& border = borders.emplace_back();
-        for (const std::uint32_t v : chart.mesh.loop) border.push_back(chart.uv[v]);
-    }
-    PackOptions pack_options;
-    pack_options.gutter = options.gutter;
-    pack_options.quick = quick;
-    pack_options.progress = options.progress;
-    pack_options.pages = options.pages;
-    pack_options.size = options.size;
+PackOptions pack_options(const CutMesh& cut, const UnwrapOptions& options) {
+    PackOptions pack;
+    pack.gutter = options.gutter;
+    pack.progress = options.progress;
+    pack.pages = options.pages;
+    pack.size = options.size;
     if (options.size == 0 || (options.pages > 1 && options.texel_size > 0))
-        pack_options.texels_per_unit = cut.unit / options.texel_size;
-    Packing packing = pack(borders, pack_options);
+        pack.texels_per_unit = cut.unit / options.texel_size;
+    return pack;
+}
+
+Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options, bool quick) {
+    PackOptions how = pack_options(cut, options);
+    how.quick = quick;
+    Packing packing = pack(chart_borders(cut), how);
     check_packing(cut, options, packing);
     return packing;
 }
@@ -185,6 +185,10 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
         if (roomless.empty() && coverage.twice == 0) {
             if (!quick) break;
             quick = false;
+            if (options.tight && options.pages == 1 && options.size > 0) {
+                cut_to_pack(mesh, cut, chart_options.gap, pack_options(cut, options));
+                watch.lap(out.report, "cut to pack");
+            }
             continue;
         }
         if (!roomless.empty()) {

@@ -28,6 +28,7 @@ stroke::ModelOptions model_options(const Surface& s, Console& console) {
     options.unwrap.size = s.atlas_size;
     options.unwrap.texel_size = s.texel_size_mm * kMillimetre;
     options.unwrap.pages = std::max(s.pages, 1u);
+    options.unwrap.tight = s.tight;
     options.unwrap.seams.groups = s.seams == "groups" || s.seams == "both";
     if (s.seams == "sharp" || s.seams == "both")
         options.unwrap.seams.sharp_angle = s.sharp_angle_deg * kDegree;

@@ -280,6 +280,31 @@ TEST(Unwrap, AskedSeamsKeepTheInvariantsOfARealModel) {
     EXPECT_EQ(crossed, 0u);
 }
 
+// Two squares fill half a square page whichever way they lie; with one cut, five sixths and more
+// could be filled.
+TEST(Unwrap, CutsChartsThatWouldLeaveThePageHalfEmptyWhereAsked) {
+    const TriangleMesh one = test::grid_mesh(24, 24, false, false, [](double u, double v) {
+        return Vec3(u, v, 0);
+    });
+    std::vector<Vec3f> p = one.positions;
+    test::Triangles t(one.triangles.begin(), one.triangles.end());
+    for (const Vec3f& q : one.positions) p.push_back(q + Vec3f(2, 0, 0));
+    const auto n = static_cast<std::uint32_t>(one.n_vertices());
+    for (const auto& f : one.triangles) t.push_back({f[0] + n, f[1] + n, f[2] + n});
+    const TriangleMesh two = test::finish_mesh(p, t);
+    UnwrapOptions options;
+    options.size = 512;
+    EXPECT_EQ(unwrap(two, options).report.charts, 2u);
+    options.tight = true;
+    EXPECT_EQ(unwrap(one, options).report.charts, 1u);
+    const Unwrapped u = unwrap(two, options);
+    expect_sound(two, u);
+    EXPECT_GT(u.report.charts, 2u);
+    EXPECT_LE(u.report.charts, 8u);
+    EXPECT_GE(u.report.utilisation, 0.6);
+    EXPECT_NEAR(u.report.l2_stretch, 1, 1e-6);  // halves lie as the whole did
+}
+
 TEST(Unwrap, TexelSizeIsKept) {
     const TriangleMesh m = torus();
     UnwrapOptions options;

@@ -1,0 +1,159 @@
+#include "atlas/cut_to_pack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "atlas/hull.h"
+#include "atlas/straighten.h"
+#include "atlas/tasks.h"
+
+namespace tuft::atlas {
+namespace {
+
+constexpr int kMostCuts = 6;
+constexpr std::size_t kCandidates = 4;   // largest charts that are tried
+constexpr std::size_t kMostCharts = 64;  // with more, small ones fill the gaps
+constexpr int kTrials = 48;              // of the packer, to compare layouts
+constexpr std::size_t kDear = 200000;    // triangles of a chart that is left as it is
+
+std::vector<Vec2> border_of(const FlatChart& chart) {
+    std::vector<Vec2> border;
+    border.reserve(chart.mesh.loop.size());
+    for (const std::uint32_t v : chart.mesh.loop) border.push_back(chart.uv[v]);
+    return border;
+}
+
+/// Part of the page that charts of `area` cover.
+double use_of(const Packing& packing, double area) {
+    if (!packing.fits) return 0;
+    return area * packing.texels_per_unit * packing.texels_per_unit /
+           (static_cast<double>(packing.size) * packing.size);
+}
+
+/// A chart in parts.
+struct Halves {
+    std::vector<FlatChart> parts;
+    std::vector<std::uint32_t> cut;  // half-edges of the mesh
+};
+
+/// What parts are cut from.
+struct Whole {
+    const mesh::TriangleMesh& mesh;
+    const FlatChart& chart;
+    double unit, gap;
+};
+
+/// The part of a flat chart that consists of these of its faces; nothing when it is no disk
+/// or its new border comes too near to itself.
+std::optional<FlatChart> part_of(const Whole& of, std::span<const std::uint32_t> glued,
+                                 const std::vector<std::uint32_t>& faces) {
+    const FlatChart& whole = of.chart;
+    FlatChart part;
+    part.worst = whole.worst;
+    std::vector<std::uint32_t> triangles;
+    for (const std::uint32_t f : faces) triangles.push_back(whole.mesh.triangles[f]);
+    part.mesh = make_chart(of.mesh, glued, std::move(triangles), of.unit);
+    if (!part.mesh.disk) return std::nullopt;
+    part.uv.resize(part.mesh.n_vertices());
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        for (int k = 0; k < 3; ++k)
+            part.uv[part.mesh.faces[i][k]] = whole.uv[whole.mesh.faces[faces[i]][k]];
+    if (!check_flat(part.mesh, part.uv, of.gap).sound()) return std::nullopt;
+    return part;
+}
+
+std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut,
+                            const FlatChart& chart, double gap) {
+    const ChartMesh& m = chart.mesh;
+    if (m.faces.size() < 2 || m.faces.size() > kDear) return std::nullopt;
+    const Rectangle box = smallest_rectangle(chart_hull(chart));
+    double lo = std::numeric_limits<double>::infinity();
+    for (const Vec2& p : chart.uv) lo = std::min(lo, box.c * p.x + box.s * p.y);
+    const auto upper = [&](std::uint32_t f) {
+        Vec2 middle(0);
+        for (const std::uint32_t v : m.faces[f]) middle += chart.uv[v] / 3.0;
+        return box.c * middle.x + box.s * middle.y > lo + 0.5 * box.length;
+    };
+    const Patch patch = make_patch(mesh, cut.glued, m.triangles, cut.unit);
+    std::vector<std::uint8_t> seam(patch.twin.size());
+    for (std::uint32_t h = 0; h < seam.size(); ++h) {
+        const std::uint32_t g = patch.twin[h];
+        seam[h] = g == kNone || upper(h / 3) != upper(g / 3);
+    }
+    straighten_seams(patch, seam);
+
+    Halves halves;
+    std::vector<std::uint32_t> local(patch.twin), glued(cut.glued);
+    for (std::uint32_t h = 0; h < seam.size(); ++h) {
+        if (!seam[h] || local[h] == kNone) continue;
+        local[h] = kNone;
+        const std::uint32_t whole = 3 * m.triangles[h / 3] + h % 3;
+        glued[whole] = kNone;
+        halves.cut.push_back(whole);
+    }
+    const auto parts = connected_charts(local);
+    if (parts.size() < 2 || parts.size() > 4) return std::nullopt;
+    for (const auto& faces : parts) {
+        auto part = part_of({mesh, chart, cut.unit, gap}, glued, faces);
+        if (!part) return std::nullopt;
+        halves.parts.push_back(std::move(*part));
+    }
+    return halves;
+}
+
+void apply(CutMesh& cut, std::uint32_t chart, Halves halves) {
+    for (const std::uint32_t h : halves.cut) cut.glued[h] = kNone;
+    cut.charts[chart] = std::move(halves.parts[0]);
+    for (std::size_t i = 1; i < halves.parts.size(); ++i)
+        cut.charts.push_back(std::move(halves.parts[i]));
+}
+
+}  // namespace
+
+std::vector<std::vector<Vec2>> chart_borders(const CutMesh& cut) {
+    std::vector<std::vector<Vec2>> borders;
+    borders.reserve(cut.charts.size());
+    for (const FlatChart& chart : cut.charts) borders.push_back(border_of(chart));
+    return borders;
+}
+
+int cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options) {
+    options.trials = kTrials;
+    options.progress = {};
+    double area = 0;
+    for (const FlatChart& chart : cut.charts) area += chart.mesh.area;
+    std::vector<std::vector<Vec2>> borders = chart_borders(cut);
+    double use = cut.charts.size() > kMostCharts ? 1 : use_of(pack(borders, options), area);
+    int cuts = 0;
+    for (; cuts < kMostCuts && use < kGoodUse; ++cuts) {
+        std::vector<std::uint32_t> order(cut.charts.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return cut.charts[a].mesh.area > cut.charts[b].mesh.area;
+        });
+        order.resize(std::min(order.size(), kCandidates));
+        std::vector<std::optional<Halves>> halves(order.size());
+        std::vector<double> gained(order.size(), 0);
+        run_tasks(order.size(), [&](std::size_t i) {
+            halves[i] = halve(mesh, cut, cut.charts[order[i]], gap);
+            if (!halves[i]) return;
+            std::vector<std::vector<Vec2>> trial = borders;
+            trial[order[i]] = border_of(halves[i]->parts[0]);
+            for (std::size_t p = 1; p < halves[i]->parts.size(); ++p)
+                trial.push_back(border_of(halves[i]->parts[p]));
+            gained[i] = use_of(pack(trial, options), area);
+        });
+        const auto best = static_cast<std::size_t>(
+            std::max_element(gained.begin(), gained.end()) - gained.begin());
+        if (gained.empty() || gained[best] < kCutGain * use) break;
+        use = gained[best];
+        apply(cut, order[best], std::move(*halves[best]));
+        borders = chart_borders(cut);
+    }
+    return cuts;
+}
+
+}  // namespace tuft::atlas
