@@ -46,7 +46,7 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     s.ui.mark("stroke " + std::to_string(number));
     draw_way(line, ImVec2(at.x, at.y), size);
     char text[96];
-    static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Fill", "Wipe"};
+    static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe"};
     if (line.action != stroke::Action::stroke) std::snprintf(text, sizeof text, "%zu   %s", number, s.ui.tr(actions[static_cast<int>(line.action)]));
     else std::snprintf(text, sizeof text, "%zu   %.0f mm", number, line.length * 1e3);
     const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();

@@ -22,6 +22,7 @@ constexpr std::pair<const char*, const char*> kTexts[] = {
     {"Pressure", "笔压"}, {"Speed lightens", "行笔快则轻"}, {"Rest deepens", "驻笔则重"}, {"Stabiliser", "稳笔"},
     {"Pen softness", "压感曲线"}, {"Lean sideways", "左右倾斜"}, {"Lean away", "前后倾斜"},
     {"Carry ink over", "笔笔相续，墨尽再蘸"}, {"Dip", "蘸墨"}, {"Rinse", "洗笔"}, {"Comb", "舔笔"}, {"Wipe", "拭笔"},
+    {"Layer", "图层"}, {"Mask", "遮罩"}, {"Fill", "铺色"},
     {"Symmetry", "对称"}, {"Copies round", "绕轴份数"}, {"Look inside", "剖视"}, {"Cut open", "剖开"}, {"What stays", "保留部分"},
     {"Across", "横向"}, {"Along", "纵向"}, {"From above", "自上"},
     {"Journal", "笔迹"}, {"Hide", "隐藏"}, {"Show", "显示"}, {"Delete", "删除"}, {"Stop", "停止"},
