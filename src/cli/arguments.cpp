@@ -167,6 +167,16 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->check(CLI::IsMember({"exact", "vertices"}));
     p->add_option("--dip", paint.dip, "dip a fresh brush for each stroke, or carry hair and ink on until told")
         ->check(CLI::IsMember({"each", "carry"}));
+    p->add_option("--film", paint.film, "still: ink stays where it is put; wet: it flows, soaks in, dries and is picked up")
+        ->check(CLI::IsMember({"still", "wet"}));
+    p->add_option_function<std::string>(
+         "--down", 
+         [&paint](const std::string& text) {
+             paint.down = numbers(text, ',', 3);
+             if (paint.down.empty()) throw CLI::ValidationError("--down", "'" + text + "' is not X,Y,Z");
+         },
+         "direction of weight for wet ink (0,0,0: none)")
+        ->type_name("X,Y,Z");
     p->add_option("--dry", paint.dry,
                   "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
         ->check(CLI::Range(0.0, 86400.0))

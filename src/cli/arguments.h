@@ -51,6 +51,8 @@ struct Paint {
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";  ///< exact | vertices
     std::string dip = "each";       ///< each | carry
+    std::string film = "still";     ///< still | wet
+    std::vector<double> down{0, 0, -1};  ///< towards the ground, for wet ink
     double dry = -1;                ///< seconds that the ink dries after each stroke file; 0: until dry; < 0: not at all
     std::vector<std::string> prepare;  ///< what is done with a full brush first; see stroke::care_text
     std::string pressure = "none";  ///< none | speed | dwell | speed+dwell, for strokes without any

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "brush/tuft.h"
+#include "cli/bench_film.h"
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/parallel.h"
@@ -337,6 +338,10 @@ int run(const Bench& a) {
             m["stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels);
             m["bristle_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0.75);
         }
+        const FilmFigures film = measure_film(c.model);
+        m["ns_per_texel"]["film_step"] = film.step_ns;
+        m["ns_per_texel"]["transfer"] = film.transfer_ns;
+        if (film.steps_per_second > 0) m["film_steps_per_second"] = film.steps_per_second;
         m["atlas_seconds"] = c.atlas_seconds;
         m["texel_map_seconds"] = c.map_seconds;
         m["piece_graph_seconds"] = c.graph_seconds;
@@ -369,6 +374,11 @@ int run(const Bench& a) {
         fmt::print("  first ink {:.1f} ms after the first touch; {:.1f} ns a texel with one ink, {:.1f} with three pigments\n",
                    m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
                    m["ns_per_texel"]["pigments"].get<double>());
+        fmt::print("  wet ink with four pigments: {:.1f} ns a texel and step, {:.1f} both ways under the brush",
+                   m["ns_per_texel"]["film_step"].get<double>(), m["ns_per_texel"]["transfer"].get<double>());
+        if (m.contains("film_steps_per_second"))
+            fmt::print("; all of it wet {:.1f} steps/s on two threads", m["film_steps_per_second"].get<double>());
+        fmt::print("\n");
         for (const char* texels : {"64", "128", "256"})
             fmt::print("  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s; dry, by 500 bristles {:>6.0f}\n",
                        texels, m["microseconds_per_stamp"][texels].get<double>(),

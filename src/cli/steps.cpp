@@ -125,6 +125,8 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     settings.dip = a.dip;
     settings.smooth = a.smooth;
     settings.stabilise = a.stabilise_mm * kMillimetre;
+    settings.film = a.film;
+    settings.down = {a.down[0], a.down[1], a.down[2]};
     std::optional<stroke::Habit> habit;
     if (!a.habit.empty()) habit = stroke::load_habit(a.habit);
 

@@ -152,15 +152,17 @@ Plane& Canvas::touch_liquid(std::uint32_t slot, Liquid where) {
 void Canvas::swap_liquid(std::uint32_t slot, Liquid where, PlanePtr& plane) {
     PlanePtr& here = tile(slot).liquid[static_cast<int>(where)];
     const std::size_t more = plane ? 1 : 0, less = here ? 1 : 0;  // unsigned: the sum is right
-    n_liquid_.fetch_add(more - less, std::memory_order_relaxed);
-    n_planes_.fetch_add(more - less, std::memory_order_relaxed);
+    if (more != less) {
+        n_liquid_.fetch_add(more - less, std::memory_order_relaxed);
+        n_planes_.fetch_add(more - less, std::memory_order_relaxed);
+    }
     here.swap(plane);
 }
 
 void Canvas::swap_open(std::uint32_t slot, int pigment, PlanePtr& plane) {
     PlanePtr& here = tile(slot).open[pigment];
     const std::size_t more = plane ? 1 : 0, less = here ? 1 : 0;
-    n_planes_.fetch_add(more - less, std::memory_order_relaxed);
+    if (more != less) n_planes_.fetch_add(more - less, std::memory_order_relaxed);
     here.swap(plane);
 }
 

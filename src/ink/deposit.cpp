@@ -107,6 +107,17 @@ float extinction_of(const Ink& ink) {
     return static_cast<float>(std::max(sum, 0.0));
 }
 
+void film_goals(std::span<float, kN> goal, std::span<const float, kN> coverage, const DepositParams& params) {
+    // Below 1e-3 the law is linear to 5e-4, and 1 − f hidden would lose digits.
+    if (params.extinction * params.target > 1e-3f) {
+        // Beyond ε c = 12 the film hides to 6e-6; more would only lose digits.
+        const float extinction = std::min(params.extinction, 12 / params.target);
+        goals(goal.data(), coverage.data(), -std::expm1(-extinction * params.target), 1 / extinction);
+    } else {
+        linear_goals(goal.data(), coverage.data(), params.target);
+    }
+}
+
 double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
                std::span<const float, kN> area, double ds, const DepositParams& params) {
     alignas(64) float film[kN];
@@ -127,14 +138,7 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
     if (!(strength > 0) || !(params.target > 0) || !(ds > 0)) return 0;
     const auto rate = static_cast<float>(-std::expm1(-ds / params.transfer_length));
     alignas(64) float goal[kN];
-    // Below 1e-3 the law is linear to 5e-4, and 1 − f hidden would lose digits.
-    if (params.extinction * params.target > 1e-3f) {
-        // Beyond ε c = 12 the film hides to 6e-6; more would only lose digits.
-        const float extinction = std::min(params.extinction, 12 / params.target);
-        goals(goal, coverage.data(), -std::expm1(-extinction * params.target), 1 / extinction);
-    } else {
-        linear_goals(goal, coverage.data(), params.target);
-    }
+    film_goals(goal, coverage, params);
     if (!increments(film, all, goal, params.capacity, rate)) return 0;
     double given = 0;
     for (int p = 0; p < kMaxPigments; ++p)

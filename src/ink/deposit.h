@@ -26,6 +26,10 @@ struct DepositParams {
 /// ε of an ink: 2K + S of its mixture, weighted over the bands by luminance.
 float extinction_of(const Ink& ink);
 
+/// g(f) of `deposit` for a tile: the film that texels with coverage f tend to.
+void film_goals(std::span<float, atlas::kTileTexels> goal,
+                std::span<const float, atlas::kTileTexels> coverage, const DepositParams& params);
+
 /// Lays down one stamp on one tile:
 ///
 ///     dw = max(0, min(g(f), w + C − W) − w) (1 − exp(−ds/s0))

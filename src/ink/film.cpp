@@ -18,6 +18,8 @@ constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and dry
 // What may leave a texel in one step, of what it has: less than all of it together.
 constexpr double kFlowPart = 0.5, kMixingPart = 0.2, kWeightPart = 0.25;
 constexpr double kSeamPart = 4;        // conductances over seams together, over the texel's area
+constexpr double kLeastMixing = 2e-10; // m²/s
+constexpr double kStirring = 0.02;     // film units: mixing over mobility
 constexpr double kRimLength = 1e-3;    // metres: what the rim of a wet spot adds to its area, as for drying
 
 using PlanePtr = std::unique_ptr<Plane>;
@@ -25,10 +27,13 @@ using PlanePtr = std::unique_ptr<Plane>;
 /// A tile in the list of a step.
 struct Active {
     std::uint32_t slot = kNone;
-    std::array<std::uint32_t, 9> around{};  ///< slots, row by row, this one in the middle
+    std::array<std::uint32_t, 9> around{};  ///< places in the list, row by row, this one in the middle
+    std::array<const Plane*, 2> liquid{};   ///< as the step finds them
+    std::array<const Plane*, kMaxPigments> open{};
     std::span<const atlas::SeamLink> links;
     Outcome outcome;
     bool seam_wet = false;
+    bool spreads = true;                    ///< wet in other places than before the step
     bool idle = false;                      ///< nothing wet in sight
     PlanePtr w, s;                          ///< of the step's end; between steps: spare
     std::array<PlanePtr, kMaxPigments> p;
@@ -38,13 +43,15 @@ struct Active {
     bool wet() const { return outcome.most_w + outcome.most_s > 0; }
 };
 
-/// Copies a plane with a border of one texel from the tiles around; absent planes are zeros.
+/// Copies a plane with a border of one texel from the tiles around; absent planes are zeros, and
+/// so are tiles that are not in the list: nothing there can move.
 template <class PlaneOf>
-bool load(Field& field, const std::array<std::uint32_t, 9>& around, PlaneOf&& plane_of) {
+bool load(Field& field, const std::vector<Active>& list, const std::array<std::uint32_t, 9>& around,
+          PlaneOf&& plane_of) {
     std::array<const Plane*, 9> planes;
     bool any = false;
     for (int i = 0; i < 9; ++i) {
-        planes[i] = around[i] == kNone ? nullptr : plane_of(around[i]);
+        planes[i] = around[i] == kNone ? nullptr : plane_of(list[around[i]]);
         any |= planes[i] != nullptr;
     }
     if (!any) return false;
@@ -64,10 +71,9 @@ bool load(Field& field, const std::array<std::uint32_t, 9>& around, PlaneOf&& pl
 
 float at(const Plane* plane, int t) { return plane ? (*plane)[t] : 0; }
 
-void put_new(PlanePtr& to, const Plane* from) {
-    if (!to) to = std::make_unique<Plane>();
-    if (from) *to = *from;
-    else to->fill(0);
+float* room(PlanePtr& plane) {
+    if (!plane) plane = std::make_unique<Plane>();
+    return plane->data();
 }
 
 bool all_zero(const Plane& plane) {
@@ -79,6 +85,8 @@ bool all_zero(const Plane& plane) {
 FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     FilmParams p;
     p.mobility = static_cast<double>(substrate.diffusion);
+    // Wet in wet, surface tension stirs more than molecules move: as wide as water itself spreads.
+    p.mixing = std::max(kLeastMixing, kStirring * p.mobility);
     p.threshold = static_cast<double>(substrate.threshold);
     p.pin = 2 * static_cast<double>(substrate.edge);
     p.absorbency = static_cast<double>(substrate.absorbency);
@@ -96,12 +104,15 @@ struct WetFilm::State {
     std::vector<std::unique_ptr<Geometry>> geometry;
     std::vector<std::unique_ptr<Slopes>> slopes;
     std::vector<std::uint8_t> mark;  ///< [n_slots] scratch
+    std::vector<std::uint32_t> place;  ///< [n_slots] scratch
+    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> others;  ///< of the list: slots over
+                                                                             ///< seams, places in the list
     Vec3 down{0};
     std::vector<Active> list;
     std::vector<std::uint8_t> told;
 
     State(const atlas::TexelMap& m, atlas::SeamLinks s)
-        : map(m), seams(std::move(s)), geometry(m.n_slots()), slopes(m.n_slots()), mark(m.n_slots(), 0) {
+        : map(m), seams(std::move(s)), geometry(m.n_slots()), slopes(m.n_slots()), mark(m.n_slots(), 0), place(m.n_slots(), kNone) {
         limit_links();
     }
 
@@ -110,10 +121,10 @@ struct WetFilm::State {
         const double mean = map.texel_size * map.texel_size;
         std::vector<float> scale(seams.links.size());
         std::vector<std::array<float, kTexels>> of_slot;  // only of slots with links
-        std::vector<std::uint32_t> place(map.n_slots(), kNone);
+        std::vector<std::uint32_t> index(map.n_slots(), kNone);
         for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
             if (seams.start[slot] == seams.start[slot + 1]) continue;
-            place[slot] = static_cast<std::uint32_t>(of_slot.size());
+            index[slot] = static_cast<std::uint32_t>(of_slot.size());
             std::array<float, kTexels>& sums = of_slot.emplace_back();
             sums.fill(0);
             for (const atlas::SeamLink& l : links_of(slot)) sums[l.texel] += l.weight;
@@ -125,7 +136,7 @@ struct WetFilm::State {
         for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
             for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
                 atlas::SeamLink& l = seams.links[i];
-                l.weight *= std::min(of_slot[place[slot]][l.texel], of_slot[place[l.other_slot]][l.other_texel]);
+                l.weight *= std::min(of_slot[index[slot]][l.texel], of_slot[index[l.other_slot]][l.other_texel]);
             }
     }
 
@@ -160,11 +171,11 @@ struct WetFilm::State {
             }
             list.push_back(std::move(tile));
         }
-        spread(canvas);
+        spread();
     }
 
     /// The list becomes the wet tiles and those that liquid may reach in the next step.
-    void spread(const Canvas& canvas) {
+    void spread() {
         std::vector<std::uint32_t> wanted;
         const auto want = [&](std::uint32_t slot) {
             if (slot == kNone || mark[slot]) return;
@@ -188,12 +199,26 @@ struct WetFilm::State {
             while (k < list.size() && list[k].slot < wanted[i]) ++k;
             if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
             next[i].slot = wanted[i];
-            next[i].around = around(wanted[i]);
             next[i].links = links_of(wanted[i]);
+            place[wanted[i]] = static_cast<std::uint32_t>(i);
             mark[wanted[i]] = 0;
         }
         list = std::move(next);
-        (void)canvas;
+        for (Active& tile : list) {
+            tile.around = around(tile.slot);
+            for (std::uint32_t& slot : tile.around) slot = slot == kNone ? kNone : place[slot];
+        }
+        others.assign(list.size(), {});
+        for (std::size_t i = 0; i < list.size(); ++i)
+            for (const atlas::SeamLink& l : list[i].links)
+                if (others[i].empty() || others[i].back().first != l.other_slot)
+                    others[i].push_back({l.other_slot, place[l.other_slot]});
+        for (const Active& tile : list) place[tile.slot] = kNone;
+    }
+
+    /// Whether other tiles may be reached after this step than before it.
+    bool changed() const {
+        return std::any_of(list.begin(), list.end(), [](const Active& tile) { return tile.spreads; });
     }
 
     void prepare(const Vec3& towards) {
@@ -226,16 +251,19 @@ struct WetFilm::State {
         }
         const double run = kWeightPart / 2 * smallest;
         double dt = kLongestStep;
-        const double flow = p.mobility / area * stiffness * std::max(most_w - p.threshold, p.pores > 0 ? most_s : 0.0);
+        const double free = std::max(0.0, most_w - p.hold);
+        const double flow = stiffness / area *
+                            std::max(p.mobility * (most_w - p.threshold) + p.levelling * free,
+                                     p.pores > 0 ? p.mobility * most_s : 0.0);
         if (flow > 0) dt = std::min(dt, kFlowPart / flow);
         const double mixing = p.mixing / area * stiffness;
         if (mixing > 0) dt = std::min(dt, kMixingPart / mixing);
-        const double free = std::max(0.0, most_w - p.hold);
         const double speed = p.weight / map.texel_size * free * free * steepest;
         if (speed > 0) dt = std::min(dt, run / speed);
         dt = std::max(dt, p.shortest_step);
         dt = left / std::ceil(left / dt * (1 - 1e-12));
         step.flow = static_cast<float>(p.mobility * dt / area);
+        step.levelling = static_cast<float>(p.levelling * dt / area);
         step.limit = static_cast<float>(kFlowPart / stiffness);
         step.threshold = static_cast<float>(p.threshold);
         step.pin = static_cast<float>(p.pin);
@@ -253,37 +281,37 @@ struct WetFilm::State {
     /// Fluxes over the seams of a tile: added to dw, ds; what pigments need is kept.
     struct Carried {
         std::uint8_t texel, other_texel;
-        std::uint32_t other_slot;
+        const Active* other;
         float out, in;  ///< dp = −out c(texel) + in c(other)
         float other_total;
     };
-    void seam_fluxes(const Canvas& canvas, Active& tile, const Step& step, Work& work,
-                     std::vector<Carried>& carried) const {
-        const Plane *w = canvas.liquid(tile.slot, Liquid::film), *s = canvas.liquid(tile.slot, Liquid::pores);
+    void seam_fluxes(std::size_t index, const Step& step, Work& work, std::vector<Carried>& carried) const {
+        const Active& tile = list[index];
         const Geometry& g = *geometry[tile.slot];
         carried.clear();
-        std::uint32_t other = kNone;
-        const Plane *ow = nullptr, *os = nullptr;
+        const Active* other = nullptr;
         for (const atlas::SeamLink& l : tile.links) {
-            if (l.other_slot != other) {
-                other = l.other_slot;
-                ow = canvas.liquid(other, Liquid::film);
-                os = canvas.liquid(other, Liquid::pores);
+            if (!other || other->slot != l.other_slot) {
+                const auto found = std::find_if(others[index].begin(), others[index].end(),
+                                                [&](const auto& o) { return o.first == l.other_slot; });
+                other = found->second == kNone ? nullptr : &list[found->second];
             }
-            const std::array<float, 2> here{at(w, l.texel), at(s, l.texel)}, there{at(ow, l.other_texel), at(os, l.other_texel)};
+            const std::array<float, 2> here{at(tile.liquid[0], l.texel), at(tile.liquid[1], l.texel)};
+            const std::array<float, 2> there{other ? at(other->liquid[0], l.other_texel) : 0,
+                                             other ? at(other->liquid[1], l.other_texel) : 0};
             const float t = here[0] + here[1], u = there[0] + there[1];
-            if (!(t + u > 0)) continue;
+            if (!(t + u > 0) || !other) continue;
             if (!(u > 0)) work.dry_neighbours[l.texel] += l.weight;
             // One order for both sides, so that both have the same numbers.
-            const bool first = tile.slot != other ? tile.slot < other : l.texel < l.other_texel;
-            const float g0 = g.grain[field_of(l.texel)], g1 = geometry[other]->grain[field_of(l.other_texel)];
-            const Vec3 p0(map.position(tile.slot, l.texel)), p1(map.position(other, l.other_texel));
-            const auto slope = [&](const Vec3& from, const Vec3& to) {
-                if (!slopes[tile.slot]) return 0.0f;
-                return l.weight * static_cast<float>(glm::dot(down, to - from) / map.texel_size);
-            };
-            const SeamFlux f = first ? seam_flux(l.weight, slope(p0, p1), {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
-                                     : seam_flux(l.weight, slope(p1, p0), {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
+            const bool first = tile.slot != l.other_slot ? tile.slot < l.other_slot : l.texel < l.other_texel;
+            const float g0 = g.grain[field_of(l.texel)], g1 = geometry[l.other_slot]->grain[field_of(l.other_texel)];
+            float slope = 0;
+            if (slopes[tile.slot]) {
+                const Vec3 p0(map.position(tile.slot, l.texel)), p1(map.position(l.other_slot, l.other_texel));
+                slope = l.weight * static_cast<float>(glm::dot(down, first ? p1 - p0 : p0 - p1) / map.texel_size);
+            }
+            const SeamFlux f = first ? seam_flux(l.weight, slope, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
+                                     : seam_flux(l.weight, slope, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
             const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
             work.dw[l.texel] += sign * f.w * inverse;
             work.ds[l.texel] += sign * f.s * inverse;
@@ -291,47 +319,65 @@ struct WetFilm::State {
         }
     }
 
-    void compute(const Canvas& canvas, Active& tile, const Step& step, std::uint64_t number, Work& work,
-                 std::vector<Carried>& carried) const {
+    void compute(std::size_t index, int pigments, const Step& step, std::uint64_t number, Work& work,
+                 std::vector<Carried>& carried) {
+        Active& tile = list[index];
         const Geometry& g = *geometry[tile.slot];
-        const auto liquid = [&](Liquid where) { return [&canvas, where](std::uint32_t slot) { return canvas.liquid(slot, where); }; };
-        const bool any_w = load(work.w, tile.around, liquid(Liquid::film));
+        const bool any_w = load(work.w, list, tile.around, [](const Active& a) { return a.liquid[0]; });
         if (!any_w) work.w.fill(0);
-        const bool any_s = load(work.s, tile.around, liquid(Liquid::pores));
+        const bool any_s = load(work.s, list, tile.around, [](const Active& a) { return a.liquid[1]; });
         if (!any_s) work.s.fill(0);
-        fluxes(work, g, slopes[tile.slot] ? slopes[tile.slot].get() : nullptr, step);
+        fluxes(work, g, slopes[tile.slot].get(), step);
         liquid_changes(work, g);
-        seam_fluxes(canvas, tile, step, work, carried);
+        seam_fluxes(index, step, work, carried);
         // From what is there and nothing else: the same whenever this journal is painted.
         const std::uint64_t seed =
             hash_bits(hash_bits(tile.slot, number),
                       std::bit_cast<std::uint32_t>(tile.outcome.most_w + tile.outcome.most_s));
+        const Outcome before = tile.outcome;
+        const bool seam_was = tile.seam_wet;
         tile.outcome = {};
         tile.pigments = 0;
         tile.idle = !any_w && !any_s && carried.empty();
         if (tile.idle) return;
-        put_new(tile.w, canvas.liquid(tile.slot, Liquid::film));
-        put_new(tile.s, canvas.liquid(tile.slot, Liquid::pores));
-        tile.outcome = local_step(tile.w->data(), tile.s->data(), work, g, step, seed, tile.closing.data());
+        tile.outcome = local_step(room(tile.w), room(tile.s), work, g, step, seed, tile.closing.data());
         tile.seam_wet = false;
         for (const atlas::SeamLink& l : tile.links)
             tile.seam_wet = tile.seam_wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
+        tile.spreads = before.sides != tile.outcome.sides || seam_was != tile.seam_wet ||
+                       (before.most_w + before.most_s > 0) != tile.wet();
         alignas(64) Field field{};
-        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p) {
-            bool any = load(field, tile.around, [&](std::uint32_t slot) { return canvas.plane(slot, p); });
+        for (int p = 0; p < pigments; ++p) {
+            bool any = load(field, list, tile.around, [p](const Active& a) { return a.open[p]; });
             if (!any) field.fill(0);
-            for (const Carried& c : carried) any = any || canvas.plane(c.other_slot, p);
+            for (const Carried& c : carried) any = any || c.other->open[p];
             if (!any) continue;
             concentrations(work, field);
             pigment_changes(work, g);
             for (const Carried& c : carried) {
-                const float there = c.other_total > 0 ? at(canvas.plane(c.other_slot, p), c.other_texel) / c.other_total : 0;
+                const float there = c.other_total > 0 ? at(c.other->open[p], c.other_texel) / c.other_total : 0;
                 work.dp[c.texel] += (c.in * there - c.out * work.c[field_of(c.texel)]) * g.inverse[c.texel];
             }
-            put_new(tile.p[p], canvas.plane(tile.slot, p));
-            add_pigment(tile.p[p]->data(), work, seed + 1 + static_cast<std::uint64_t>(p));
+            add_pigment(room(tile.p[p]), work, field, seed + 1 + static_cast<std::uint64_t>(p));
             tile.pigments |= 1u << p;
         }
+    }
+
+    /// Planes lie here and there: without a word beforehand the processor waits for each.
+    void fetch(const Active& tile) const {
+        const auto all_of = [](const void* from, std::size_t bytes) {
+            for (std::size_t i = 0; from && i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
+        };
+        for (const Plane* plane : tile.liquid) all_of(plane, sizeof(Plane));
+        for (const Plane* plane : tile.open) all_of(plane, sizeof(Plane));
+        all_of(geometry[tile.slot].get(), sizeof(Geometry));
+        for (const PlanePtr* plane : {&tile.w, &tile.s}) all_of(plane->get(), sizeof(Plane));
+        for (const PlanePtr& plane : tile.p) all_of(plane.get(), sizeof(Plane));
+    }
+
+    void find_planes(const Canvas& canvas, Active& tile) const {
+        tile.liquid = {canvas.liquid(tile.slot, Liquid::film), canvas.liquid(tile.slot, Liquid::pores)};
+        for (int p = 0; p < kMaxPigments; ++p) tile.open[p] = canvas.plane(tile.slot, p);
     }
 
     static void commit(Canvas& canvas, Active& tile, float stain) {
@@ -353,10 +399,17 @@ struct WetFilm::State {
     }
 
     void step(Canvas& canvas, const FilmParams& params, const Step& rates, FilmReport& report) {
+        parallel_for(list.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) find_planes(canvas, list[i]);
+        });
+        const int pigments = static_cast<int>(canvas.pigments().size());
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
             const auto work = std::make_unique<Work>();
             std::vector<Carried> carried;
-            for (std::size_t i = begin; i < end; ++i) compute(canvas, list[i], rates, report.steps, *work, carried);
+            for (std::size_t i = begin; i < end; ++i) {
+                if (i + 2 < end) fetch(list[i + 2]);
+                compute(i, pigments, rates, report.steps, *work, carried);
+            }
         });
         parallel_for(list.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) commit(canvas, list[i], static_cast<float>(params.stain));
@@ -390,7 +443,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         const double dt = s.choose(params, left, step);
         s.step(canvas, params, step, report);
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
-        s.spread(canvas);
+        if (s.changed()) s.spread();
     }
     s.list.clear();
     return report;

@@ -22,8 +22,9 @@ struct FilmParams {
     double rim_evaporation = 0;      ///< film units · m a second, more, per metre of rim
     double stain = 0;                ///< part of a drying film that stays in bare substrate
     Vec3 down{0};                    ///< towards the ground, length 1; zero: no weight
-    double hold = 2.5;               ///< film units that no weight moves
-    double weight = 1.1e-4;          ///< ρ g h₀² / 3 μ for a film unit h₀: m/s at one unit of film
+    double hold = 2;                 ///< film units that neither weight nor surface tension moves
+    double levelling = 1e-8;         ///< m²/s per film unit above `hold`: puddles draw together
+    double weight = 3.3e-4;          ///< ρ g h₀² / 3 μ for a film unit h₀ of water: m/s at one unit
     double shortest_step = 0.01;     ///< seconds; where stability asked for shorter steps, the
                                      ///< fastest flows are held back instead
 };
@@ -41,12 +42,12 @@ struct FilmReport {
 /// Steps the wet film of a canvas. Finite volumes on the texels with the metric of the
 /// surface: liquid w on the surface and s in the pores (w + s = T), pigments p of the open film:
 ///
-///     ∂w/∂t = ∇·(D ⟨w − w_c⟩ ∇w − V(w) g_t) − soak − e,    V(w) = weight ⟨w − hold⟩² w
+///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − hold⟩) ∇w − V(w) g_t) − soak − e,   V(w) = weight ⟨w − hold⟩² w
 ///     ∂s/∂t = ∇·(D s ∇s) + soak,                           soak = a w (1 − s / pores)
 ///     ∂p/∂t = ∇·((p/T)↑ j + D_p T ∇(p/T)),                 j: the flux of w and s together
 ///
 /// ↑: of the texel the liquid comes from. Liquid goes onto a dry texel only from one that has
-/// more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
+/// more than w_c + pin, and by its weight only beyond hold + 2 pin (rims stay where they are; pin varies by ± 40 % with the place, over
 /// about a millimetre, as surfaces are not clean). The rim evaporates faster by
 /// `rim_evaporation`, so that liquid, and pigment with it, is drawn there: dark edges.
 /// A texel with nothing wet any more is closed (drying.h).

@@ -23,7 +23,8 @@ inline float film_flux(float g, float w0, float w1, float t0, float t1, float gr
     const float onto0 = t0 > 0 ? 0 : p.pin * grain0, onto1 = t1 > 0 ? 0 : p.pin * grain1;
     const float held = p.threshold + (onto0 + onto1);
     const float above = 0.5f * (positive(w0 - held) + positive(w1 - held));
-    return g * smaller(p.flow * above, p.limit) * (w0 - w1);
+    const float free = 0.5f * (positive(w0 - p.hold) + positive(w1 - p.hold));
+    return g * smaller(p.flow * above + (above > 0 ? p.levelling * free : 0), p.limit) * (w0 - w1);
 }
 
 inline float pore_flux(float g, float s0, float s1, const Step& p) {
@@ -34,7 +35,7 @@ inline float pore_flux(float g, float s0, float s1, const Step& p) {
 inline float weight_flux(float slope, float w0, float w1, float t0, float t1, float grain0,
                          float grain1, const Step& p) {
     const float from = slope > 0 ? w0 : w1;
-    const float onto = (slope > 0 ? t1 : t0) > 0 ? 0 : p.pin * (slope > 0 ? grain1 : grain0);
+    const float onto = (slope > 0 ? t1 : t0) > 0 ? 0 : 2 * p.pin * (slope > 0 ? grain1 : grain0);
     const float free = positive(from - (p.hold + onto));
     const float speed = p.weight * (free * free) * slope;
     return (speed > p.run ? p.run : (speed < -p.run ? -p.run : speed)) * from;
@@ -197,62 +198,76 @@ inline float sum_of(float a, float d, float noise) {
     return positive(a + (d + noise * (scale * 0x1p-23f)));
 }
 
-/// A texel's new liquid, soaking and drying.
-TUFT_CLONES double settle(float* __restrict w, float* __restrict s, const Work& o,
-                          const float* __restrict inverse, const Step& p, const float* __restrict noise,
-                          std::uint8_t* __restrict closing) {
-    double gone[kLanes] = {};
-    const float per_pores = p.pores > 0 ? 1 / p.pores : 0;
-    for (int t = 0; t < kTexels; t += kLanes) {
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const int i = t + lane;
-            const float w0 = w[i], s0 = s[i];
-            float w1 = sum_of(w0, o.dw[i], noise[i]), s1 = sum_of(s0, o.ds[i], noise[i]);
-            const float room = positive(p.pores - s1);
-            float in = w1 * p.soak * (room * per_pores);
+/// A texel's new liquid, soaking and drying; `air`: what went into the air.
+TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restrict air,
+                        const float* __restrict w_field, const float* __restrict s_field,
+                        const float* __restrict dw, const float* __restrict ds,
+                        const float* __restrict dry, const float* __restrict inverse,
+                        const float* __restrict noise, const Step& step) {
+    const float soak = step.soak, pores = step.pores, per_pores = pores > 0 ? 1 / pores : 0;
+    const float evaporation = step.evaporation, rim = step.rim;
+    for (int row = 0; row < kSide; ++row)
+        for (int x = 0; x < kSide; ++x) {
+            const int i = row * kSide + x, k = (row + 1) * kRow + 1 + x;
+            float w1 = sum_of(w_field[k], dw[i], noise[i]), s1 = sum_of(s_field[k], ds[i], noise[i]);
+            const float room = positive(pores - s1);
+            float in = w1 * soak * (room * per_pores);
             // In units of the last place of the larger one, so that both sums are exact.
             const float large = larger(w1, s1);
             in = smaller(smaller((large + in) - large, room), w1);
             w1 -= in;
             s1 += in;
-            const float over = positive(s1 - p.pores);  // by rounding
+            const float over = positive(s1 - pores);  // by rounding
             s1 -= over;
             w1 += over;
-            const float all = p.evaporation + p.rim * o.dry_neighbours[i] * inverse[i];
+            const float all = evaporation + rim * dry[i] * inverse[i];
             const float from_w = smaller(w1, all), from_s = smaller(s1, all - from_w);
-            w1 -= from_w;
-            s1 -= from_s;
-            const float area = inverse[i] > 0 ? 1 / inverse[i] : 0;
-            gone[lane] += static_cast<double>(from_w + from_s) * static_cast<double>(area);
-            closing[i] = w0 + s0 > 0 && !(w1 + s1 > 0);
-            w[i] = w1;
-            s[i] = s1;
+            w[i] = w1 - from_w;
+            s[i] = s1 - from_s;
+            air[i] = from_w + from_s;
         }
-    }
+}
+
+TUFT_CLONES double integral(const float* __restrict air, const float* __restrict inverse) {
+    double sums[kLanes] = {};
+    for (int t = 0; t < kTexels; t += kLanes)
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const float area = inverse[t + lane] > 0 ? 1 / inverse[t + lane] : 0;
+            sums[lane] += static_cast<double>(air[t + lane] * area);
+        }
     double sum = 0;
-    for (const double g : gone) sum += g;
+    for (const double g : sums) sum += g;
     return sum;
 }
 
-TUFT_CLONES void extremes(const float* __restrict w, const float* __restrict s,
-                          const std::uint8_t* __restrict closing, Outcome& out) {
-    float most_w[kLanes] = {}, most_s[kLanes] = {};
-    unsigned any = 0;
-    for (int t = 0; t < kTexels; t += kLanes)
-        for (int lane = 0; lane < kLanes; ++lane) {
-            most_w[lane] = larger(most_w[lane], w[t + lane]);
-            most_s[lane] = larger(most_s[lane], s[t + lane]);
-            any |= closing[t + lane];
+/// Greatest liquids, and in `closed` 1 for texels that had liquid and have none.
+TUFT_CLONES void extremes(float* __restrict most, const float* __restrict w, const float* __restrict s,
+                          const float* __restrict total, float* __restrict closed) {
+    float most_w[kLanes] = {}, most_s[kLanes] = {}, any[kLanes] = {};
+    for (int row = 0; row < kSide; ++row)
+        for (int x = 0; x < kSide; ++x) {
+            const int i = row * kSide + x;
+            most_w[x] = larger(most_w[x], w[i]);
+            most_s[x] = larger(most_s[x], s[i]);
+            const float was = total[(row + 1) * kRow + 1 + x] > 0 ? 1.0f : 0.0f;
+            const float is = w[i] + s[i] > 0 ? 1.0f : 0.0f;
+            closed[i] = was * (1 - is);
+            any[x] = larger(any[x], closed[i]);
         }
     for (int lane = 0; lane < kLanes; ++lane) {
-        out.most_w = larger(out.most_w, most_w[lane]);
-        out.most_s = larger(out.most_s, most_s[lane]);
+        most[0] = larger(most[0], most_w[lane]);
+        most[1] = larger(most[1], most_s[lane]);
+        most[2] = larger(most[2], any[lane]);
     }
-    out.closing = any != 0;
 }
 
-TUFT_CLONES void add_dithered(float* __restrict p, const float* __restrict dp, const float* __restrict noise) {
-    for (int t = 0; t < kTexels; ++t) p[t] = sum_of(p[t], dp[t], noise[t]);
+TUFT_CLONES void add_dithered(float* __restrict p, const float* __restrict field, const float* __restrict dp,
+                              const float* __restrict noise) {
+    for (int row = 0; row < kSide; ++row)
+        for (int x = 0; x < kSide; ++x) {
+            const int i = row * kSide + x;
+            p[i] = sum_of(field[(row + 1) * kRow + 1 + x], dp[i], noise[i]);
+        }
 }
 
 }  // namespace
@@ -302,8 +317,17 @@ void pigment_changes(Work& work, const Geometry& g) {
 Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
                    std::uint64_t seed, std::uint8_t* closing) {
     Outcome out;
-    out.evaporated = settle(w, s, work, g.inverse.data(), step, dither(seed), closing);
-    extremes(w, s, closing, out);
+    alignas(64) std::array<float, kTexels> air, closed;
+    settle(w, s, air.data(), work.w.data(), work.s.data(), work.dw.data(), work.ds.data(),
+           work.dry_neighbours.data(), g.inverse.data(), dither(seed), step);
+    out.evaporated = integral(air.data(), g.inverse.data());
+    std::array<float, 3> most{};
+    extremes(most.data(), w, s, work.total.data(), closed.data());
+    out.most_w = most[0];
+    out.most_s = most[1];
+    out.closing = most[2] > 0;
+    if (out.closing)
+        for (int t = 0; t < kTexels; ++t) closing[t] = closed[t] > 0;
     for (int i = 0; i < kSide; ++i) {
         const int last = kTexels - kSide;
         out.sides |= w[i] + s[i] > 0 ? 1 : 0;
@@ -314,8 +338,8 @@ Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, cons
     return out;
 }
 
-void add_pigment(float* p, const Work& work, std::uint64_t seed) {
-    add_dithered(p, work.dp.data(), dither(seed));
+void add_pigment(float* p, const Work& work, const Field& before, std::uint64_t seed) {
+    add_dithered(p, before.data(), work.dp.data(), dither(seed));
 }
 
 const float* dither(std::uint64_t seed) {

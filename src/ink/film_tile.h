@@ -46,6 +46,7 @@ Slopes make_slopes(const atlas::TexelMap& map, std::uint32_t slot, const Geometr
 /// FilmParams for one step, in texels: rates times the step's length.
 struct Step {
     float flow = 0;        ///< D dt / A per film unit
+    float levelling = 0;   ///< L dt / A per film unit above hold
     float limit = 0;       ///< of flow × thickness, so that nothing gets negative
     float threshold = 0, pin = 0;
     float mixing = 0;      ///< D_p dt / A
@@ -89,12 +90,12 @@ struct Outcome {
 /// rounding to the nearest would favour, at each power of two, the side below it.
 const float* dither(std::uint64_t seed);
 
-/// w += dw, s += ds, then soaking and evaporation; `closing` [256] is 1 where a texel that was wet
-/// is wet no more.
+/// w and s [256] become those of `work` with dw, ds, then soaking and evaporation; `closing` [256] is
+/// 1 where a texel that was wet is wet no more.
 Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
                    std::uint64_t seed, std::uint8_t* closing);
-/// p += dp, never below 0.
-void add_pigment(float* p, const Work& work, std::uint64_t seed);
+/// p [256] = before + dp, never below 0.
+void add_pigment(float* p, const Work& work, const Field& before, std::uint64_t seed);
 
 /// The same expressions for two texels that face each other over a seam.
 struct SeamFlux {

@@ -132,7 +132,7 @@ Ink parse_ink(std::string_view text, const std::string& source) {
     ink.transfer_length =
         in.number("transfer_length_mm", 0.001, 100, ink.transfer_length * 1e3) * 1e-3;
     const toml::array* parts = table["pigment"].as_array();
-    if (!parts || parts->empty()) in.fail(in.line(), "an ink needs at least one [[pigment]]");
+    if (!parts) in.fail(in.line(), "an ink needs at least one [[pigment]] (clean water: pigment = [])");
     if (parts->size() > 8) in.fail(in.line(), "an ink has at most 8 pigments");
     for (const toml::node& node : *parts) {
         const toml::table* part = node.as_table();
@@ -157,6 +157,7 @@ std::string ink_toml(const Ink& ink) {
         << "\nfilm = " << shortest(ink.film) << "\nsupply = " << shortest(ink.supply)
         << "\nsupply_length_mm = " << shortest(ink.supply_length * 1e3)
         << "\ntransfer_length_mm = " << shortest(ink.transfer_length * 1e3) << "\n";
+    if (ink.parts.empty()) out << "pigment = []\n";
     for (const InkPart& part : ink.parts) {
         out << "\n[[pigment]]\nname = " << quoted(part.pigment.name)
             << "\nfraction = " << shortest(part.fraction) << "\n"

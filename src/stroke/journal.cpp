@@ -19,7 +19,8 @@ constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", 
 nlohmann::json json_of(const Settings& s) {
     return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
             {"spacing", s.spacing},     {"lead", s.lead},           {"dip", s.dip},
-            {"pressure", s.pressure},   {"smooth", s.smooth},       {"stabilise", s.stabilise}};
+            {"pressure", s.pressure},   {"smooth", s.smooth},       {"stabilise", s.stabilise},
+            {"film", s.film},           {"down", {s.down.x, s.down.y, s.down.z}}};
 }
 
 nlohmann::json parsed(const std::string& text) {
@@ -42,6 +43,10 @@ Settings settings_of(const nlohmann::json& j) {
         s.pressure = j.value("pressure", s.pressure);
         s.smooth = j.value("smooth", s.smooth);
         s.stabilise = j.value("stabilise", s.stabilise);
+        s.film = j.value("film", s.film);
+        const auto down = j.value("down", std::vector<double>{s.down.x, s.down.y, s.down.z});
+        if (down.size() != 3) throw Error("the direction of weight of a stroke is no three numbers");
+        s.down = {down[0], down[1], down[2]};
     } catch (const nlohmann::json::exception&) {
         throw Error("the settings of a stroke cannot be read: " + j.dump().substr(0, 80));
     }
@@ -61,6 +66,8 @@ void check_settings(const Settings& s) {
         throw Error("dip is 'each' or 'carry', not '" + s.dip + "'");
     if (!among(s.pressure, {"none", "speed", "dwell", "speed+dwell"}))
         throw Error("pressure is 'none', 'speed', 'dwell' or 'speed+dwell', not '" + s.pressure + "'");
+    if (!among(s.film, {"still", "wet"})) throw Error("film is 'still' or 'wet', not '" + s.film + "'");
+    if (!(glm::length(s.down) < 1e9)) throw Error("the direction of weight is no direction");
     if (!(s.smooth >= 0 && s.smooth <= kStrongestFilter)) throw Error("smooth is out of range");
     if (!(s.stabilise >= 0 && s.stabilise <= kLongestString)) throw Error("stabilise is out of range");
 }

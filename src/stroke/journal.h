@@ -22,6 +22,9 @@ struct Settings {
                                         ///< the hair and ink that the last one with it left
     std::string pressure = "none";      ///< flat traces: none (as sampled) | speed | dwell | speed+dwell
     double smooth = 0;                  ///< strength of the hand's filter; 0: off, 1: its defaults
+    std::string film = "still";         ///< still: ink stays where it is put | wet: it flows, soaks in
+                                        ///< and dries, and goes both ways between brush and surface
+    Vec3 down{0, 0, -1};                ///< towards the ground, for wet ink; zero: no weight
     double stabilise = 0;               ///< metres of the string that pulls the tip; 0: off
 
     bool operator==(const Settings&) const = default;

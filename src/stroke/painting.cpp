@@ -5,10 +5,10 @@
 
 #include "contact/contact.h"
 #include "footprint/hair.h"
-#include "ink/drying.h"
 #include "stroke/hand.h"
 #include "stroke/resample.h"
 #include "stroke/stamper.h"
+#include "stroke/wet_hand.h"
 
 namespace tuft::stroke {
 namespace {
@@ -75,6 +75,7 @@ struct Painting::Hand {
     double closed_area = 0;        // m², of the last stamp with its gaps; 0: it has none
     double parted = 0;             // travel up to which bundles have parted
     bool moved = false, was_touching = false;
+    std::optional<WetHand> wet;  ///< with wet ink
     Vec3 force{0};  // to the hand
     Vec3 last_position{0};
 
@@ -294,18 +295,6 @@ void Painting::act(const Stroke& entry) {
     put_down(entry.id, entry.trace.brush, std::move(brush), {});
 }
 
-// Undo takes back the tiles; no brush has a part in it.
-void Painting::dry(const Stroke& entry) {
-    Undo undo{.stroke_id = entry.id};
-    for (const Layer& layer : layers_.layers) {
-        ink::Canvas& canvas = this->canvas(layer.id);
-        LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = layer.id, .tiles = {}});
-        for (const std::uint32_t slot : canvas.touched_slots()) before.tiles.push_back(canvas.snapshot(slot));
-        ink::dry_all(canvas, model_->texels);
-    }
-    keep_undo(std::move(undo));
-}
-
 void Painting::begin(Stroke stroke) {
     check_layer(stroke);
     begin_hand(std::move(stroke));
@@ -323,6 +312,9 @@ void Painting::begin_hand(Stroke stroke) {
     hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, *model_, canvas, substrate_,
                                    spacing, texel);
     hand_->stamper.keep_to(mask);
+    const Settings& settings = hand_->stroke.settings;
+    if (settings.film == "wet" && !hand_->stroke.trace.erases)
+        hand_->wet.emplace(film(), canvas, ink::film_params(substrate_, settings.down));
 }
 
 void Painting::extend(std::span<const brush::Pose> poses) {
@@ -358,6 +350,7 @@ void Painting::draw_poses() {
         if (!h.moved) h.force = contact.hand_force;
         h.last_time = pose.time;
         h.moved = true;
+        if (h.wet) h.wet->pass(h.stamper, dt);
         h.state = contact.tuft;
         h.report.nearest = std::min(h.report.nearest, contact.distance);
         if (options_.record_forces)
@@ -394,6 +387,10 @@ void Painting::draw_poses() {
         stamp.ink.capacity = substrate_.capacity;
         stamp.ds = h.step;
         if (h.stroke.trace.erases) stamp.erases = 0.25 + 0.75 * touch.moment_factor;  // as ink is given
+        if (h.wet) {
+            h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, touch.moment_factor);
+            continue;
+        }
         if (h.stamper.add(std::move(stamp))) h.flush();
     }
     h.poses.clear();
@@ -405,6 +402,7 @@ StrokeReport Painting::finish_hand() {
     h.resampler.finish(h.poses);
     draw_poses();
     h.flush();
+    if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched);
     h.report.ink_left = h.reservoir.remaining();
     if (h.report.touched()) h.report.nearest = 0;
     h.report.removed = h.stamper.erased();

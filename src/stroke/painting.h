@@ -13,6 +13,7 @@
 #include "ink/canvas.h"
 #include "ink/composite.h"
 #include "ink/erase.h"
+#include "ink/film.h"
 #include "ink/pigments.h"
 #include "ink/reservoir.h"
 #include "stroke/journal.h"
@@ -224,6 +225,7 @@ class Painting {
     StrokeReport finish_hand();
     void act(const Stroke& entry);
     void dry(const Stroke& entry);
+    ink::WetFilm& film();
     void edit_layers(const Stroke& entry);
     StrokeReport lay_fill(const Stroke& entry);
     void edit_masks(const Stroke& entry);
@@ -262,6 +264,7 @@ class Painting {
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
     std::unique_ptr<Hand> hand_;
+    std::unique_ptr<ink::WetFilm> film_;              ///< made when something is wet
     mutable std::unique_ptr<ink::GutterPlan> gutter_;
 };
 

@@ -61,8 +61,7 @@ double Stamper::flush() {
     for (std::uint32_t k = 0; k < order.size(); ++k) {
         if (k > 0 && order[k].slot == order[k - 1].slot) continue;
         runs.push_back(k);
-        if (!before_.contains(order[k].slot))
-            before_.emplace(order[k].slot, canvas_.snapshot(order[k].slot));
+        keep(order[k].slot);
     }
     runs.push_back(static_cast<std::uint32_t>(order.size()));
 
@@ -107,6 +106,70 @@ double Stamper::flush() {
     double sum = 0;
     for (const double g : given) sum += g;
     return sum;
+}
+
+void Stamper::keep(std::uint32_t slot) {
+    if (!before_.contains(slot)) before_.emplace(slot, canvas_.snapshot(slot));
+}
+
+ink::LaneAreas Stamper::expose(const Stamp& stamp) {
+    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, stamp.motion, options_, scratch_[0],
+                                     std::move(jobs_[0]));
+    const footprint::StampJobs& plan = jobs_[0];
+    exposed_.clear();
+    if (plan.empty()) return {};
+    piecewise_ = footprint::choose_mode(jobs_[0], piecewise_, options_);
+    exposed_.resize(plan.tiles.size());
+    if (grain_.empty() && stamp.grain_film > 0) grain_.resize(model_.texels.n_slots());
+    const Frame& frame = stamp.footprint.frame;
+    const Vec3f origin(frame.origin), across(frame.b);
+    const auto lo = static_cast<float>(stamp.footprint.lo.y);
+    const auto per_lane = static_cast<float>(ink::kLanes / (stamp.footprint.height * stamp.footprint.cell));
+    parallel_for(exposed_.size(), 4, [&](std::size_t begin, std::size_t end) {
+        footprint::Unpacked unpacked;
+        atlas::TexelShape room;
+        for (std::size_t i = begin; i < end; ++i) {
+            Exposed& e = exposed_[i];
+            const std::uint32_t slot = plan.tiles[i].slot;
+            if (!footprint::evaluate_tile(model_.texels, plan, plan.tiles[i], unpacked, e.exposure)) continue;
+            if (mask_ && mask_->none(slot)) continue;
+            if (mask_) mask_->apply(slot, e.exposure);
+            e.slot = slot;
+            if (stamp.grain_film > 0)
+                ink::expose_relief(e.exposure, grain(slot), grain_rms_, static_cast<float>(stamp.grain_film));
+            const atlas::TexelShape& shape = atlas::shape_of(model_.texels, slot, room);
+            const auto& area = model_.texels.tiles[slot].area;
+            for (int t = 0; t < atlas::kTileTexels; ++t) {
+                const Vec3f d = Vec3f{shape.px[t], shape.py[t], shape.pz[t]} - origin;
+                const float lane = (d.x * across.x + d.y * across.y + d.z * across.z - lo) * per_lane;
+                e.lanes[t] = static_cast<std::uint8_t>(lane > 0 ? std::min(lane, ink::kLanes - 1.0f) : 0);
+                if (e.exposure[t] > 0) e.areas[e.lanes[t]] += static_cast<double>(area[t]);
+            }
+        }
+    });
+    ink::LaneAreas areas{};
+    for (const Exposed& e : exposed_)
+        if (e.slot != kNone)
+            for (int lane = 0; lane < ink::kLanes; ++lane) areas[lane] += e.areas[lane];
+    return areas;
+}
+
+ink::LaneContents Stamper::exchange(const ink::TransferParams& params, double ds) {
+    for (const Exposed& e : exposed_)
+        if (e.slot != kNone) keep(e.slot);
+    parallel_for(exposed_.size(), 2, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Exposed& e = exposed_[i];
+            if (e.slot != kNone)
+                ink::transfer(canvas_, e.slot, e.exposure, e.lanes, model_.texels.tiles[e.slot].area, ds, params,
+                              e.given);
+        }
+    });
+    ink::LaneContents given{};
+    for (const Exposed& e : exposed_)
+        for (int lane = 0; lane < ink::kLanes; ++lane)
+            for (int p = 0; p < ink::Reservoir::kPlanes; ++p) given[lane][p] += e.given[lane][p];
+    return given;
 }
 
 std::vector<ink::TileSnapshot> Stamper::take_before() {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "footprint/stamp.h"
-#include "ink/deposit.h"
 #include "ink/erase.h"
+#include "ink/transfer.h"
 #include "stroke/mask.h"
 #include "stroke/model.h"
 
@@ -44,6 +44,15 @@ class Stamper {
     /// What erasing stamps have taken away since the start.
     const ink::Amounts& erased() const { return erased_; }
 
+    /// For wet ink, one stamp at a time: where it touches, and how much surface lies under each
+    /// lane, m². Lanes divide the footprint along its v axis.
+    ink::LaneAreas expose(const Stamp& stamp);
+    /// Lets ink go both ways there. Returns what was given less what was taken, by lane.
+    ink::LaneContents exchange(const ink::TransferParams& params, double ds);
+
+    /// Notes a tile as it is, for `take_before`, unless it was noted already.
+    void keep(std::uint32_t slot);
+
     /// Tiles as they were before this stamper first wrote to them.
     std::vector<ink::TileSnapshot> take_before();
 
@@ -60,6 +69,14 @@ class Stamper {
     bool piecewise_ = false;
     float grain_rms_ = 0, grain_length_ = 0;       ///< metres, of the substrate
     std::vector<std::unique_ptr<Grain>> grain_;    ///< by slot, made when a dry hair comes there
+    struct Exposed {
+        std::uint32_t slot = kNone;
+        alignas(64) std::array<float, atlas::kTileTexels> exposure;
+        std::array<std::uint8_t, atlas::kTileTexels> lanes;
+        ink::LaneAreas areas{};
+        ink::LaneContents given{};
+    };
+    std::vector<Exposed> exposed_;                 ///< by the stamp in work, as many as it reached
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
     std::unordered_map<std::uint32_t, ink::EraseStart> starts_;  ///< of tiles an eraser came to
     ink::Amounts erased_;

@@ -31,6 +31,7 @@ TEST(Presets, EveryInkLoadsAndWritesItselfBack) {
         const Ink again = parse_ink(ink_toml(ink), "again");
         EXPECT_EQ(ink_toml(again), ink_toml(ink)) << name;
         ASSERT_EQ(again.parts.size(), ink.parts.size());
+        if (ink.parts.empty()) continue;  // clean water
         EXPECT_EQ(again.parts[0].pigment.k, ink.parts[0].pigment.k);
         EXPECT_EQ(again.parts[0].pigment.s, ink.parts[0].pigment.s);
         EXPECT_EQ(again.film, ink.film);

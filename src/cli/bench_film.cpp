@@ -1,0 +1,116 @@
+#include "cli/bench_film.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/parallel.h"
+#include "ink/film.h"
+#include "ink/transfer.h"
+
+namespace tuft::cli {
+namespace {
+
+constexpr std::size_t kMostTiles = 4096;
+constexpr std::array kInks{"carbon", "cinnabar", "gamboge", "indigo"};
+
+double seconds(clockid_t clock) {
+    timespec t{};
+    ::clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double median(std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+}
+
+/// The first `tiles` tiles under a wavy film of water with four pigments.
+ink::Canvas wet_canvas(const stroke::Model& model, std::size_t tiles) {
+    ink::Canvas canvas(model.texels.n_slots());
+    for (const char* name : kInks) canvas.add_pigment(ink::load_ink(name).parts[0].pigment);
+    for (std::uint32_t slot = 0; slot < std::min(tiles, model.texels.n_slots()); ++slot)
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            if (model.texels.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+            const Vec3f p = model.texels.position(slot, t) * 2000.0f;
+            canvas.touch_liquid(slot, ink::Liquid::film)[t] = 2 + 0.5f * std::sin(p.x) * std::sin(p.y + p.z);
+            for (std::size_t k = 0; k < kInks.size(); ++k)
+                canvas.touch(slot, static_cast<int>(k))[t] = 0.5f + 0.4f * std::sin(p.z * static_cast<float>(k + 1));
+        }
+    return canvas;
+}
+
+double wet_texels(const stroke::Model& model, std::size_t tiles) {
+    double n = 0;
+    for (std::uint32_t slot = 0; slot < std::min(tiles, model.texels.n_slots()); ++slot)
+        for (const std::uint8_t piece : model.texels.tiles[slot].piece) n += piece != atlas::kNoPiece;
+    return n;
+}
+
+/// Seconds a step takes, median of nine. One step is `advance` over less than its longest step,
+/// on a film that stays wet.
+double step_seconds(const stroke::Model& model, ink::WetFilm& film, std::size_t tiles, clockid_t clock) {
+    ink::Canvas canvas = wet_canvas(model, tiles);
+    ink::FilmParams p = ink::film_params(ink::load_substrate("bisque"));
+    const double area = model.texels.texel_size * model.texels.texel_size;
+    const double dt = 0.005 * area / (p.mobility * 3);
+    film.advance(canvas, dt, p);
+    std::vector<double> runs;
+    for (int i = 0; i < 9; ++i) {
+        // Thirty steps at once, as painting does them.
+        p.shortest_step = 0;
+        const double start = seconds(clock);
+        std::size_t steps = 0;
+        for (double t = 0; steps < 10; t += 1) steps += film.advance(canvas, 60 * dt, p).steps;
+        runs.push_back((seconds(clock) - start) / static_cast<double>(steps));
+    }
+    return median(runs);
+}
+
+double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
+    ink::Canvas canvas = wet_canvas(model, tiles);
+    ink::Reservoir tuft = ink::make_reservoir(50);
+    ink::Mix mix{};
+    for (std::size_t k = 0; k < kInks.size(); ++k) mix[k] = 0.25f;
+    ink::dip(tuft, mix);
+    ink::Skin skin;
+    ink::LaneAreas areas;
+    areas.fill(1e-5);
+    refresh(skin, tuft, {}, areas, 0.1);
+    const ink::TransferParams p = transfer_params(skin, tuft, {}, areas, {}, 1e-4, 2e-3, 0.5);
+    std::array<float, atlas::kTileTexels> coverage;
+    std::array<std::uint8_t, atlas::kTileTexels> lanes;
+    coverage.fill(0.8f);
+    for (int t = 0; t < atlas::kTileTexels; ++t) lanes[t] = static_cast<std::uint8_t>(3 + (t % atlas::kTile) / 8);
+    ink::LaneContents given{};
+    std::vector<double> runs;
+    for (int i = 0; i < 9; ++i) {
+        const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
+        for (std::uint32_t slot = 0; slot < tiles; ++slot)
+            ink::transfer(canvas, slot, coverage, lanes, model.texels.tiles[slot].area, 1e-4, p, given);
+        runs.push_back(seconds(CLOCK_THREAD_CPUTIME_ID) - start);
+    }
+    return median(runs) / static_cast<double>(tiles * atlas::kTileTexels);
+}
+
+}  // namespace
+
+FilmFigures measure_film(const stroke::Model& model) {
+    FilmFigures out;
+    const std::size_t tiles = std::min(kMostTiles, model.texels.n_slots());
+    ink::WetFilm film(model.texels, atlas::build_seam_links(*model.mesh, model.atlas, model.texels));
+    const int threads = thread_count();
+    set_thread_count(1);
+    out.step_ns = 1e9 * step_seconds(model, film, tiles, CLOCK_THREAD_CPUTIME_ID) / wet_texels(model, tiles);
+    out.transfer_ns = 1e9 * transfer_seconds(model, std::min<std::size_t>(tiles, 1024));
+    if (model.atlas.size <= 2048) {
+        set_thread_count(2);
+        out.steps_per_second = 1 / step_seconds(model, film, model.texels.n_slots(), CLOCK_MONOTONIC);
+    }
+    set_thread_count(threads);
+    return out;
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,44 @@
+#include "stroke/wet_hand.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kTick = 0.05;  // seconds: a film moves by less than a texel meanwhile
+
+}  // namespace
+
+void WetHand::advance(Stamper& stamper) {
+    film_->advance(*canvas_, pending_, params_, [&](std::uint32_t slot) { stamper.keep(slot); });
+    pending_ = 0;
+}
+
+void WetHand::pass(Stamper& stamper, double seconds) {
+    if (!(seconds > 0)) return;
+    pending_ += seconds;
+    since_ += seconds;
+    if (pending_ >= kTick) advance(stamper);
+}
+
+double WetHand::lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
+                    double stress) {
+    const ink::LaneAreas areas = stamper.expose(stamp);
+    ink::refresh(skin_, tuft, touch, areas, since_);
+    const ink::TransferParams params =
+        ink::transfer_params(skin_, tuft, touch, areas, stamp.ink, stamp.ds, since_, stress);
+    since_ = 0;
+    const ink::LaneContents given = stamper.exchange(params, stamp.ds);
+    double sum = 0;
+    for (int lane = 0; lane < ink::kLanes; ++lane)
+        for (int p = 0; p < ink::Reservoir::kPlanes; ++p) {
+            skin_.content[lane][p] -= given[lane][p];
+            sum += given[lane][p];
+        }
+    return sum;
+}
+
+void WetHand::end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch) {
+    advance(stamper);
+    ink::withdraw(skin_, tuft, touch);
+}
+
+}  // namespace tuft::stroke

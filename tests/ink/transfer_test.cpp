@@ -1,0 +1,165 @@
+#include "ink/transfer.h"
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+
+namespace tuft::ink {
+namespace {
+
+constexpr int kN = atlas::kTileTexels;
+constexpr float kArea = 1e-8f;
+
+/// A surface of one tile, a tuft and its skin, and touches of all of the tile.
+struct Touching {
+    Canvas canvas{1};
+    Reservoir tuft;
+    Skin skin;
+    Mix purple{}, yellow{};
+    DepositParams deposit;
+    Touch touch;
+    std::array<float, kN> coverage, area;
+    std::array<std::uint8_t, kN> lanes;
+
+    Touching() : tuft(make_reservoir(0.05)) {
+        purple = mix_of(canvas, load_ink("indigo"));
+        yellow = mix_of(canvas, load_ink("gamboge"));
+        coverage.fill(1);
+        area.fill(kArea);
+        for (int t = 0; t < kN; ++t) lanes[t] = static_cast<std::uint8_t>(t % atlas::kTile / 2);
+    }
+    void wash(float film, const Mix& mix) {
+        canvas.touch_liquid(0, Liquid::film).fill(film);
+        for (int p = 0; p < kMaxPigments; ++p)
+            if (mix[p] > 0) canvas.touch(0, p).fill(film * mix[p]);
+    }
+    LaneAreas areas() const {
+        LaneAreas out{};
+        for (int t = 0; t < kN; ++t)
+            if (coverage[t] > 0) out[lanes[t]] += static_cast<double>(area[t]);
+        return out;
+    }
+    void move(double ds, double dt) {
+        refresh(skin, tuft, touch, areas(), dt);
+        const TransferParams p = transfer_params(skin, tuft, touch, areas(), deposit, ds, dt, 1);
+        LaneContents given{};
+        transfer(canvas, 0, coverage, lanes, area, ds, p, given);
+        for (int lane = 0; lane < kLanes; ++lane)
+            for (int k = 0; k < Reservoir::kPlanes; ++k) skin.content[lane][k] -= given[lane][k];
+    }
+    double in_hair(int plane) const {
+        double sum = tuft.pigment(plane);
+        for (const auto& lane : skin.content) sum += lane[plane];
+        return sum;
+    }
+    double on_surface(int plane) const {
+        double sum = 0;
+        const Plane* w = plane == kMaxPigments ? canvas.liquid(0, Liquid::film) : canvas.plane(0, plane);
+        for (int t = 0; w && t < kN; ++t) sum += static_cast<double>((*w)[t]) * static_cast<double>(area[t]);
+        if (plane == kMaxPigments)
+            for (int p = 0; p < kMaxPigments; ++p) sum -= on_surface(p);
+        return sum;
+    }
+    double all(int plane) const { return in_hair(plane) + on_surface(plane); }
+};
+
+TEST(Transfer, KeepsEachPigmentAndTheWater) {
+    Touching t;
+    dip(t.tuft, t.yellow, {.level = 0.6});
+    t.wash(3, t.purple);
+    for (int i = 0; i < kN; ++i) t.coverage[i] = static_cast<float>(uniform(7, i) < 0.2 ? 0 : uniform(8, i));
+    std::array<double, Reservoir::kPlanes> before;
+    for (int p = 0; p < Reservoir::kPlanes; ++p) before[p] = t.all(p);
+    const double whole = t.all(0) + t.all(1);
+    for (int i = 0; i < 1000; ++i) {
+        t.move(0.1e-3, 2e-3);
+        for (const auto& lane : t.skin.content)
+            for (const double v : lane) ASSERT_GE(v, -1e-9 * whole) << "the rounding of the texels";
+    }
+    for (int p = 0; p < Reservoir::kPlanes; ++p) EXPECT_NEAR(t.all(p), before[p], 1e-9 * whole) << p;
+    withdraw(t.skin, t.tuft, t.touch);
+    for (int p = 0; p < Reservoir::kPlanes; ++p) EXPECT_NEAR(t.all(p), before[p], 1e-9 * whole) << p;
+}
+
+TEST(Transfer, DoesNotDependOnSampling) {
+    std::vector<double> purple;
+    for (const int parts : {1, 4, 16}) {
+        Touching t;
+        dip(t.tuft, t.yellow);
+        t.wash(1.8f, t.purple);
+        for (int i = 0; i < 10 * parts; ++i) t.move(0.4e-3 / parts, 8e-3 / parts);
+        purple.push_back(t.on_surface(0));
+    }
+    // Exponential forms; what is left is that the skin changes between touches.
+    EXPECT_NEAR(purple[1] / purple[2], 1, 0.02);
+    EXPECT_NEAR(purple[0] / purple[2], 1, 0.05);
+}
+
+TEST(Transfer, ACleanWetTuftLiftsAndADampOneDries) {
+    Touching t;
+    dip(t.tuft, Mix{});  // water
+    t.wash(1.8f, t.purple);
+    const double before = t.on_surface(0);
+    for (int i = 0; i < 100; ++i) t.move(0.1e-3, 2e-3);
+    EXPECT_LT(t.on_surface(0), 0.3 * before);
+    EXPECT_NEAR((*t.canvas.liquid(0, Liquid::film))[0], 1.8, 0.05) << "as much water down as ink up";
+    Touching damp;
+    dip(damp.tuft, Mix{}, {.level = 0.1});
+    damp.deposit.target = 0.2f;
+    damp.wash(4, damp.purple);
+    for (int i = 0; i < 200; ++i) damp.move(0.1e-3, 2e-3);
+    EXPECT_LT((*damp.canvas.liquid(0, Liquid::film))[0], 1.5) << "thirsty hair";
+}
+
+TEST(Transfer, YellowThroughWetPurpleTakesPurpleAlong) {
+    Touching t;
+    dip(t.tuft, t.yellow);
+    t.wash(1.8f, t.purple);
+    for (int i = 0; i < 40; ++i) t.move(0.1e-3, 2e-3);
+    const double taken = t.in_hair(0);
+    EXPECT_GT(taken, 0);
+    // On clean surface it comes off again, most at first.
+    Canvas clean(1);
+    for (const Pigment& p : t.canvas.pigments()) clean.add_pigment(p);
+    t.canvas = clean;
+    for (int i = 0; i < 20; ++i) t.move(0.1e-3, 2e-3);
+    const double first = t.on_surface(0);
+    EXPECT_GT(first, 0.01 * t.on_surface(1));
+    for (int i = 0; i < 400; ++i) t.move(0.1e-3, 2e-3);
+    t.canvas = clean;
+    for (int i = 0; i < 20; ++i) t.move(0.1e-3, 2e-3);
+    EXPECT_LT(t.on_surface(0), 0.5 * first);
+}
+
+TEST(Transfer, AFullTuftTakesNoMoreAndDryFilmsStay) {
+    Touching t;
+    dip(t.tuft, t.yellow);
+    t.wash(5, t.purple);
+    t.canvas.touch_film(0, kFirstDryFilm, 0).fill(1);
+    for (int i = 0; i < 300; ++i) {
+        t.move(0.1e-3, 2e-3);
+        double held = t.tuft.remaining();
+        for (int lane = 0; lane < kLanes; ++lane) held += t.skin.volume(lane);
+        ASSERT_LE(held, t.tuft.capacity * (1 + 1e-4)) << "the rounding of the texels";
+    }
+    EXPECT_EQ((*t.canvas.film_plane(0, kFirstDryFilm, 0))[100], 1);
+}
+
+TEST(Transfer, OnADrySurfaceItLaysDownWhatDepositDoes) {
+    Touching t;
+    dip(t.tuft, t.yellow);
+    for (int i = 0; i < kN; ++i) t.coverage[i] = static_cast<float>(i) / (kN - 1);
+    Canvas other(1);
+    DepositParams p = t.deposit;
+    p.mix = mix_of(other, load_ink("gamboge"));
+    for (int i = 0; i < 40; ++i) {
+        t.move(0.1e-3, 2e-3);
+        deposit(other, 0, t.coverage, t.area, 0.1e-3, p);
+    }
+    const int yellow = 1;
+    for (int i = 0; i < kN; ++i)
+        EXPECT_NEAR((*t.canvas.plane(0, yellow))[i], (*other.plane(0, 0))[i], 2e-3) << i;
+}
+
+}  // namespace
+}  // namespace tuft::ink

@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include "core/parallel.h"
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+const std::string kBrush = "wolf-small";
+
+// A stroke along x, or along y, with ink that stays wet.
+Stroke wet_line(const std::string& ink, bool along_y = false, double offset = 0) {
+    const Vec3 along = along_y ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
+    const Vec3 centre = along_y ? Vec3{offset, 0, 0} : Vec3{0, offset, 0};
+    Stroke s = line(kBrush, 4e-3, make_frame(centre, {0, 0, 1}, along));
+    s.trace.ink = ink;
+    s.settings.film = "wet";
+    s.settings.dip = "carry";
+    s.settings.spacing = 3;  // coarse is enough here, and quick
+    return s;
+}
+
+Stroke dry(double seconds) {
+    Stroke s;
+    s.action = Action::dry;
+    s.seconds = seconds;
+    s.trace.flat = false;
+    s.trace.brush = kBrush;
+    s.trace.ink = "carbon";
+    return s;
+}
+
+double in_hair(const Painting& painting, int plane) {
+    const BrushInHand* brush = painting.held(kBrush);
+    return brush ? brush->reservoir.pigment(plane) : 0;
+}
+
+TEST(WetInk, KeepsEachPigmentThroughStrokePickUpFlowDryAndUndo) {
+    const Model model = sheet();
+    Painting painting(model, {.substrate = "bisque"});
+    painting.paint(wet_line("carbon"));
+    const double carbon = painting.canvas().total(model.texels, 0) + in_hair(painting, 0);
+    const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
+    EXPECT_NEAR(carbon / capacity, 1, 1e-6) << "the brush was full of it";
+    const std::uint64_t first = painting.canvas().hash();
+    painting.paint(wet_line("carbon", true));  // through the wet line with what is left in the hair
+    EXPECT_NEAR((painting.canvas().total(model.texels, 0) + in_hair(painting, 0)) / carbon, 1, 1e-6);
+    const double left = painting.canvas().total(model.texels, 0);
+    const std::uint64_t second = painting.canvas().hash();
+    painting.paint(dry(3));
+    EXPECT_NEAR(painting.canvas().total(model.texels, 0) / left, 1, 1e-5);
+    EXPECT_TRUE(painting.canvas().wet());
+    painting.paint(dry(0));
+    EXPECT_FALSE(painting.canvas().wet());
+    EXPECT_NEAR(painting.canvas().total(model.texels, 0) / left, 1, 1e-5);
+    painting.undo();
+    painting.undo();
+    EXPECT_EQ(painting.canvas().hash(), second) << "drying taken back, wet tiles that flowed too";
+    painting.undo();
+    EXPECT_EQ(painting.canvas().hash(), first);
+    painting.redo();
+    EXPECT_EQ(painting.canvas().hash(), second);
+}
+
+TEST(WetInk, ReplaysToTheBitOnAnyNumberOfThreads) {
+    const Model model = sheet();
+    std::uint64_t hashes[2];
+    std::vector<Stroke> journal;
+    for (int i = 0; i < 2; ++i) {
+        set_thread_count(i ? 3 : 1);
+        Painting painting(model, {.substrate = "bisque"});
+        if (i == 0) {
+            painting.paint(wet_line("carbon"));
+            painting.paint(dry(1));
+            painting.paint(wet_line("gamboge", true));
+            painting.paint(dry(2));
+            journal = painting.journal().strokes();
+        } else {
+            painting.replay(journal);
+        }
+        hashes[i] = painting.canvas().hash();
+    }
+    set_thread_count(0);
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(WetInk, YellowThroughWetPurplePicksItUpAndNotWhenItIsDry) {
+    const Model model = sheet();
+    double picked[2];
+    for (int i = 0; i < 2; ++i) {
+        Painting painting(model);
+        painting.paint(wet_line("indigo"));
+        if (i) painting.paint(dry(0));
+        painting.paint(wet_line("gamboge", true));
+        // Indigo beside the line that was indigo, further along the yellow one.
+        picked[i] = 0;
+        for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
+            for (int t = 0; t < atlas::kTileTexels; ++t)
+                if (const ink::Plane* w = painting.canvas().plane(slot, 0); w && std::abs(model.texels.position(slot, t).y) > 6e-3f)
+                    picked[i] += static_cast<double>((*w)[t] * model.texels.tiles[slot].area[t]);
+    }
+    EXPECT_GT(picked[0], 1e-7) << "film m2: 0.1 mm2 at one unit";
+    EXPECT_EQ(picked[1], 0);
+}
+
+TEST(WetInk, StillInkIsAsItAlwaysWas) {
+    // With all that is wet left out of the settings, nothing flows and no time passes.
+    const Model model = sheet();
+    Painting painting(model);
+    Stroke s = wet_line("carbon");
+    s.settings.film = "still";
+    painting.paint(s);
+    EXPECT_FALSE(painting.canvas().wet());
+    const std::uint64_t hash = painting.canvas().hash();
+    painting.paint(dry(100));
+    EXPECT_EQ(painting.canvas().hash(), hash) << "it is closed only when all is to dry";
+    painting.paint(dry(0));
+    EXPECT_NE(painting.canvas().hash(), hash);
+}
+
+TEST(WetInk, SettingsComeBackFromTheirText) {
+    Settings s;
+    s.film = "wet";
+    s.down = {0.5, 0, -0.25};
+    EXPECT_EQ(settings_from_json(to_json(s)), s);
+    EXPECT_EQ(settings_from_json("{}").film, "still") << "journals of old";
+    EXPECT_ANY_THROW(settings_from_json(R"({"film": "damp"})"));
+    EXPECT_ANY_THROW(settings_from_json(R"({"down": [1, 2]})"));
+}
+
+}  // namespace
+}  // namespace tuft::stroke
