@@ -131,14 +131,14 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
 
     // Saturation and film of each bundle along what touches of the tuft.
     const std::size_t n = reservoir.n_bundles(), cells = reservoir.n_cells();
-    std::vector<double> saturation(n, 0), wet(n), depth(cells, 0);
+    std::vector<double> saturation(n, 0), wetness(n), depth(cells, 0);
     for (std::size_t i = 0; i < touched.size(); ++i) depth[i % cells] += static_cast<double>(touched[i]);
     double least = 1e9, mean = 0;
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t c = 0; c < cells; ++c) saturation[k] += depth[c] * reservoir.saturation(k * cells + c);
-        wet[k] = footprint::wetness_of_bundle(saturation[k], tuft.bundles.holds[k], speed);
-        mean += wet[k] / static_cast<double>(n);
-        least = std::min(least, wet[k]);
+        wetness[k] = footprint::wetness_of_bundle(saturation[k], tuft.bundles.holds[k], speed);
+        mean += wetness[k] / static_cast<double>(n);
+        least = std::min(least, wetness[k]);
     }
     brush::part_bundles(tuft.bundles, tuft.preset, stress(contact), saturation, travel - parted, dt);
     parted = travel;
@@ -156,7 +156,7 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, cell);
     } else {
         footprint::HairMarks marks = footprint::hair_marks(trails, outlines, tuft.bundles, branches,
-                                                           {wet, travel}, contact.frame, contact.triangle, cell);
+                                                           {wetness, travel}, contact.frame, contact.triangle, cell);
         stamp.footprint = std::move(marks.footprint);
         stamp.grain_film = kGrainFilm * mean;
         closed_area = marks.closed_area;

@@ -132,7 +132,13 @@ TEST(Mask, ByLassoIsWhatIsSeen) {
 }
 
 TEST(Mask, NothingOutsideAndTheSameInside) {
+    // The brush keeps the ink it does not leave outside. One that holds a hundred times the
+    // ink does not feel that: what differs inside is a hundredth of 1.3 % of the film of 1.8.
+    brush::Preset deep = brush::load_preset("wolf-small");
+    deep.capacity *= 100;
     Painting free(model()), kept(model());
+    free.use_brush(deep);
+    kept.use_brush(deep);
     free.paint(quick());
     kept.paint(entry({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}, {-0.005, 1}})}));
     Stroke s = quick();
@@ -150,14 +156,14 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
             if (mask.coverage(slot, t) == 0) {
                 ASSERT_EQ(w, 0);
             }
-            // The brush keeps the ink it does not leave, so it is a little fuller inside.
             if (mask.coverage(slot, t) == 255)
                 difference = std::max(difference, static_cast<double>(std::abs(w - (*there)[t])));
         }
     }
-    EXPECT_LT(difference, 0.02);
+    EXPECT_LT(difference, 1e-3);
     // A mask of everything is none, to the bit.
     Painting all(model());
+    all.use_brush(deep);
     all.paint(entry({.mask = {.name = "all", .kind = MaskKind::angle, .within = 3.14159}}));
     s.mask = 1;
     all.paint(s);
