@@ -60,6 +60,30 @@ TEST(Sweep, Robot2020DrawsTheMeasuredLines) {
     }
 }
 
+TEST(Calibrate, HoldsForDepthsThatWereHeldBack) {
+    // Fitted on 0, 4, 8 and 12 mm only; the lines of 2, 6 and 10 mm must come out right.
+    const std::string path = std::string(TUFT_TEST_DATA) + "/brush/brush_robot2020_even.csv";
+    std::vector<SweepRow> fitted, held;
+    for (const SweepRow& row : read_sweep(path)) {
+        (std::lround(row.depth / 2e-3) % 2 == 0 ? fitted : held).push_back(row);
+    }
+    ASSERT_GE(held.size(), 6u);
+    CalibrateOptions options;
+    options.max_evaluations = 60;
+    const Calibration fit = calibrate(load_preset("robot-2020"), fitted, options);
+    SweepRow sum;
+    for (const SweepRow& row : held) {
+        const SweepRow swept = sweep_depth(fit.preset, std::span(&row.depth, 1)).front();
+        sum.width += std::pow(swept.width - row.width, 2) / held.size();
+        sum.drag += std::pow(swept.drag - row.drag, 2) / held.size();
+        sum.offset += std::pow(swept.offset - row.offset, 2) / held.size();
+    }
+    // As for the rows themselves: a quarter more than the measurement's own spread.
+    EXPECT_LT(std::sqrt(sum.width), 1.25 * 1.4e-3);
+    EXPECT_LT(std::sqrt(sum.drag), 1.25 * 0.5e-3);
+    EXPECT_LT(std::sqrt(sum.offset), 1.25 * 0.7e-3);
+}
+
 TEST(Sweep, TableReadsBack) {
     const std::vector<SweepRow> rows{{0.002, 0.0015, 0.003, 0.001}, {0.004, 0.0035, 0.005, 0.0012}};
     const std::string path = write("sweep.csv", "# a brush\n" + sweep_csv(rows));

@@ -100,6 +100,57 @@ TEST(Tuft, AWetSoftTuftKeepsASetThatReshapingTakesOut) {
     EXPECT_LT(tip_angle(), 1e-7);
 }
 
+/// Angle between the tip and the ferrule's axis, radians.
+double tip_angle(const Tuft& tuft) {
+    return std::acos(std::min(1.0, glm::dot(tuft.spine.memory.tangent.back(), tuft.pose.axis())));
+}
+
+TEST(Tuft, DryHairSpringsBackWhereWetHairKeepsASet) {
+    double set[2];
+    for (const int wet : {0, 1}) {
+        Preset p = load_preset("goat-medium");
+        p.yield = 0.4;
+        p.plastic_share = 0.5;
+        p.recovery = 0;
+        p.friction_dry = p.friction_wet;
+        Tuft tuft = make_tuft(p);
+        tuft.wetness = wet;
+        Stroke s;
+        s.depth = 0.4;
+        s.lift = 150;
+        EXPECT_FALSE(draw(tuft, s).touching);
+        set[wet] = tip_angle(tuft);
+    }
+    EXPECT_LT(set[0], 0.6 * set[1]);
+    EXPECT_GT(set[0], 0);
+}
+
+TEST(Tuft, ASetGoesBackWithTimeTheSameHoweverItIsDivided) {
+    double after[2];
+    for (const int parts : {1, 10}) {
+        Preset p = load_preset("goat-medium");
+        p.yield = 0.4;
+        p.plastic_share = 0.5;
+        p.recovery = 5;
+        Tuft tuft = make_tuft(p);
+        Stroke s;
+        s.depth = 0.4;
+        s.lift = 150;
+        draw(tuft, s);
+        double before = tip_angle(tuft);
+        ASSERT_GT(before, 0.05);
+        for (int i = 0; i < 4 * parts; ++i) {
+            step(tuft, tuft.pose, {}, 0.5 / parts);
+            EXPECT_LE(tip_angle(tuft), before + 1e-5);  // the solver's tolerance on the soft tip
+            before = tip_angle(tuft);
+        }
+        after[parts > 1] = before;
+        step(tuft, tuft.pose, {}, 0);
+        EXPECT_NEAR(tip_angle(tuft), before, 1e-4);  // without time nothing goes back
+    }
+    EXPECT_NEAR(after[0], after[1], 0.02 * after[1] + 1e-4);
+}
+
 TEST(Tuft, RigidMotionOfAllInputsMovesTheOutputs) {
     const Stroke plain_stroke;
     Tuft reference = make_tuft(load_preset("mixed-medium"));

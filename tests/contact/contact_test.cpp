@@ -286,6 +286,30 @@ TEST(Contact, LeavesAPlateOverItsRim) {
     EXPECT_LT(worst, 1.2 * steady);
 }
 
+TEST(Contact, SidesThatMeetAWallStopThere) {
+    // A floor with a wall along it, 2.5 mm beside the stroke: the side nodes would reach through.
+    const auto reach = [](double wall) {
+        const mesh::TriangleMesh m = shapes::surface(120, 60, [&](double u, double v) {
+            const double s = 0.12 * u - 0.08;  // over the floor, then up
+            return Vec3{std::min(s, wall), 0.2 * (v - 0.5), std::max(0.0, s - wall)};
+        });
+        const mesh::SurfaceQuery surface(m);
+        Hand hand(surface, "goat");
+        double widest = 0;
+        for (int i = 0; i <= 240; ++i) {
+            const double depth = 0.012 * std::min(1.0, i / 100.0);
+            const Result r = hand.move({0, -0.02 + 2e-4 * i, -depth});
+            if (i < 200) continue;
+            for (const brush::Section& s : spine(r))
+                if (s.centre.z < 2e-3) widest = std::max(widest, s.centre.x + s.a * std::abs(s.e.x));
+        }
+        return widest;
+    };
+    const double open = reach(0.03), walled = reach(0.0025);
+    EXPECT_GT(open, 3.5e-3);
+    EXPECT_LT(walled, 3.0e-3);  // the wall gives by the push over a hundred springs, and a step's lag
+}
+
 TEST(Contact, HoverFeelsTheSurfaceWithinTheTolerance) {
     const mesh::TriangleMesh m = shapes::sheet();
     const mesh::SurfaceQuery surface(m);

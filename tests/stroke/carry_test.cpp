@@ -76,6 +76,23 @@ TEST(Carry, HairKeepsItsSetUntilItIsCombed) {
     EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), ink);
 }
 
+TEST(Carry, WetnessFollowsTheInkAlsoInAReplay) {
+    const Model model = sheet();
+    const auto wetness = [](const Painting& painting) { return painting.held(kBrush)->tuft.wetness; };
+    Painting painting(model);
+    painting.paint(action(Action::dip, "carbon"));
+    EXPECT_EQ(wetness(painting), 1);
+    painting.paint(carried(0));
+    EXPECT_LE(wetness(painting), 1);
+    painting.paint(action(Action::rinse));
+    EXPECT_EQ(wetness(painting), 0) << "rinsed and wiped";
+    Painting again(model);
+    again.replay(painting.journal().strokes());
+    EXPECT_EQ(wetness(again), 0);
+    painting.paint(action(Action::dip, "carbon"));
+    EXPECT_EQ(wetness(painting), 1);
+}
+
 TEST(Carry, ACombedFullBrushIsAFreshOne) {
     const Model model = sheet();
     Painting carry(model), each(model);
