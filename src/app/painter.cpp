@@ -77,6 +77,8 @@ Update Painter::take() {
     update_.fullness = out.fullness;
     update_.can_undo = out.can_undo;
     update_.can_redo = out.can_redo;
+    update_.layers = out.layers;
+    update_.wet = out.wet;
     update_.undo_seconds = out.undo_seconds;
     update_.trouble = out.trouble;
     update_.project = out.project;
@@ -126,8 +128,10 @@ void Painter::perform(Command& command) {
                               say(fault.empty() ? "Saved as " + c.path.string() : fault);
                               publish();
                           },
-                          [this](SendTexture&) {
+                          [this](ChangeLayers& c) { change_layers(c); },
+                          [this](SendTexture& c) {
                               publish();
+                              work_.texture->show_wetness(c.wetness, *work_.painting);
                               render::MapPixels pixels = work_.texture->pixels();
                               const std::lock_guard lock(mutex_);
                               update_.pixels = std::move(pixels);
@@ -182,6 +186,8 @@ void Painter::publish(bool strokes_changed) {
     update_.fraction = 0;
     const stroke::BrushInHand* held = work_.painting->held(current_.brush);
     update_.fullness = held ? held->reservoir.fullness() : 1;
+    update_.layers = painting.layers();
+    update_.wet = std::ranges::any_of(painting.canvases(), [](const stroke::LayerTexels& l) { return l.canvas->wet(); });
     update_.can_undo = painting.journal().can_undo();
     update_.undo_seconds = undo_seconds_;
     update_.can_redo = painting.journal().can_redo();
@@ -200,6 +206,7 @@ void Painter::begin(const BeginStroke& command) {
     stroke.trace.brush = command.brush;
     stroke.trace.ink = command.ink;
     if (command.carry) stroke.settings.dip = "carry";
+    stroke.layer = command.layer;
     work_.painting->begin(std::move(stroke));
 }
 
@@ -212,6 +219,21 @@ void Painter::care(const CareForBrush& command) {
     if (command.action == stroke::Action::dip) entry.trace.ink = command.ink;
     entry.seconds = command.seconds;
     entry.settings.dip = "carry";
+    work_.painting->paint(std::move(entry));
+    work_.keeper.add(work_.painting->journal().strokes().back());
+    groups_.push_back(1);
+    undone_groups_.clear();
+    publish(true);
+}
+
+void Painter::change_layers(const ChangeLayers& command) {
+    stroke::Stroke entry;
+    entry.action = stroke::Action::layer;
+    entry.trace.flat = false;
+    entry.trace.label = command.edit.layer.name;
+    if (command.edit.what == stroke::LayerChange::remove)
+        if (const stroke::Layer* layer = work_.painting->layers().find(command.edit.layer.id)) entry.trace.label = layer->name;
+    entry.edit = command.edit;
     work_.painting->paint(std::move(entry));
     work_.keeper.add(work_.painting->journal().strokes().back());
     groups_.push_back(1);
@@ -235,7 +257,7 @@ void Painter::paint_traces(PaintTraces& command) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
         work_.keeper.prepare(*work_.painting, all[i].brush, all[i].ink);
-        work_.painting->paint({.trace = std::move(all[i])});
+        work_.painting->paint({.trace = std::move(all[i]), .layer = command.layer});
         work_.keeper.add(work_.painting->journal().strokes().back());
         ++groups_.back();
         publish(true);

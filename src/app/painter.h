@@ -24,6 +24,7 @@ struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
     bool carry = false;           ///< goes on with the hair and ink of the stroke before
+    std::uint32_t layer = stroke::kFirstLayer;
     bool joined = false;          ///< is undone together with the one before it
 };
 /// Dips, rinses or combs a brush, or lets the ink dry.
@@ -41,12 +42,19 @@ struct EndStroke {};
 struct PaintTraces {
     std::vector<stroke::Trace> traces;
     stroke::Symmetry symmetry;    ///< its turns; writing is not mirrored
+    std::uint32_t layer = stroke::kFirstLayer;
 };
 struct CancelStroke {};
 struct UndoStroke {};
 struct RedoStroke {};
+/// Adds, changes, moves or removes a layer.
+struct ChangeLayers {
+    stroke::LayerEdit edit;
+};
 /// Hands over the whole texture anew.
-struct SendTexture {};
+struct SendTexture {
+    bool wetness = false;         ///< its fourth channel: the liquid, not the ink's height
+};
 struct SaveProject {
     std::filesystem::path path;
 };
@@ -72,7 +80,7 @@ struct EditStroke {
     bool remove = false;
 };
 using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
-                             ExportModel, EditStroke, SendTexture>;
+                             ExportModel, EditStroke, ChangeLayers, SendTexture>;
 
 /// A stroke for the list.
 struct StrokeLine {
@@ -99,6 +107,8 @@ struct Update {
     double undo_seconds = 0;      ///< that the last undo took
     double fullness = 1;          ///< ink in the brush last painted with, of its capacity
     bool can_undo = false, can_redo = false;
+    stroke::LayerTable layers;
+    bool wet = false;             ///< some ink is
     std::string trouble;          ///< why work is not being kept, ""
     std::filesystem::path project;
 };
@@ -139,6 +149,7 @@ class Painter {
     void begin(const BeginStroke& command);
     void extend(const ExtendStroke& command);
     void end();
+    void change_layers(const ChangeLayers& command);
     void paint_traces(PaintTraces& command);
     void care(const CareForBrush& command);
     void undo();

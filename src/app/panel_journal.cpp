@@ -52,7 +52,7 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);
-    const std::string what = std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
+    const std::string what = line.action == stroke::Action::layer ? line.label : std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
     draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, what.c_str());
     if (ImGui::IsItemHovered() && !line.label.empty()) ImGui::SetTooltip("%s", line.label.c_str());
     if (chosen) edit_row(s, line);
@@ -76,6 +76,7 @@ void journal_panel(Session& s, float top, float bottom, float left) {
         ImGui::ProgressBar(static_cast<float>(s.last.fraction), ImVec2(-1, ui.px(16)), "");
         if (ui.button("Stop")) s.painter->stop_long_work();
     }
+    layers_section(s);
     ui.heading("Journal");
     if (s.strokes.empty()) ui.note(ui.tr("Every stroke you paint is listed here, and can be hidden, changed or taken out later."));
     ImGui::BeginChild("strokes");

@@ -54,7 +54,7 @@ void view_menu(Session& s) {
 }
 
 void shading_combo(Session& s) {
-    static const std::vector<std::string> names{"Glaze", "Clay", "Flat colour", "Ink height", "Texel grid", "Charts", "Stretch"};
+    static const std::vector<std::string> names{"Glaze", "Clay", "Flat colour", "Ink height", "Wetness", "Texel grid", "Charts", "Stretch"};
     std::string name = names[static_cast<std::size_t>(s.view.shown)];
     if (s.ui.combo("Shading", name, names, 130))
         s.view.shown = static_cast<ModelView>(std::find(names.begin(), names.end(), name) - names.begin());

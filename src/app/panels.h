@@ -12,6 +12,7 @@ inline constexpr float kToolWidth = 256, kJournalWidth = 256, kStatusHeight = 30
 void menu_bar(Session& s);
 void tool_panel(Session& s, float top, float bottom, float left);
 void journal_panel(Session& s, float top, float bottom, float left);
+void layers_section(Session& s);
 void status_bar(Session& s, float top);
 void welcome(Session& s);
 void open_dialog(Session& s);

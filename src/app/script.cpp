@@ -2,6 +2,7 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -143,10 +144,16 @@ void Script::report(Studio& studio, double now) {
     std::vector<double> delays = studio.take_delays();
     std::sort(delays.begin(), delays.end());
     const auto at = [&](double q) { return delays.empty() ? 0.0 : 1e3 * delays[static_cast<std::size_t>(q * static_cast<double>(delays.size() - 1))]; };
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    const auto seconds_of = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    const double cpu = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
     std::printf("{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, \"delay_ms_p95\": %.1f, "
-                "\"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f}\n",
+                "\"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, \"peak_mb\": %.0f}\n",
                 report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95),
-                studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now);
+                studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now, cpu - report_cpu_,
+                static_cast<double>(usage.ru_maxrss) / 1024);
+    report_cpu_ = cpu;
     std::fflush(stdout);
     report_frames_ = 0;
     report_start_ = now;

@@ -71,7 +71,7 @@ class Script {
     bool lose_ = false;
     bool waiting_ = false;             ///< the last command waits for something
     std::size_t frames_ = 0, report_frames_ = 0;
-    double report_start_ = 0;
+    double report_start_ = 0, report_cpu_ = 0;
 };
 
 }  // namespace tuft::app

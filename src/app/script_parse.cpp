@@ -22,7 +22,7 @@
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
 ///   set NAME VALUE          texels (of the model asked about), brush, ink, shading, light, parallel, azimuth, elevation, zoom,
-///                           export-size, export-pictures,
+///                           layer, export-size, export-pictures,
 ///                           export-picture-width, pressure, writing-width (mm), string, radial, mirror, carry, tool, language, theme, scale, section,
 ///                           see-through, atlas, draw-every (frames of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
@@ -30,7 +30,8 @@
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL
 ///   pace on|off             events at the speed of the clock, or at once
 ///   random COUNT SEED       that many events of any kind
-///   report                  frames, seconds and delays since the last one, on standard output
+///   report                  frames, seconds, delays and processor time since the last one, the time of
+///                           the last undo and the peak of memory, on standard output
 ///   lose-graphics           as if the graphics driver had been reset
 ///   names                   labels that can be clicked, on standard output
 ///   quit

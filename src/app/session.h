@@ -21,8 +21,8 @@
 
 namespace tuft::app {
 
-enum class ModelView { glaze, clay, flat, height, texels, charts, stretch };
-inline constexpr int kModelViews = 7;
+enum class ModelView { glaze, clay, flat, height, wetness, texels, charts, stretch };
+inline constexpr int kModelViews = 8;
 /// A stroke that does not touch a revised model any more.
 struct Misfit {
     std::uint64_t stroke = 0;
@@ -105,6 +105,9 @@ struct Session {
     KeyTable keys;
     std::optional<Act> key_asked;          ///< action that the next key is given to
 
+    std::uint32_t layer = stroke::kFirstLayer;  ///< painted on
+    double layer_opacity = -1;             ///< while its slider is in the hand
+    bool layer_details = false;
     std::vector<StrokeLine> strokes;
     std::uint64_t selected = 0;
     Update last;                           ///< without tiles and messages

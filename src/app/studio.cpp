@@ -156,6 +156,8 @@ void Studio::take_model() {
     }
     if (s.last.pixels) {
         scene_->set_texture(*s.last.pixels);
+        s.highest = 0;
+        for (const auto& texel : s.last.pixels->levels[0]) s.highest = std::max(s.highest, 0.1 * texel[3]);
         s.last.pixels.reset();
         view_->scene_changed();
     }
@@ -176,6 +178,10 @@ void Studio::take_model() {
 void Studio::show_colours() {
     Session& s = session_;
     if (s.view.shown == colours_shown_) return;
+    if ((colours_shown_ == ModelView::wetness) != (s.view.shown == ModelView::wetness)) {
+        s.painter->post(SendTexture{s.view.shown == ModelView::wetness});
+        s.highest = 0;
+    }
     colours_shown_ = s.view.shown;
     view_->scene_changed();
     const stroke::Model& m = s.painter->model();
@@ -219,7 +225,7 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
     if (!s.painter || s.model_is_new) return;
     show_colours();
     static constexpr render::Shading shadings[] = {render::Shading::glaze,  render::Shading::clay,   render::Shading::flat,
-                                                   render::Shading::height, render::Shading::texels, render::Shading::triangles,
+                                                   render::Shading::height, render::Shading::height, render::Shading::texels, render::Shading::triangles,
                                                    render::Shading::triangles};
     const bool dark = s.ui.settings().theme == Theme::dark;
     const render::GlSolid solid = solid_of(s.tuft);

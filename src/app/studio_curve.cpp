@@ -136,7 +136,7 @@ void Studio::paint_curve() {
     if (strokes.empty()) return say(s, "The line does not lie on the model.");
     if (curve_editable()) s.painter->post(UndoStroke{});
     for (std::size_t i = 0; i < strokes.size(); ++i) {
-        s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .joined = i > 0});
+        s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .layer = s.layer, .joined = i > 0});
         s.painter->post(ExtendStroke{strokes[i], now_});
         s.painter->post(EndStroke{});
     }

@@ -32,7 +32,7 @@ Aim Studio::aim_of(const Event& e) const {
 void Studio::post(std::vector<HandStep> steps, double time) {
     Session& s = session_;
     for (HandStep& step : steps) {
-        if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{s.brush, s.ink, s.symmetry, s.carry});
+        if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .layer = s.layer});
         else if (step.kind == HandStep::Kind::end) s.painter->post(EndStroke{});
         else s.painter->post(ExtendStroke{std::move(step.poses), time});
     }

@@ -20,7 +20,7 @@ void Studio::set(const std::string& name, const std::string& value) {
     if (name == "brush") s.brush = s.brushes[static_cast<std::size_t>(one_of(s.brushes))];
     else if (name == "ink") s.ink = s.inks[static_cast<std::size_t>(one_of(s.inks))];
     else if (name == "shading")
-        s.view.shown = static_cast<ModelView>(one_of({"glaze", "clay", "flat", "height", "texels", "charts", "stretch"}));
+        s.view.shown = static_cast<ModelView>(one_of({"glaze", "clay", "flat", "height", "wetness", "texels", "charts", "stretch"}));
     else if (name == "light") s.view.rig = static_cast<render::LightRig>(one_of({"studio", "window", "raking"}));
     else if (name == "parallel") s.view.orbit.parallel = on;
     else if (name == "azimuth") s.view.orbit.azimuth = number * kDegree;
@@ -30,7 +30,11 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "export-size") s.export_choice.size = static_cast<std::uint32_t>(std::clamp(number, 0.0, 16384.0));
     else if (name == "export-picture-width") s.export_choice.picture_width = std::clamp(static_cast<int>(number), 16, 8192);
     else if (name == "export-pictures") s.export_choice.picture = std::clamp(static_cast<int>(number), 0, 360);
-    else if (name == "texels") s.open_options.atlas_size = static_cast<std::uint32_t>(std::clamp(number, 64.0, 16384.0));
+    else if (name == "layer") {
+        const stroke::Layer* layer = s.last.layers.find(std::string_view(value));
+        if (!layer) throw Error("there is no layer '" + value + "'");
+        s.layer = layer->id;
+    } else if (name == "texels") s.open_options.atlas_size = static_cast<std::uint32_t>(std::clamp(number, 64.0, 16384.0));
     else if (name == "pressure") s.hand.pressure = std::clamp(number, 0.02, 1.0);
     else if (name == "carry") s.carry = on;
     else if (name == "string") s.hand.string = std::max(0.0, number) * kMillimetre;

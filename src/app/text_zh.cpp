@@ -61,6 +61,8 @@ constexpr std::pair<const char*, const char*> kTexts[] = {
     {"Left: paint    Alt+left: turn    Alt+middle: move    Alt+right: nearer    F1: all keys",
      "左键：绘制    Alt+左键：转动    Alt+中键：平移    Alt+右键：远近    F1：全部按键"},
     {"The graphics driver was reset; the picture was made anew, and no stroke is lost.", "显卡驱动已重置；画面已重建，笔画无一丢失。"},
+    {"Layers", "图层"}, {"Layer", "图层"}, {"Add a layer", "添加图层"}, {"Opacity", "不透明度"}, {"Higher", "上移"}, {"Lower", "下移"}, {"Remove", "删除"},
+    {"Locked", "锁定"}, {"locked", "锁定"}, {"Seen or not", "显示或隐藏"}, {"Wetness", "湿度"},
     {"Wait a minute", "等一分钟"}, {"Dry", "晾干"}, {"Lets wet ink flow and dry for a minute", "让湿墨流动、干燥一分钟"},
     {"Waits until all ink is dry; what is painted then lies over it", "等墨全干；之后的笔画覆在上面"},
     {"Pen: from its force to the brush's depth", "笔：由压力到下笔深度"}, {"Drag its ends and its middle; a double click makes it straight", "拖动两端与中点；双击复原"},

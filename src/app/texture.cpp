@@ -46,7 +46,23 @@ void halve(const Rgba* from, Rgba* to, std::size_t side, std::size_t first_row, 
         }
 }
 
+// Micrometres of liquid on and in the surface, of all layers.
+std::array<float, atlas::kTileTexels> liquid_of(const stroke::Painting& painting, std::uint32_t slot) {
+    std::array<float, atlas::kTileTexels> wet{};
+    for (const stroke::LayerTexels& layer : painting.canvases())
+        for (const ink::Liquid where : {ink::Liquid::film, ink::Liquid::pores})
+            if (const ink::Plane* plane = layer.canvas->liquid(slot, where))
+                for (std::size_t t = 0; t < atlas::kTileTexels; ++t) wet[t] += static_cast<float>(1e6 * ink::kFilmUnit) * (*plane)[t];
+    return wet;
+}
+
 }  // namespace
+
+void Texture::show_wetness(bool on, const stroke::Painting& painting) {
+    if (wetness_ == on) return;
+    wetness_ = on;
+    refresh_heights(painting.stack().touched_slots(), painting);
+}
 
 Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
     const stroke::Model& model = painting.model();
@@ -70,10 +86,11 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
         const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
         const bool inked = stack.touched(slot);
         const ink::TileLook look = inked ? ink::look_of_tile(stack, slot, painting.substrate()) : ink::TileLook{};
+        const std::array<float, atlas::kTileTexels> wet = wetness_ ? liquid_of(painting, slot) : std::array<float, atlas::kTileTexels>{};
         for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
             const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
             if (x < size && y < size && map.tiles[slot].piece[t] != atlas::kNoPiece)
-                height_[y * size + x] = static_cast<std::uint8_t>(std::clamp(10.0f * look.height[t], 0.0f, 255.0f));
+                height_[y * size + x] = static_cast<std::uint8_t>(std::clamp(10.0f * (wetness_ ? wet[t] : look.height[t]), 0.0f, 255.0f));
         }
     }
     for (const std::uint32_t slot : slots)

@@ -17,6 +17,9 @@ class Texture {
 
     /// The whole atlas with its levels.
     render::MapPixels pixels() const;
+    /// Whether the fourth channel is the liquid that is in and on the surface, in the same unit;
+    /// changes it everywhere.
+    void show_wetness(bool on, const stroke::Painting& painting);
     /// Brings slots up to date and returns every tile that changed by it.
     std::vector<render::TilePixels> refresh(std::span<const std::uint32_t> slots, const stroke::Painting& painting);
     /// Side of `pixels()`: the atlas's, rounded up to whole tiles.
@@ -27,6 +30,7 @@ class Texture {
     render::TilePixels tile(std::uint32_t index) const;
 
     std::uint32_t padded_ = 0;
+    bool wetness_ = false;
     ink::AtlasMap<std::uint8_t> colour_;
     std::vector<std::uint8_t> height_;  ///< [size²]
 };

@@ -162,7 +162,7 @@ void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, con
 }
 
 void legends(const Session& s, ImDrawList* draw) {
-    if (s.view.shown == ModelView::height) {
+    if (s.view.shown == ModelView::height || s.view.shown == ModelView::wetness) {
         // As `ramp` in mesh.frag.
         static constexpr Stop stops[] = {{IM_COL32(33, 31, 77, 255), 0}, {IM_COL32(46, 94, 140, 255), 0.25f}, {IM_COL32(41, 153, 140, 255), 0.5f},
                                          {IM_COL32(140, 201, 82, 255), 0.75f}, {IM_COL32(252, 232, 102, 255), 1}};

@@ -179,6 +179,17 @@ TEST_F(StudioProgram, KeysCanBeChangedAndStayChanged) {
     EXPECT_NE(read(path("state") + "/tuft/settings").find("key:open K"), std::string::npos);
 }
 
+TEST_F(StudioProgram, LayersArePaintedHiddenAndUndoneLikeStrokes) {
+    const Ran ran = studio(kBowl + "stroke 46%,58% 50%,61%\nwait-ready\nclick \"Add a layer\"\nwait-ready\nwait 0.1\nset layer \"Layer 2\"\nset ink cinnabar\n"
+                                   "stroke 44%,57% 47%,60%\nwait-ready\nexpect strokes 3\nclick \"show Layer 2\"\nwait-ready\nexpect strokes 4\nundo\nundo\nredo\nwait-ready\n"
+                                   "expect strokes 3\nset shading wetness\nwait-ready\nset shading glaze\nexpect kept\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = io::Project::open(path("work.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 3u);
+    EXPECT_EQ(strokes[0].layer, stroke::kFirstLayer);
+    EXPECT_NE(strokes[2].layer, stroke::kFirstLayer);
+}
+
 TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
     const std::string script = kBowl + kTwoStrokes + "screenshot ready.png\nmove 47%,58%\npress\nmove 50%,59%\nwait 100\n";
     const std::string line = command(script, "--headless --size 860x520");
