@@ -30,6 +30,8 @@ constexpr std::array<Shipped, static_cast<std::size_t>(Act::count)> kShipped{{
     {"line", "Line", {GLFW_KEY_L, 0}},
     {"curve", "Curve", {GLFW_KEY_C, 0}},
     {"place", "Place writing", {GLFW_KEY_T, 0}},
+    {"eraser", "Eraser", {GLFW_KEY_E, 0}},
+    {"fill", "Fill", {GLFW_KEY_G, 0}},
     {"lighter", "Press less", {GLFW_KEY_LEFT_BRACKET, 0}},
     {"heavier", "Press more", {GLFW_KEY_RIGHT_BRACKET, 0}},
     {"lean-left", "Lean to the left", {GLFW_KEY_LEFT, 0}},

@@ -128,7 +128,7 @@ void Painter::perform(Command& command) {
                               say(fault.empty() ? "Saved as " + c.path.string() : fault);
                               publish();
                           },
-                          [this](ChangeLayers& c) { change_layers(c); },
+                          [this](FillModel& c) { fill(c); }, [this](ChangeLayers& c) { change_layers(c); },
                           [this](SendTexture& c) {
                               publish();
                               work_.texture->show_wetness(c.wetness, *work_.painting);
@@ -207,6 +207,7 @@ void Painter::begin(const BeginStroke& command) {
     stroke.trace.ink = command.ink;
     if (command.carry) stroke.settings.dip = "carry";
     stroke.layer = command.layer;
+    stroke.trace.erases = command.erases;
     work_.painting->begin(std::move(stroke));
 }
 
@@ -234,6 +235,23 @@ void Painter::change_layers(const ChangeLayers& command) {
     if (command.edit.what == stroke::LayerChange::remove)
         if (const stroke::Layer* layer = work_.painting->layers().find(command.edit.layer.id)) entry.trace.label = layer->name;
     entry.edit = command.edit;
+    act(std::move(entry));
+}
+
+void Painter::fill(const FillModel& command) {
+    progress("Filling")("", 0);
+    work_.keeper.prepare(*work_.painting, current_.brush.empty() ? "wolf-medium" : current_.brush, command.ink);
+    stroke::Stroke entry;
+    entry.action = stroke::Action::fill;
+    entry.trace.flat = false;
+    entry.trace.ink = command.ink;
+    entry.fill = command.fill;
+    entry.layer = command.layer;
+    act(std::move(entry));
+}
+
+// An entry that is done at once.
+void Painter::act(stroke::Stroke entry) {
     work_.painting->paint(std::move(entry));
     work_.keeper.add(work_.painting->journal().strokes().back());
     groups_.push_back(1);
@@ -381,7 +399,7 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
 
 StrokeLine stroke_line(const stroke::Stroke& stroke) {
     StrokeLine line{.id = stroke.id, .action = stroke.action, .brush = stroke.trace.brush, .ink = stroke.trace.ink, .label = stroke.trace.label,
-                    .hidden = stroke.hidden};
+                    .hidden = stroke.hidden, .erases = stroke.trace.erases};
     const auto& samples = stroke.trace.samples;
     if (samples.empty()) return line;
     Vec3 normal(0);

@@ -25,6 +25,7 @@ struct BeginStroke {
     stroke::Symmetry symmetry;
     bool carry = false;           ///< goes on with the hair and ink of the stroke before
     std::uint32_t layer = stroke::kFirstLayer;
+    bool erases = false;          ///< takes ink off
     bool joined = false;          ///< is undone together with the one before it
 };
 /// Dips, rinses or combs a brush, or lets the ink dry.
@@ -47,6 +48,12 @@ struct PaintTraces {
 struct CancelStroke {};
 struct UndoStroke {};
 struct RedoStroke {};
+/// Lays ink over a part of the model.
+struct FillModel {
+    std::string ink;
+    stroke::Fill fill;
+    std::uint32_t layer = stroke::kFirstLayer;
+};
 /// Adds, changes, moves or removes a layer.
 struct ChangeLayers {
     stroke::LayerEdit edit;
@@ -80,14 +87,14 @@ struct EditStroke {
     bool remove = false;
 };
 using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
-                             ExportModel, EditStroke, ChangeLayers, SendTexture>;
+                             ExportModel, EditStroke, FillModel, ChangeLayers, SendTexture>;
 
 /// A stroke for the list.
 struct StrokeLine {
     std::uint64_t id = 0;
     stroke::Action action = stroke::Action::stroke;
     std::string brush, ink, label;
-    bool hidden = false;
+    bool hidden = false, erases = false;
     double length = 0;            ///< metres of the hand's way
     std::vector<Vec3f> places;    ///< metres, model frame: where the hand was; empty for flat traces
     std::vector<Vec3f> way;       ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
@@ -149,6 +156,8 @@ class Painter {
     void begin(const BeginStroke& command);
     void extend(const ExtendStroke& command);
     void end();
+    void fill(const FillModel& command);
+    void act(stroke::Stroke entry);
     void change_layers(const ChangeLayers& command);
     void paint_traces(PaintTraces& command);
     void care(const CareForBrush& command);

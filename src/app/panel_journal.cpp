@@ -48,7 +48,7 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     char text[96];
     static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe"};
     if (line.action != stroke::Action::stroke) std::snprintf(text, sizeof text, "%zu   %s", number, s.ui.tr(actions[static_cast<int>(line.action)]));
-    else std::snprintf(text, sizeof text, "%zu   %.0f mm", number, line.length * 1e3);
+    else std::snprintf(text, sizeof text, "%zu   %.0f mm%s%s", number, line.length * 1e3, line.erases ? "   " : "", line.erases ? s.ui.tr("erased") : "");
     const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);

@@ -245,14 +245,30 @@ void tool_buttons(Session& s) {
         {Tool::brush, "Brush", "Paint freely (B)"},
         {Tool::line, "Line", "Straight as you see it, from press to release; Shift for steps of 15 degrees. Its ends can be moved afterwards (L)"},
         {Tool::curve, "Curve", "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"},
-        {Tool::writing, "Place", "Lays writing or a drawing from a file where you click (T)"}};
-    const float quarter = (ImGui::GetContentRegionAvail().x / s.ui.settings().scale - 15) / 4;
+        {Tool::writing, "Place", "Lays writing or a drawing from a file where you click (T)"},
+        {Tool::eraser, "Eraser", "Takes ink off with the brush, as deep as it is pressed; a pen's other end does so too (E)"},
+        {Tool::fill, "Fill", "Lays the chosen ink over the whole model, a part or a chart where you click (G)"}};
+    const float third = (ImGui::GetContentRegionAvail().x / s.ui.settings().scale - 10) / 3;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(2), s.ui.px(5)));
     for (std::size_t i = 0; i < std::size(entries); ++i) {
-        if (i % 4) ImGui::SameLine(0, s.ui.px(5));
-        if (s.ui.choice(entries[i].name, s.tool == entries[i].tool, entries[i].hint, quarter)) s.tool = entries[i].tool;
+        if (i % 3) ImGui::SameLine(0, s.ui.px(5));
+        if (s.ui.choice(entries[i].name, s.tool == entries[i].tool, entries[i].hint, third)) s.tool = entries[i].tool;
     }
     ImGui::PopStyleVar();
+}
+
+void fill_section(Session& s) {
+    if (s.tool != Tool::fill) return;
+    Ui& ui = s.ui;
+    ui.heading("Fill");
+    static constexpr std::pair<stroke::Region, const char*> regions[] = {
+        {stroke::Region::all, "Everything"}, {stroke::Region::part, "Part"}, {stroke::Region::chart, "Chart"}};
+    const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
+    for (const auto& [region, name] : regions) {
+        if (region != stroke::Region::all) ImGui::SameLine();
+        if (ui.choice(name, s.fill.region == region, "What the ink is laid over where you click", third)) s.fill.region = region;
+    }
+    if (ui.slider("Thickness", s.fill.film, 0.05, 5, "%.1f \xce\xbcm", "Of the wet coat", 0.1)) s.fill.to_film = s.fill.film;
 }
 
 void writing_section(Session& s) {
@@ -313,6 +329,7 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     tool_buttons(s);
     curve_section(s);
     writing_section(s);
+    fill_section(s);
     brush_rack(s);
     ink_palette(s);
     care_section(s);

@@ -31,7 +31,7 @@ struct Misfit {
     double distance = 0;          ///< metres from the tuft to the model, at the nearest
 };
 
-enum class Tool { brush, line, curve, writing };
+enum class Tool { brush, line, curve, writing, eraser, fill };
 enum class Keymap { blender, maya };
 
 /// How the model is looked at.
@@ -106,6 +106,8 @@ struct Session {
     std::optional<Act> key_asked;          ///< action that the next key is given to
 
     std::uint32_t layer = stroke::kFirstLayer;  ///< painted on
+    stroke::Fill fill;
+    bool erasing = false;                  ///< the stroke in the hand takes ink off
     double layer_opacity = -1;             ///< while its slider is in the hand
     bool layer_details = false;
     std::vector<StrokeLine> strokes;

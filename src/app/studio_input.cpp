@@ -32,7 +32,7 @@ Aim Studio::aim_of(const Event& e) const {
 void Studio::post(std::vector<HandStep> steps, double time) {
     Session& s = session_;
     for (HandStep& step : steps) {
-        if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .layer = s.layer});
+        if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .layer = s.layer, .erases = s.erasing});
         else if (step.kind == HandStep::Kind::end) s.painter->post(EndStroke{});
         else s.painter->post(ExtendStroke{std::move(step.poses), time});
     }
@@ -79,6 +79,14 @@ void Studio::press(const Event& e) {
     if (drag_ != Drag::none || e.button != 0) return;
     if (shift_press(e)) return;
     if (s.tool == Tool::writing) return lay_writing();
+    if (s.tool == Tool::fill) {
+        const auto hit = aim_at(*s.painter->model().query, aim_of(e));
+        if (!hit) return;
+        s.fill.at = hit->position;
+        s.painter->post(FillModel{s.ink, s.fill, s.layer});
+        return;
+    }
+    s.erasing = s.tool == Tool::eraser || e.eraser;
     if (s.tool == Tool::line || s.tool == Tool::curve) return curve_press(e);
     try {
         hand_.emplace(*s.painter->model().query, brush::load_preset(s.brush), s.hand);
@@ -192,6 +200,8 @@ void Studio::perform(Act act) {
         case Act::line: s.tool = Tool::line; break;
         case Act::curve: s.tool = Tool::curve; break;
         case Act::writing: s.tool = Tool::writing; break;
+        case Act::eraser: s.tool = Tool::eraser; break;
+        case Act::fill: s.tool = Tool::fill; break;
         case Act::atlas: s.view.atlas = !s.view.atlas; break;
         case Act::see_through: s.view.see_through = !s.view.see_through; break;
         case Act::next_shading: s.view.shown = static_cast<ModelView>((static_cast<int>(s.view.shown) + 1) % kModelViews); break;

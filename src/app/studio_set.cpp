@@ -43,7 +43,7 @@ void Studio::set(const std::string& name, const std::string& value) {
         s.symmetry.mirror_x = value.find('x') != std::string::npos;
         s.symmetry.mirror_y = value.find('y') != std::string::npos;
         s.symmetry.mirror_z = value.find('z') != std::string::npos;
-    } else if (name == "tool") s.tool = static_cast<Tool>(one_of({"brush", "line", "curve", "writing"}));
+    } else if (name == "tool") s.tool = static_cast<Tool>(one_of({"brush", "line", "curve", "writing", "eraser", "fill"}));
     else if (name == "section") {
         s.view.section = number > 0;
         s.view.section_at = std::clamp(number, 0.02, 1.0);
