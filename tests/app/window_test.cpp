@@ -28,8 +28,8 @@ class Window : public testing::Test {
         folder_ = fs::path(testing::TempDir()) / ("tuft_window_" + std::to_string(getpid()));
         fs::remove_all(folder_);
         fs::create_directories(folder_);
-        server_ = start({"Xvfb", "-displayfd", "3", "-screen", "0", "1000x640x24", "-nolisten", "tcp"}, "3>'" + path("display") + "'");
-        wait_for("the X server", [&] { return !read("display").empty(); });
+        server_ = start({"Xvfb", "-displayfd", "3", "-screen", "0", "1000x640x24", "-nolisten", "tcp", "-noreset"}, "3>'" + path("display") + "'");
+        wait_for("the X server", [&] { return read("display").find('\n') != std::string::npos; });
         display_ = ":" + read("display").substr(0, read("display").find('\n'));
     }
     void TearDown() override {
