@@ -1,15 +1,16 @@
 #include "app/opening.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <cmath>
 #include <mutex>
 #include <thread>
 
-#include <unistd.h>
-
 #include "core/units.h"
 #include "io/looks.h"
 #include "io/read_model.h"
+#include "io/restore.h"
 
 namespace fs = std::filesystem;
 
@@ -55,25 +56,11 @@ Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
     return out;
 }
 
-void use_presets(const io::Project& project, stroke::Painting& painting) {
-    const std::string file = project.path().string();
-    for (const auto& [name, toml] : project.brushes()) {
-        brush::Preset preset = brush::parse_preset(toml, file + ": brush " + name);
-        preset.name = name;
-        painting.use_brush(preset);
-    }
-    for (const auto& [name, toml] : project.inks()) {
-        ink::Ink ink = ink::parse_ink(toml, file + ": ink " + name);
-        ink.name = name;
-        painting.use_ink(ink);
-    }
-}
-
 // Strokes of a former project, its presets and ground, on the new model.
 void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn& progress) {
     const io::Project project = io::Project::open(former);
     work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
-    use_presets(project, *work.painting);
+    io::use_presets(project, *work.painting);
     work.keeper.take_presets(project);
     for (const stroke::StrokeReport& report : work.painting->replay(project.strokes(), progress))
         if (!report.touched()) work.misfits.push_back(report);
@@ -110,13 +97,8 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, const 
         stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), progress));
     work.painting = std::make_unique<stroke::Painting>(*work.model);
     work.painting->use_substrate(substrate);
-    use_presets(project, *work.painting);
-    std::vector<stroke::Stroke> strokes = project.strokes();
-    auto saved = project.load_canvases(work.model->texels.n_slots());
-    if (saved && stroke::fits(strokes, saved->stroke_id))
-        work.painting->adopt(std::move(strokes), std::move(saved->layers), saved->stroke_id);
-    else
-        work.painting->replay(std::move(strokes), progress);
+    io::use_presets(project, *work.painting);
+    io::restore_strokes(project, *work.painting, progress);
     io::show_looks(project, *work.painting);
     work.texture = std::make_unique<Texture>(*work.painting, progress);
     work.pixels = work.texture->pixels();

@@ -41,9 +41,7 @@ int run(const FillWork& a) {
     Console console(a.common.quiet);
     const auto project = open_project(a.project, console);
     stroke::Painting painting(project->model);
-    painting.use_substrate(project->substrate);
-    use_presets(project->file, painting);
-    show_strokes(project->file, painting, console);
+    restore(*project, painting, console);
     std::vector<stroke::Stroke> entries =
         stroke::onto_named_layers({entry_of(a, painting)}, painting.layers(), a.layer);
     stroke::keep_to_named_masks(entries, painting.masks(), a.mask);

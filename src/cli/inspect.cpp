@@ -25,9 +25,7 @@ int inspect_point(const Inspect& a) {
     Console console(a.common.quiet);
     const auto project = open_project(a.file, console);
     stroke::Painting painting(project->model);
-    painting.use_substrate(project->substrate);
-    use_presets(project->file, painting);
-    show_strokes(project->file, painting, console);
+    restore(*project, painting, console);
     console.clear();
     const stroke::Pick pick = painting.pick(kMillimetre * Vec3(a.at_mm[0], a.at_mm[1], a.at_mm[2]));
     const std::string name = a.save_ink.empty() ? "picked" : a.save_ink.stem().string();

@@ -47,11 +47,7 @@ int run(const LayerWork& a) {
     io::Project project = io::Project::open(a.project);
     const std::vector<stroke::Stroke> entries = project.strokes();
     stroke::LayerTable table = stroke::layers_after(entries);
-    stroke::Stroke entry;
-    for (const stroke::Stroke& s : entries) entry.id = std::max(entry.id, s.id);
-    ++entry.id;
-    entry.action = stroke::Action::layer;
-    entry.trace.flat = false;
+    stroke::Stroke entry = stroke::action_after(entries, stroke::Action::layer);
     entry.edit = edit_of(a, table);
     stroke::apply(table, entry.edit);
     project.append(entry);

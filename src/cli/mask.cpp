@@ -83,11 +83,7 @@ int run(const MaskWork& a) {
     io::Project project = io::Project::open(a.project);
     const std::vector<stroke::Stroke> entries = project.strokes();
     stroke::MaskTable table = stroke::masks_after(entries);
-    stroke::Stroke entry;
-    for (const stroke::Stroke& s : entries) entry.id = std::max(entry.id, s.id);
-    ++entry.id;
-    entry.action = stroke::Action::mask;
-    entry.trace.flat = false;
+    stroke::Stroke entry = stroke::action_after(entries, stroke::Action::mask);
     entry.mask_edit.remove = a.remove;
     if (a.remove) {
         const stroke::Mask* mask = table.find(a.name);

@@ -72,9 +72,7 @@ int run(const Paint& a) {
     stroke::Painting painting(model, {.substrate = a.surface.substrate,
                                       .record_forces = !a.forces.empty()});
     if (before) {
-        painting.use_substrate(before->substrate);
-        use_presets(before->file, painting);
-        show_strokes(before->file, painting, console);
+        restore(*before, painting, console);
         show_looks(before->file, painting, {}, console);
     }
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);

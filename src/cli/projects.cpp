@@ -8,6 +8,7 @@
 #include "io/export.h"
 #include "io/image.h"
 #include "io/read_model.h"
+#include "io/restore.h"
 
 /// Commands that start from a project: replay, export, render.
 namespace tuft::cli {
@@ -96,7 +97,7 @@ int run(const Replay& a) {
 
     stroke::Painting painting(model);
     painting.use_substrate(project->substrate);
-    use_presets(project->file, painting);
+    io::use_presets(project->file, painting);
     for (stroke::Stroke& s : strokes) {
         if (!a.brush.empty()) s.trace.brush = a.brush;
         if (!a.ink.empty()) s.trace.ink = a.ink;
@@ -142,9 +143,7 @@ int run(const Export& a) {
     Console console(a.common.quiet);
     const auto project = open_project(a.project, console);
     stroke::Painting painting(project->model);
-    painting.use_substrate(project->substrate);
-    use_presets(project->file, painting);
-    show_strokes(project->file, painting, console);
+    restore(*project, painting, console);
     show_layers(painting, a.layers);
     show_looks(project->file, painting, a.look, console);
     const ink::ComposeOptions compose = painting.compose_options();
@@ -175,9 +174,7 @@ int run(const Render& a) {
         project = open_project(a.file, console);
         model = &project->model;
         painting = std::make_unique<stroke::Painting>(*model);
-        painting->use_substrate(project->substrate);
-        use_presets(project->file, *painting);
-        show_strokes(project->file, *painting, console);
+        restore(*project, *painting, console);
         show_layers(*painting, a.view.layers);
         show_looks(project->file, *painting, a.look, console);
     } else {

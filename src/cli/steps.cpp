@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <set>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/units.h"
 #include "ink/composite.h"
@@ -14,8 +14,9 @@
 #include "io/export.h"
 #include "io/image.h"
 #include "io/looks.h"
-#include "io/svg.h"
 #include "io/read_model.h"
+#include "io/restore.h"
+#include "io/svg.h"
 #include "stroke/habit.h"
 
 namespace fs = std::filesystem;
@@ -315,20 +316,6 @@ std::unique_ptr<OpenProject> open_project(const fs::path& path, Console& console
     return opened;
 }
 
-void use_presets(const io::Project& project, stroke::Painting& painting) {
-    const std::string file = project.path().string();
-    for (const auto& [name, toml] : project.brushes()) {
-        brush::Preset preset = brush::parse_preset(toml, file + ": brush " + name);
-        preset.name = name;
-        painting.use_brush(preset);
-    }
-    for (const auto& [name, toml] : project.inks()) {
-        ink::Ink ink = ink::parse_ink(toml, file + ": ink " + name);
-        ink.name = name;
-        painting.use_ink(ink);
-    }
-}
-
 void show_looks(const io::Project& project, stroke::Painting& painting, const Look& look, Console& console) {
     io::show_looks(project, painting);
     std::set<std::string> used;
@@ -349,14 +336,10 @@ void show_looks(const io::Project& project, stroke::Painting& painting, const Lo
     if (!look.substrate.empty()) painting.show_on(ink::load_substrate(look.substrate));
 }
 
-void show_strokes(const io::Project& project, stroke::Painting& painting, Console& console) {
-    std::vector<stroke::Stroke> strokes = project.strokes();
-    std::optional<io::SavedCanvases> saved = project.load_canvases(painting.model().texels.n_slots());
-    if (saved && stroke::fits(strokes, saved->stroke_id)) {
-        painting.adopt(std::move(strokes), std::move(saved->layers), saved->stroke_id);
-        return;
-    }
-    painting.replay(std::move(strokes), console.progress());
+void restore(const OpenProject& project, stroke::Painting& painting, Console& console) {
+    painting.use_substrate(project.substrate);
+    io::use_presets(project.file, painting);
+    io::restore_strokes(project.file, painting, console.progress());
 }
 
 nlohmann::json to_json(const mesh::RepairReport& r) {

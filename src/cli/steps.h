@@ -77,13 +77,11 @@ struct OpenProject {
 };
 bool is_project_file(const std::filesystem::path& path);
 std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, Console& console);
-/// Lets the painting use the presets stored in the project.
-void use_presets(const io::Project& project, stroke::Painting& painting);
 /// Shows the painting as the project and then the command line say; notes pigments that
 /// other inks share.
 void show_looks(const io::Project& project, stroke::Painting& painting, const Look& look, Console& console);
-/// Brings the painting to the project's last stroke: by its saved texels, else by replay.
-void show_strokes(const io::Project& project, stroke::Painting& painting, Console& console);
+/// Brings the painting to where the project stands: substrate, presets, strokes.
+void restore(const OpenProject& project, stroke::Painting& painting, Console& console);
 
 nlohmann::json to_json(const mesh::RepairReport& report);
 nlohmann::json to_json(const atlas::Atlas& atlas, const atlas::AtlasReport& report);

@@ -1,9 +1,9 @@
 #include "ink/deposit.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "ink/elementary.h"
 #include "ink/simd.h"
 
 namespace tuft::ink {
@@ -29,23 +29,10 @@ TUFT_CLONES void linear_goals(float* __restrict goal, const float* __restrict co
     for (int t = 0; t < kN; ++t) goal[t] = target * coverage[t];
 }
 
-/// goal = −ln(1 − f hidden) / ε. The logarithm by exponent bits and the series of artanh,
-/// 4e-8 relative to |ln| ≥ 0.3: written out so that it gives the same bits everywhere.
+/// goal = −ln(1 − f hidden) / ε.
 TUFT_CLONES void goals(float* __restrict goal, const float* __restrict coverage, float hidden,
                        float inverse_extinction) {
-    for (int t = 0; t < kN; ++t) {
-        const float x = 1 - coverage[t] * hidden;
-        // x = m 2^e with m in [√½, √2)
-        const std::int32_t bits = std::bit_cast<std::int32_t>(x) - 0x3f3504f3;
-        const auto e = static_cast<float>(bits >> 23);
-        const float m = std::bit_cast<float>((bits & 0x007fffff) + 0x3f3504f3);
-        const float s = (m - 1) / (m + 1);
-        const float s2 = s * s;
-        const float series =
-            2 * s *
-            (1 + s2 * (0.333333333f + s2 * (0.2f + s2 * (0.142857143f + s2 * 0.111111111f))));
-        goal[t] = -(e * 0.693147181f + series) * inverse_extinction;
-    }
+    for (int t = 0; t < kN; ++t) goal[t] = -log_of(1 - coverage[t] * hidden) * inverse_extinction;
 }
 
 /// film becomes dw; returns whether any is positive.

@@ -11,6 +11,7 @@
 #include "core/files.h"
 #include "core/units.h"
 #include "io/inkml_decode.h"
+#include "io/inkml_marks.h"
 #include "stroke/journal.h"
 
 namespace tuft::io {
@@ -23,19 +24,10 @@ using stroke::TraceSample;
 
 constexpr int kMaxNesting = 64;  // groups in groups, references to references
 
-/// Own annotations in force at one place of the file.
-struct Marks {
-    stroke::Placement placement;
-    bool placed = false;
-    std::string brush, ink, label, layer, mask;
-    std::uint64_t seed = 0;
-    bool erases = false;
-};
-
 struct State {
     InkmlFormat format;
     double sample_rate = 0;  ///< Hz, 0 unknown
-    Marks marks;
+    InkmlMarks marks;
 };
 
 /// A trace with what is settled only once the whole file is read.
@@ -47,37 +39,9 @@ struct Draft {
     long line = 0;
 };
 
-std::string_view local_name(const xml_node& node) {
-    const std::string_view name = node.name();
-    const auto colon = name.find(':');
-    return colon == std::string_view::npos ? name : name.substr(colon + 1);
-}
-
 std::string id_of(const xml_node& node) {
     const auto id = node.attribute("xml:id");
     return id ? id.value() : node.attribute("id").value();
-}
-
-std::string text_of(const xml_node& node) {
-    std::string text;
-    for (const xml_node& child : node.children())
-        if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
-            text += child.value();
-    return text;
-}
-
-std::string_view trimmed(std::string_view s) {
-    const auto first = s.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos) return {};
-    return s.substr(first, s.find_last_not_of(" \t\r\n") - first + 1);
-}
-
-std::optional<double> to_number(std::string_view s) {
-    s = trimmed(s);
-    double x = 0;
-    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
-    if (error != std::errc{} || end != s.data() + s.size() || !std::isfinite(x)) return {};
-    return x;
 }
 
 /// Metres per unit of length as InkML spells it; empty for device units and others.
@@ -88,15 +52,15 @@ std::optional<double> length_unit(std::string_view unit) {
     return metres_per(unit);
 }
 
-class Reader {
+class Reader : InkmlText {
   public:
     Reader(std::string_view text, const std::string& source, const InkmlOptions& options)
-        : text_(text), source_(source), options_(options) {}
+        : InkmlText{text, source}, options_(options) {}
 
     std::vector<Trace> run() {
-        const auto parsed = document_.load_buffer(text_.data(), text_.size());
+        const auto parsed = document_.load_buffer(content.data(), content.size());
         if (!parsed)
-            throw Error(source_, line_at(parsed.offset),
+            throw Error(path, line_at(parsed.offset),
                         std::string("not well-formed XML: ") + parsed.description());
         const xml_node ink = document_.document_element();
         if (local_name(ink) != "ink") fail(ink, "not InkML: the outermost element is not <ink>");
@@ -104,7 +68,7 @@ class Reader {
         State state;
         state.format = default_format();
         walk(ink, state, 0);
-        if (drafts_.empty()) throw Error(source_, "no pen-down traces in the file");
+        if (drafts_.empty()) throw Error(path, "no pen-down traces in the file");
         finish();
         std::vector<Trace> traces;
         for (Draft& d : drafts_) traces.push_back(std::move(d.trace));
@@ -112,20 +76,6 @@ class Reader {
     }
 
   private:
-    long line_at(std::ptrdiff_t offset) const {
-        const auto n =
-            std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
-        return 1 + static_cast<long>(std::count(text_.begin(), text_.begin() + n, '\n'));
-    }
-    [[noreturn]] void fail(const xml_node& node, const std::string& what) const {
-        throw Error(source_, line_at(node.offset_debug()), what);
-    }
-    double number_of(const xml_node& node, const char* attribute) const {
-        const auto x = to_number(node.attribute(attribute).value());
-        if (!x) fail(node, std::string("attribute ") + attribute + " is not a number");
-        return *x;
-    }
-
     void collect_ids(const xml_node& node, int depth) {
         if (depth > kMaxNesting) fail(node, "elements are nested too deeply");
         for (const xml_node& child : node.children()) {
@@ -263,179 +213,23 @@ class Reader {
             if (name == "traceFormat") state.format = format_of(child);
             if (name == "brush") apply_brush(state, child, depth + 1);
         }
-        apply_marks(state.marks, node);
+        apply_marks(*this, state.marks, node);
     }
 
     void apply_brush(State& state, const xml_node& node, int depth) const {
         if (depth > kMaxNesting) fail(node, "brushes refer to each other in a circle");
         if (const xml_node base = referred(node, "brushRef")) apply_brush(state, base, depth + 1);
-        apply_marks(state.marks, node);
+        apply_marks(*this, state.marks, node);
     }
 
     // --- own annotations -----------------------------------------------------
-
-    Vec3 vector_of(const xml_node& node, std::string_view text) const {
-        double v[3];
-        for (double& x : v) {
-            text = trimmed(text);
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-            if (error != std::errc{} || !std::isfinite(x))
-                fail(node, std::string(node.attribute("type").value()) + " needs three numbers");
-            text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-        }
-        if (!trimmed(text).empty() && trimmed(text) != "mm")
-            fail(node,
-                 std::string(node.attribute("type").value()) + " needs three numbers, millimetres");
-        return {v[0], v[1], v[2]};
-    }
-
-    void apply_marks(Marks& marks, const xml_node& parent) const {
-        for (const xml_node& node : parent.children()) {
-            if (local_name(node) != "annotation") continue;
-            std::string_view type = node.attribute("type").value();
-            if (type.rfind("tuft:", 0) != 0) continue;
-            type.remove_prefix(5);
-            if (is_care(type) && local_name(parent) != "trace")
-                fail(node, "tuft:" + std::string(type) + " belongs on the trace before which it is done");
-            const std::string whole = text_of(node);
-            const std::string_view text = trimmed(whole);
-            if (type == "brush")
-                marks.brush = text;
-            else if (type == "ink")
-                marks.ink = text;
-            else if (type == "label")
-                marks.label = text;
-            else if (type == "tool" && text != "brush" && text != "eraser")
-                fail(node, "tuft:tool is neither brush nor eraser");
-            else if (type == "tool")
-                marks.erases = text == "eraser";
-            else if (type == "mask")
-                marks.mask = name_of(node, text, "mask");
-            else if (type == "layer")
-                marks.layer = name_of(node, text, "layer");
-            else if (type == "origin") {
-                marks.placement.origin = kMillimetre * vector_of(node, text);
-                marks.placed = true;
-            } else if (type == "right")
-                marks.placement.right = direction_of(node, text);
-            else if (type == "down")
-                marks.placement.down = direction_of(node, text);
-            else if (type == "laying" && text == "wrap")
-                marks.placement.laying = stroke::Laying::wrap;
-            else if (type == "laying" && text == "project")
-                marks.placement.laying = stroke::Laying::project;
-            else if (type == "laying")
-                fail(node, "tuft:laying is neither wrap nor project");
-            else if (type == "seed") {
-                const auto [end, error] =
-                    std::from_chars(text.data(), text.data() + text.size(), marks.seed);
-                if (error != std::errc{} || end != text.data() + text.size())
-                    fail(node, "tuft:seed is not a whole number");
-            }
-        }
-    }
-
-    std::string name_of(const xml_node& node, std::string_view text, const char* of_what) const {
-        try {
-            stroke::check_name(text, of_what);
-        } catch (const Error& e) {
-            fail(node, e.what());
-        }
-        return std::string(text);
-    }
-
-    static bool is_care(std::string_view type) {
-        return type == "dip" || type == "rinse" || type == "reshape" || type == "dry" || type == "fill" || type == "wipe";
-    }
-
-    stroke::Fill fill_of(const xml_node& node) const {
-        stroke::Fill fill;
-        const auto number = [&](const char* name, double& to) {
-            if (node.attribute(name)) to = number_of(node, name);
-        };
-        const auto point = [&](const char* name, Vec3& to) {
-            if (node.attribute(name)) to = kMillimetre * vector_of(node, node.attribute(name).value());
-        };
-        number("film", fill.film);
-        fill.to_film = fill.film;
-        number("to_film", fill.to_film);
-        point("at", fill.at);
-        point("from", fill.from);
-        point("to", fill.to);
-        fill.to_ink = node.attribute("to_ink").value();
-        try {
-            if (node.attribute("region")) fill.region = stroke::region_of(node.attribute("region").value());
-            if (node.attribute("gradient")) fill.gradient = stroke::gradient_of(node.attribute("gradient").value());
-            if (fill.region != stroke::Region::all && !node.attribute("at"))
-                fail(node, "a fill of a part or a chart needs a point: at=\"x y z\"");
-            stroke::check_fill(fill);
-        } catch (const Error& e) {
-            if (std::string(e.what()).starts_with(source_)) throw;
-            fail(node, e.what());
-        }
-        return fill;
-    }
-
-    /// Seconds to dry for; nothing written: until all is dry.
-    double seconds_of(const xml_node& node, std::string_view text) const {
-        double x = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-        if (!text.empty() && (error != std::errc() || end != text.data() + text.size()))
-            fail(node, "'" + std::string(text) + "' is no number of seconds");
-        try {
-            stroke::check_seconds(x);
-        } catch (const Error& e) {
-            fail(node, e.what());
-        }
-        return x;
-    }
-
-    stroke::Extent extent_of(const xml_node& node) const {
-        stroke::Extent extent;
-        const auto read = [&](const char* name, double& value) {
-            const std::string_view text = node.attribute(name).value();
-            if (text.empty()) return;
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-            if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0 && value <= 1))
-                fail(node, std::string(name) + " of a dip or wipe is a number from 0 to 1");
-        };
-        read("depth", extent.depth);
-        read("amount", extent.amount);
-        return extent;
-    }
-
-    /// What is to be done with the brush before this trace, in the order written.
-    std::vector<stroke::Care> care_of(const xml_node& trace) const {
-        std::vector<stroke::Care> care;
-        for (const xml_node& node : trace.children()) {
-            if (local_name(node) != "annotation") continue;
-            std::string_view type = node.attribute("type").value();
-            if (type.rfind("tuft:", 0) != 0 || !is_care(type.substr(5))) continue;
-            type.remove_prefix(5);
-            const std::string text = text_of(node);
-            const stroke::Action action = stroke::action_of(std::string(type));
-            stroke::Care& one = care.emplace_back();
-            one.action = action;
-            if (action == stroke::Action::dip || action == stroke::Action::fill) one.ink = trimmed(text);
-            if (action == stroke::Action::fill) one.fill = fill_of(node);
-            if (action == stroke::Action::dry) one.seconds = seconds_of(node, trimmed(text));
-            one.extent = extent_of(node);
-        }
-        return care;
-    }
-
-    Vec3 direction_of(const xml_node& node, std::string_view text) const {
-        const Vec3 v = vector_of(node, text);
-        if (!(glm::length(v) > 0)) fail(node, "a placement's direction is zero");
-        return glm::normalize(v);
-    }
 
     // --- traces --------------------------------------------------------------
 
     /// Contexts, formats, sources and brushes that stand among the traces hold from there on.
     void walk(const xml_node& parent, State& state, int depth) {
         if (depth > kMaxNesting) fail(parent, "trace groups are nested too deeply");
-        apply_marks(state.marks, parent);
+        apply_marks(*this, state.marks, parent);
         for (const xml_node& node : parent.children()) {
             const auto name = local_name(node);
             if (name == "trace") {
@@ -464,17 +258,17 @@ class Reader {
         State state = outer;
         if (const xml_node context = referred(node, "contextRef")) apply_context(state, context, 0);
         if (const xml_node brush = referred(node, "brushRef")) apply_brush(state, brush, 0);
-        apply_marks(state.marks, node);
+        apply_marks(*this, state.marks, node);
 
         const xml_node first = node.first_child();
         const long line = line_at((first ? first : node).offset_debug());
         const InkmlRows rows = decode_inkml(text_of(node), state.format,
-                                            options_.max_samples - n_samples_, source_, line);
+                                            options_.max_samples - n_samples_, path, line);
         if (rows.n_rows() == 0) return;
         n_samples_ += rows.n_rows();
 
         Draft draft = draft_of(rows, state, line);
-        draft.trace.before = care_of(node);
+        draft.trace.before = care_of(*this, node);
         if (const auto x = to_number(node.attribute("duration").value()))
             draft.duration = 1e-3 * *x;
         const std::string_view continuation = node.attribute("continuation").value();
@@ -527,7 +321,7 @@ class Reader {
             s.position = {get(x), get(y), get(z)};
             for (int k = 0; k < 3; ++k)
                 if (std::abs(s.position[k]) > options_.max_extent)
-                    throw Error(source_, line,
+                    throw Error(path, line,
                                 "a coordinate lies " + std::to_string(std::abs(s.position[k])) +
                                     " m away; declare the unit of X and Y");
             s.time = get(t);
@@ -543,7 +337,7 @@ class Reader {
             if (turned) {
                 s.rotation = Quat(get(q[0]), get(q[1]), get(q[2]), get(q[3]));
                 if (!(glm::length(s.rotation) > 1e-6))
-                    throw Error(source_, line, "a rotation is zero");
+                    throw Error(path, line, "a rotation is zero");
                 s.rotation = glm::normalize(s.rotation);
             } else if (!d.trace.flat) {
                 const Vec3 up = glm::normalize(Vec3(std::tan(s.tilt.x), std::tan(s.tilt.y), 1));
@@ -632,8 +426,6 @@ class Reader {
         }
     }
 
-    std::string_view text_;
-    const std::string& source_;
     const InkmlOptions& options_;
     pugi::xml_document document_;
     std::map<std::string, xml_node> ids_;

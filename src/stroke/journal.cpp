@@ -204,6 +204,15 @@ std::vector<std::string> inks_of(const Stroke& entry) {
     return inks;
 }
 
+Stroke action_after(const std::vector<Stroke>& entries, Action action) {
+    Stroke entry;
+    for (const Stroke& s : entries) entry.id = std::max(entry.id, s.id);
+    ++entry.id;
+    entry.action = action;
+    entry.trace.flat = false;
+    return entry;
+}
+
 const Stroke& Journal::append(Stroke stroke) {
     stroke.id = next_id_++;
     undone_.clear();

@@ -74,6 +74,9 @@ bool keeps_texels(Action action);
 /// Names of the inks that an entry uses.
 std::vector<std::string> inks_of(const Stroke& entry);
 
+/// An action to be appended to these entries: with an id that none of them has.
+Stroke action_after(const std::vector<Stroke>& entries, Action action);
+
 /// Strokes in the order in which they are painted, with undo and redo.
 class Journal {
   public:

@@ -10,10 +10,10 @@
 #include <sstream>
 #include <thread>
 
-#include "atlas/texel_map.h"
 #include "io/image.h"
 #include "io/project.h"
 #include "io/read_model.h"
+#include "projects.h"
 
 /// The real program, played by scripts without a display.
 namespace tuft::app {
@@ -58,20 +58,8 @@ class StudioProgram : public testing::Test {
         const int raw = std::system(("bash -c \"" + command(script, options) + "\"").c_str());
         return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")), read(path(".err"))};
     }
-    nlohmann::json tuft(const std::string& arguments) {
-        const std::string line = "TUFT_DATA='" TUFT_SOURCE "' '" TUFT_PROGRAM "' " + arguments + " --json >'" + path("tuft.json") + "' 2>/dev/null";
-        EXPECT_EQ(std::system(line.c_str()), 0) << arguments;
-        return nlohmann::json::parse(read(path("tuft.json")));
-    }
-    // Hash of the texels as the studio left them in a project.
-    static std::string stored_hash(const std::string& project) {
-        const io::Project p = io::Project::open(project);
-        const io::ProjectModel model = p.model();
-        const auto saved = p.load_canvas(atlas::build_texel_map(model.mesh, model.atlas).n_slots());
-        if (!saved) return "";
-        char text[20];
-        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(saved->canvas.hash()));
-        return text;
+    nlohmann::json tuft(const std::string& arguments) const {
+        return test::tuft(arguments, path("tuft.json"));
     }
 
     fs::path folder_;
@@ -89,7 +77,7 @@ TEST_F(StudioProgram, PaintsToTheBitWhatAReplayPaints) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const nlohmann::json replayed = tuft("replay '" + path("work.tuft") + "'");
     EXPECT_EQ(replayed["strokes"], 2);
-    EXPECT_EQ(replayed["canvas_hash"], stored_hash(path("work.tuft")));
+    EXPECT_EQ(replayed["canvas_hash"], test::stored_hash(path("work.tuft")));
     EXPECT_NE(replayed["canvas_hash"], "0000000000000000");
     EXPECT_EQ(io::read_model(path("work.glb")).n_polygons(), io::Project::open(path("work.tuft")).model().mesh.n_triangles());
     EXPECT_GT(fs::file_size(path("work.png")), 10'000u);
@@ -99,7 +87,8 @@ TEST_F(StudioProgram, SymmetricCopiesAreStrokesOfTheirOwnAndUndoneTogether) {
     const Ran ran = studio(kBowl + "set radial 3\nset mirror x\nstroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 6\n"
                                    "undo\nwait-ready\nexpect strokes 0\nredo\nwait-ready\nexpect strokes 6\nsave work.tuft\nwait-ready\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
-    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"],
+              test::stored_hash(path("work.tuft")));
 }
 
 TEST_F(StudioProgram, AJournalThatWasChangedReplaysToTheSameTexels) {
@@ -110,7 +99,8 @@ TEST_F(StudioProgram, AJournalThatWasChangedReplaysToTheSameTexels) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 2u);
-    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"],
+              test::stored_hash(path("work.tuft")));
 }
 
 TEST_F(StudioProgram, ALineFollowsItsControlPointsAndIsUndoneAsOne) {
@@ -124,7 +114,8 @@ TEST_F(StudioProgram, ALineFollowsItsControlPointsAndIsUndoneAsOne) {
     ASSERT_EQ(strokes.size(), 1u);
     const auto& samples = strokes[0].trace.samples;
     EXPECT_LT(samples.back().position.z, samples.front().position.z - 3e-3);
-    EXPECT_EQ(tuft("replay '" + path("after.tuft") + "'")["canvas_hash"], stored_hash(path("after.tuft")));
+    EXPECT_EQ(tuft("replay '" + path("after.tuft") + "'")["canvas_hash"],
+              test::stored_hash(path("after.tuft")));
 }
 
 TEST_F(StudioProgram, AStrokeMovedInTheMiddleReplaysToTheSameTexels) {
@@ -134,7 +125,8 @@ TEST_F(StudioProgram, AStrokeMovedInTheMiddleReplaysToTheSameTexels) {
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 2u);
     EXPECT_EQ(strokes[0].id, 1u);
-    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"],
+              test::stored_hash(path("work.tuft")));
 }
 
 TEST_F(StudioProgram, ARevisedModelCarriesTheStrokesAndNamesThoseThatDoNotFit) {
@@ -143,7 +135,7 @@ TEST_F(StudioProgram, ARevisedModelCarriesTheStrokesAndNamesThoseThatDoNotFit) {
                                                  "save revised.tuft\nwait-ready\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const nlohmann::json truth = tuft("replay '" + path("revised.tuft") + "'");
-    EXPECT_EQ(truth["canvas_hash"], stored_hash(path("revised.tuft")));
+    EXPECT_EQ(truth["canvas_hash"], test::stored_hash(path("revised.tuft")));
     // The dialog is there exactly when a replay finds a stroke that touches nothing.
     EXPECT_EQ(ran.out.find("Keep them") != std::string::npos, truth["missed"] > 0) << truth.dump();
     EXPECT_EQ(io::Project::open(path("work.tuft")).strokes().size(), 2u);
@@ -207,7 +199,8 @@ TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
     const Ran again = studio("wait 0.2\nexpect label \"Go on with it\"\nclick \"Go on with it\"\nwait 0.2\nwait-ready\nexpect strokes 2\n"
                              "stroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\nsave work.tuft\nwait-ready\n");
     ASSERT_EQ(again.status, 0) << again.err;
-    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], stored_hash(path("work.tuft")));
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"],
+              test::stored_hash(path("work.tuft")));
     // Saved under a name: nothing is offered any more.
     const Ran third = studio("wait 0.2\nexpect label \"Go on with it\"\n");
     EXPECT_EQ(third.status, 1);

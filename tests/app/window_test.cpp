@@ -11,8 +11,8 @@
 #include <sstream>
 #include <thread>
 
-#include "atlas/texel_map.h"
 #include "io/project.h"
+#include "projects.h"
 
 /// The real window on a real X server, driven as by a person's hand through XTEST.
 namespace tuft::app {
@@ -109,18 +109,7 @@ class Window : public testing::Test {
         }
     }
     nlohmann::json tuft(const std::string& arguments) const {
-        const std::string line = "TUFT_DATA='" TUFT_SOURCE "' '" TUFT_PROGRAM "' " + arguments + " --json >'" + path("tuft.json") + "' 2>/dev/null";
-        EXPECT_EQ(std::system(line.c_str()), 0) << arguments;
-        return nlohmann::json::parse(read("tuft.json"));
-    }
-    static std::string stored_hash(const std::string& project) {
-        const io::Project p = io::Project::open(project);
-        const io::ProjectModel model = p.model();
-        const auto saved = p.load_canvas(atlas::build_texel_map(model.mesh, model.atlas).n_slots());
-        if (!saved) return "";
-        char text[20];
-        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(saved->canvas.hash()));
-        return text;
+        return test::tuft(arguments, path("tuft.json"));
     }
 
     fs::path folder_;
@@ -173,7 +162,7 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
 
     const nlohmann::json replayed = tuft("replay '" + path("work.tuft") + "'");
     EXPECT_EQ(replayed["strokes"], 3);
-    EXPECT_EQ(replayed["canvas_hash"], stored_hash(path("work.tuft")));
+    EXPECT_EQ(replayed["canvas_hash"], test::stored_hash(path("work.tuft")));
     const int valid = std::system(("bash '" TUFT_SOURCE "/tests/io/validate_glb.sh' '" TUFT_SOURCE "/build/node' '" + path("work.glb") + "' >'" + path("valid") + "' 2>&1").c_str());
     if (WEXITSTATUS(valid) == 77) std::puts("the glTF validator is not installed: the exported file is not checked");
     else EXPECT_EQ(valid, 0) << read("valid");

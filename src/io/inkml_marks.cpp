@@ -1,0 +1,226 @@
+#include "io/inkml_marks.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <pugixml.hpp>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "stroke/journal.h"
+
+namespace tuft::io {
+
+namespace {
+
+using pugi::xml_node;
+
+Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+    double v[3];
+    for (double& x : v) {
+        text = trimmed(text);
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+        if (error != std::errc{} || !std::isfinite(x))
+            file.fail(node, std::string(node.attribute("type").value()) + " needs three numbers");
+        text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    }
+    if (!trimmed(text).empty() && trimmed(text) != "mm")
+        file.fail(node, std::string(node.attribute("type").value()) +
+                            " needs three numbers, millimetres");
+    return {v[0], v[1], v[2]};
+}
+
+Vec3 direction_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+    const Vec3 v = vector_of(file, node, text);
+    if (!(glm::length(v) > 0)) file.fail(node, "a placement's direction is zero");
+    return glm::normalize(v);
+}
+
+std::string name_of(const InkmlText& file, const xml_node& node, std::string_view text,
+                    const char* of_what) {
+    try {
+        stroke::check_name(text, of_what);
+    } catch (const Error& e) {
+        file.fail(node, e.what());
+    }
+    return std::string(text);
+}
+
+bool is_care(std::string_view type) {
+    return type == "dip" || type == "rinse" || type == "reshape" || type == "dry" ||
+           type == "fill" || type == "wipe";
+}
+
+stroke::Fill fill_of(const InkmlText& file, const xml_node& node) {
+    stroke::Fill fill;
+    const auto number = [&](const char* name, double& to) {
+        if (node.attribute(name)) to = file.number_of(node, name);
+    };
+    const auto point = [&](const char* name, Vec3& to) {
+        if (node.attribute(name))
+            to = kMillimetre * vector_of(file, node, node.attribute(name).value());
+    };
+    number("film", fill.film);
+    fill.to_film = fill.film;
+    number("to_film", fill.to_film);
+    point("at", fill.at);
+    point("from", fill.from);
+    point("to", fill.to);
+    fill.to_ink = node.attribute("to_ink").value();
+    try {
+        if (node.attribute("region"))
+            fill.region = stroke::region_of(node.attribute("region").value());
+        if (node.attribute("gradient"))
+            fill.gradient = stroke::gradient_of(node.attribute("gradient").value());
+        if (fill.region != stroke::Region::all && !node.attribute("at"))
+            file.fail(node, "a fill of a part or a chart needs a point: at=\"x y z\"");
+        stroke::check_fill(fill);
+    } catch (const Error& e) {
+        if (std::string(e.what()).starts_with(file.path)) throw;
+        file.fail(node, e.what());
+    }
+    return fill;
+}
+
+/// Seconds to dry for; nothing written: until all is dry.
+double seconds_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+    double x = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+    if (!text.empty() && (error != std::errc() || end != text.data() + text.size()))
+        file.fail(node, "'" + std::string(text) + "' is no number of seconds");
+    try {
+        stroke::check_seconds(x);
+    } catch (const Error& e) {
+        file.fail(node, e.what());
+    }
+    return x;
+}
+
+stroke::Extent extent_of(const InkmlText& file, const xml_node& node) {
+    stroke::Extent extent;
+    const auto read = [&](const char* name, double& value) {
+        const std::string_view text = node.attribute(name).value();
+        if (text.empty()) return;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0 && value <= 1))
+            file.fail(node, std::string(name) + " of a dip or wipe is a number from 0 to 1");
+    };
+    read("depth", extent.depth);
+    read("amount", extent.amount);
+    return extent;
+}
+
+}  // namespace
+
+long InkmlText::line_at(std::ptrdiff_t offset) const {
+    const auto n =
+        std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(content.size()));
+    return 1 + static_cast<long>(std::count(content.begin(), content.begin() + n, '\n'));
+}
+
+void InkmlText::fail(const pugi::xml_node& node, const std::string& what) const {
+    throw Error(path, line_at(node.offset_debug()), what);
+}
+
+double InkmlText::number_of(const pugi::xml_node& node, const char* attribute) const {
+    const auto x = to_number(node.attribute(attribute).value());
+    if (!x) fail(node, std::string("attribute ") + attribute + " is not a number");
+    return *x;
+}
+
+std::string_view local_name(const xml_node& node) {
+    const std::string_view name = node.name();
+    const auto colon = name.find(':');
+    return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+std::string text_of(const xml_node& node) {
+    std::string text;
+    for (const xml_node& child : node.children())
+        if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
+            text += child.value();
+    return text;
+}
+
+std::string_view trimmed(std::string_view s) {
+    const auto first = s.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) return {};
+    return s.substr(first, s.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+std::optional<double> to_number(std::string_view s) {
+    s = trimmed(s);
+    double x = 0;
+    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
+    if (error != std::errc{} || end != s.data() + s.size() || !std::isfinite(x)) return {};
+    return x;
+}
+
+void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& parent) {
+    for (const xml_node& node : parent.children()) {
+        if (local_name(node) != "annotation") continue;
+        std::string_view type = node.attribute("type").value();
+        if (type.rfind("tuft:", 0) != 0) continue;
+        type.remove_prefix(5);
+        if (is_care(type) && local_name(parent) != "trace")
+            file.fail(node, "tuft:" + std::string(type) +
+                                " belongs on the trace before which it is done");
+        const std::string whole = text_of(node);
+        const std::string_view text = trimmed(whole);
+        if (type == "brush")
+            marks.brush = text;
+        else if (type == "ink")
+            marks.ink = text;
+        else if (type == "label")
+            marks.label = text;
+        else if (type == "tool" && text != "brush" && text != "eraser")
+            file.fail(node, "tuft:tool is neither brush nor eraser");
+        else if (type == "tool")
+            marks.erases = text == "eraser";
+        else if (type == "mask")
+            marks.mask = name_of(file, node, text, "mask");
+        else if (type == "layer")
+            marks.layer = name_of(file, node, text, "layer");
+        else if (type == "origin") {
+            marks.placement.origin = kMillimetre * vector_of(file, node, text);
+            marks.placed = true;
+        } else if (type == "right")
+            marks.placement.right = direction_of(file, node, text);
+        else if (type == "down")
+            marks.placement.down = direction_of(file, node, text);
+        else if (type == "laying" && text == "wrap")
+            marks.placement.laying = stroke::Laying::wrap;
+        else if (type == "laying" && text == "project")
+            marks.placement.laying = stroke::Laying::project;
+        else if (type == "laying")
+            file.fail(node, "tuft:laying is neither wrap nor project");
+        else if (type == "seed") {
+            const auto [end, error] =
+                std::from_chars(text.data(), text.data() + text.size(), marks.seed);
+            if (error != std::errc{} || end != text.data() + text.size())
+                file.fail(node, "tuft:seed is not a whole number");
+        }
+    }
+}
+
+std::vector<stroke::Care> care_of(const InkmlText& file, const xml_node& trace) {
+    std::vector<stroke::Care> care;
+    for (const xml_node& node : trace.children()) {
+        if (local_name(node) != "annotation") continue;
+        std::string_view type = node.attribute("type").value();
+        if (type.rfind("tuft:", 0) != 0 || !is_care(type.substr(5))) continue;
+        type.remove_prefix(5);
+        const std::string text = text_of(node);
+        const stroke::Action action = stroke::action_of(std::string(type));
+        stroke::Care& one = care.emplace_back();
+        one.action = action;
+        if (action == stroke::Action::dip || action == stroke::Action::fill)
+            one.ink = trimmed(text);
+        if (action == stroke::Action::fill) one.fill = fill_of(file, node);
+        if (action == stroke::Action::dry) one.seconds = seconds_of(file, node, trimmed(text));
+        one.extent = extent_of(file, node);
+    }
+    return care;
+}
+
+}  // namespace tuft::io

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stroke/trace.h"
+
+namespace pugi {
+class xml_node;
+}
+
+/// The elements of an InkML file as text, and our own annotations among them (`tuft:...`).
+namespace tuft::io {
+
+/// The file, for telling where something is wrong.
+struct InkmlText {
+    std::string_view content;
+    const std::string& path;  ///< as it is named in errors
+
+    /// Line of the character at `offset`, from 1.
+    long line_at(std::ptrdiff_t offset) const;
+    /// Throws `Error` with the element's line.
+    [[noreturn]] void fail(const pugi::xml_node& node, const std::string& what) const;
+    /// Throws `Error` when the attribute is no number.
+    double number_of(const pugi::xml_node& node, const char* attribute) const;
+};
+
+/// The element's name without its namespace.
+std::string_view local_name(const pugi::xml_node& node);
+/// The element's own text.
+std::string text_of(const pugi::xml_node& node);
+std::string_view trimmed(std::string_view s);
+/// The whole of `s` as a finite number.
+std::optional<double> to_number(std::string_view s);
+
+/// Own annotations in force at one place of the file.
+struct InkmlMarks {
+    stroke::Placement placement;
+    bool placed = false;
+    std::string brush, ink, label, layer, mask;
+    std::uint64_t seed = 0;
+    bool erases = false;
+};
+
+/// Takes over what the annotations of `parent` say; throws `Error` for what means nothing.
+void apply_marks(const InkmlText& file, InkmlMarks& marks, const pugi::xml_node& parent);
+
+/// What is to be done with the brush before this trace, in the order written.
+std::vector<stroke::Care> care_of(const InkmlText& file, const pugi::xml_node& trace);
+
+}  // namespace tuft::io
