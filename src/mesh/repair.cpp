@@ -73,7 +73,8 @@ void Repair::take_points() {
     for (const Vec3& p : soup_.points) {
         const Vec3 q = p * options_.metres_per_unit;
         const double reach = std::abs(q.x) + std::abs(q.y) + std::abs(q.z);
-        if (!(reach < 1e30)) throw Error("the mesh has points that are not finite numbers");
+        if (!(reach < 1e30))
+            throw Error("the mesh has points that are not finite numbers or lie beyond 1e30 m");
         mesh_.positions.emplace_back(q);
         bounds.add(q);
         largest = std::max(largest, reach);
