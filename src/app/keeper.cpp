@@ -26,12 +26,12 @@ void Keeper::adopt(io::Project project) {
     pending_.clear();
 }
 
-std::string Keeper::start(const std::filesystem::path& path, const std::string& source, const std::string& unit,
+std::string Keeper::start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                           stroke::Painting& painting) {
     try {
         const stroke::Model& model = painting.model();
         io::Project project = io::Project::create(path, {.source = source,
-                                                         .unit = unit,
+                                                         .frame = frame,
                                                          .mesh = *model.mesh,
                                                          .atlas = model.atlas,
                                                          .substrate = ink::substrate_toml(painting.painted_on())});

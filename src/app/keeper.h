@@ -22,7 +22,7 @@ class Keeper {
     void take_presets(const io::Project& project);
     /// Writes everything to a new project at `path` and keeps that one from now on. On
     /// failure the old one stays, the reason is returned, else "".
-    std::string start(const std::filesystem::path& path, const std::string& source, const std::string& unit,
+    std::string start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                       stroke::Painting& painting);
 
     /// The preset as a replay of the file will read it; call before a stroke uses it.

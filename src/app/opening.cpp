@@ -69,18 +69,19 @@ void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn
 Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
     Painter::Work work;
     stroke::ModelOptions prepare;
-    prepare.repair.metres_per_unit =
-        io::metres_per_unit_of(in.path).value_or(metres_per(options.unit).value_or(kMillimetre));
+    const auto fixed = io::metres_per_unit_of(in.path);
+    prepare.repair.metres_per_unit = fixed.value_or(metres_per(options.frame.unit).value_or(kMillimetre));
+    prepare.repair.y_up = options.frame.y_up && !fixed;
     prepare.unwrap.size = options.atlas_size;
     prepare.progress = progress;
     work.source = in.path.string();
-    work.unit = options.unit;
+    work.frame = options.frame;
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
     work.painting = std::make_unique<stroke::Painting>(*work.model, stroke::PaintingOptions{.substrate = options.substrate});
     if (!former.empty()) carry_strokes(former, work, progress);
     work.texture = std::make_unique<Texture>(*work.painting, progress);
     work.pixels = work.texture->pixels();
-    const std::string fault = work.keeper.start(project, work.source, work.unit, *work.painting);
+    const std::string fault = work.keeper.start(project, work.source, work.frame, *work.painting);
     if (!fault.empty()) throw Error("the work could not be kept: " + fault);
     return work;
 }
@@ -91,7 +92,7 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, const 
     io::Project project = io::Project::open(path);
     io::ProjectModel stored = project.model();
     work.source = stored.source;
-    work.unit = stored.unit;
+    work.frame = stored.frame;
     const ink::Substrate substrate = ink::parse_substrate(stored.substrate, path.string());
     work.model = std::make_unique<stroke::Model>(
         stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), progress));
@@ -106,7 +107,7 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, const 
     // A file that cannot be written is gone on with in a copy.
     const bool writable = ::access(path.c_str(), W_OK) == 0 && ::access(fs::absolute(path).parent_path().c_str(), W_OK) == 0;
     if (!writable) {
-        const std::string fault = work.keeper.start(session, work.source, work.unit, *work.painting);
+        const std::string fault = work.keeper.start(session, work.source, work.frame, *work.painting);
         if (!fault.empty()) throw Error("the work could not be kept: " + fault);
     }
     return work;

@@ -21,7 +21,7 @@ struct Inspected {
 };
 
 struct OpenOptions {
-    std::string unit = "mm";
+    FileFrame frame;  ///< of the model file
     std::uint32_t atlas_size = 2048;
     std::string substrate = "porcelain";
 };

@@ -124,7 +124,7 @@ void Painter::perform(Command& command) {
                           [this](UndoStroke&) { undo(); }, [this](RedoStroke&) { redo(); },
                           [this](SaveProject& c) {
                               const std::string fault =
-                                  work_.keeper.start(c.path, work_.source, work_.unit, *work_.painting);
+                                  work_.keeper.start(c.path, work_.source, work_.frame, *work_.painting);
                               say(fault.empty() ? "Saved as " + c.path.string() : fault);
                               publish();
                           },
@@ -359,7 +359,7 @@ void Painter::edit(const EditStroke& command) {
     else if (command.hidden) work_.keeper.set_hidden(command.id, *command.hidden);
     if (command.brush || command.ink || command.move) {
         // A stroke's row cannot change its presets: the file is written anew, whole or not at all.
-        const std::string fault = work_.keeper.start(work_.keeper.path(), work_.source, work_.unit, *work_.painting);
+        const std::string fault = work_.keeper.start(work_.keeper.path(), work_.source, work_.frame, *work_.painting);
         if (!fault.empty()) say(fault);
     }
 }

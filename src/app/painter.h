@@ -130,7 +130,8 @@ class Painter {
         std::unique_ptr<Texture> texture;
         render::MapPixels pixels;  ///< what the texture shows at the start, for the graphics card
         Keeper keeper;
-        std::string source, unit = "mm";
+        std::string source;
+        FileFrame frame;  ///< of the model file
         std::vector<stroke::StrokeReport> misfits;  ///< of a revised model: strokes that touch it nowhere
     };
     explicit Painter(Work work);

@@ -29,7 +29,7 @@ void Painter::export_model(const ExportModel& command) {
     io::ModelMaps maps = io::make_maps(painting->stack(), m.texels, painting->substrate(), compose);
     if (!command.height) maps.height = {};
     if (!command.orm) maps.orm = {};
-    io::export_model(command.path, *m.mesh, m.atlas, maps, {.unit = work_.unit, .progress = progress("Exporting")});
+    io::export_model(command.path, *m.mesh, m.atlas, maps, {.frame = work_.frame, .progress = progress("Exporting")});
     if (command.pictures > 0) draw_pictures(command, *painting);
     say("Exported " + command.path.string());
     publish();

@@ -54,8 +54,9 @@ void open_dialog(Session& s) {
     Ui& ui = s.ui;
     const Inspected& in = *s.inspected;
     const mesh::MeshSummary& m = in.summary;
-    const double factor = metres_per(s.open_options.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
-    const Vec3 size = m.bounds.size() * factor * 1e3;
+    const double factor = metres_per(s.open_options.frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
+    Vec3 size = m.bounds.size() * factor * 1e3;
+    if (s.open_options.frame.y_up && !in.unit_fixed) std::swap(size.y, size.z);
     fact(s, "File", in.path.filename().string());
     fact(s, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
     fact(s, "Triangles", std::to_string(m.n_triangles));
@@ -64,13 +65,26 @@ void open_dialog(Session& s) {
     ImGui::SameLine(ui.px(150));
     static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"};
     ImGui::BeginDisabled(in.unit_fixed);
-    ui.combo("Unit", s.open_options.unit, units, 90);
+    ui.combo("Unit", s.open_options.frame.unit, units, 90);
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     if (in.unit_fixed) ImGui::TextDisabled("%s", ui.tr("the format says so"));
-    else if (s.open_options.unit == m.unit.unit) ImGui::TextDisabled("%s", ui.tr("guessed from the size"));
+    else if (s.open_options.frame.unit == m.unit.unit) ImGui::TextDisabled("%s", ui.tr("guessed from the size"));
     else ImGui::TextDisabled("%s: %s", ui.tr("guessed"), m.unit.unit.c_str());
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", ui.tr("Axis that points up"));
+    ImGui::SameLine(ui.px(150));
+    static const std::vector<std::string> axes{"z", "y"};
+    std::string up = s.open_options.frame.y_up || in.unit_fixed ? "y" : "z";
+    ImGui::BeginDisabled(in.unit_fixed);
+    if (ui.combo("Up", up, axes, 90)) s.open_options.frame.y_up = up == "y";
+    ImGui::EndDisabled();
+    if (in.unit_fixed) {
+        ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", ui.tr("the format says so"));
+    }
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", ui.tr("Texels per side"));
     ImGui::SameLine(ui.px(150));

@@ -63,7 +63,7 @@ void open_sample(Session& s, const fs::path& path) {
 void revise_with(Session& s, const fs::path& path) {
     if (!s.painter) return;
     if (!s.last.trouble.empty()) return say(s, "The project must be on disk first: " + s.last.trouble);
-    const OpenOptions same{.unit = s.open_options.unit, .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate};
+    const OpenOptions same{.frame = s.open_options.frame, .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate};
     const fs::path former = s.last.project;
     open_path(s, path);
     s.open_options = same;
@@ -116,9 +116,12 @@ void poll_session(Session& s) {
     if (!result.error.empty()) say(s, result.error);
     if (result.inspected) {
         s.inspected = std::move(result.inspected);
-        s.open_options.unit = s.inspected->summary.unit.unit;
-        if (s.inspected->unit_fixed) s.open_options.unit = "m";
-        if (s.revises.empty()) s.open_options.atlas_size = 2048;
+        s.open_options.frame.unit = s.inspected->summary.unit.unit;
+        if (s.inspected->unit_fixed) s.open_options.frame.unit = "m";
+        if (s.revises.empty()) {
+            s.open_options.atlas_size = 2048;
+            s.open_options.frame.y_up = false;
+        }
         if (s.is_sample) accept_inspected(s);
     }
     if (result.work) {

@@ -44,10 +44,16 @@ void add_store(CLI::App* app, Surface& s) {
         ->check(CLI::IsMember({"auto", "float", "packed"}));
 }
 
-void add_surface(CLI::App* app, Surface& s, bool with_unit = true) {
-    if (with_unit)
-        app->add_option("--unit", s.unit, "unit of the model file: um, mm, cm, m, in, ft")
-            ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+void add_frame(CLI::App* app, std::string& unit, std::string& up, const std::string& what) {
+    app->add_option("--unit", unit, what)->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    app->add_option("--up", up,
+                    "axis of the model file that points up: z, or y, as many modellers write it; points "
+                    "on the command line are with z up: (x, y, z) of a file with y up is (x, -z, y)")
+        ->check(CLI::IsMember({"z", "y"}));
+}
+
+void add_surface(CLI::App* app, Surface& s) {
+    add_frame(app, s.unit, s.up, "unit of the model file: um, mm, cm, m, in, ft");
     app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
         ->check(CLI::PositiveNumber);
     app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")
@@ -107,6 +113,7 @@ void add_view_direction(CLI::App* app, View& v) {
                    throw CLI::ValidationError("--view", "'" + text + "' is not AZIMUTH,ELEVATION in degrees");
                v.azimuth = n[0];
                v.elevation = n[1];
+               v.directed = true;
            },
            "where to look from, in degrees: AZIMUTH,ELEVATION")
         ->type_name("AZ,EL");
@@ -211,6 +218,13 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
          },
          "where flat strokes go that have no place of their own: X,Y,Z in millimetres")
         ->type_name("X,Y,Z");
+    p->add_option("--place-width", paint.place_width_mm,
+                  "draws what is placed this wide, all stroke files together (default: as written)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("MM");
+    p->add_option("--place-turn", paint.place_turn_deg, "turns it anticlockwise by so many degrees")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->type_name("DEG");
     add_surface(p, paint.surface);
     p->add_option("--project", paint.project, "write a project file (.tuft)");
     p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
@@ -222,8 +236,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     Inspect inspect;
     auto* i = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
     i->add_option("FILE", inspect.file, "mesh or project")->required();
-    i->add_option("--unit", inspect.unit, "unit of the model file (default: a guess from its size)")
-        ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    add_frame(i, inspect.unit, inspect.up, "unit of the model file (default: a guess from its size)");
     auto* spot = add_point(i, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
     i->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
     add_common(i, inspect.common);
@@ -317,8 +330,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     d->add_option("FILE", render.file, "mesh or project")->required();
     d->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
     d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(CLI::Range(1, 3600));
-    d->add_option("--unit", render.unit, "unit of a model file")
-        ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    add_frame(d, render.unit, render.up, "unit of a model file");
     add_look(d, render.look);
     d->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
     add_view(d, render.view);

@@ -12,7 +12,7 @@ namespace tuft::cli {
 
 /// Options that several commands share.
 struct Surface {
-    std::string unit = "mm";
+    std::string unit, up;           ///< of the model file; empty: the default, or as the project says
     std::uint32_t atlas_size = 0;   ///< texels per side; 0: from texel_size_mm or the default
     double texel_size_mm = 0;
     std::uint32_t pages = 0;        ///< most pages (UDIM); 0: not said
@@ -35,6 +35,7 @@ struct View {
     std::vector<std::string> layers;  ///< names of those to be seen; empty: the visible ones
     int width = 1280, height = 720;
     double azimuth = 30, elevation = 25;
+    bool directed = false;          ///< these two were asked for
     double zoom = 1;
     double light = 0;               ///< degrees the lights are turned about z
     std::vector<double> target_mm;  ///< three numbers, or empty: the middle of the model
@@ -60,6 +61,8 @@ struct Paint {
     double stabilise_mm = 0;        ///< length of the string; 0: off
     std::filesystem::path habit;    ///< habit to undo, or empty
     std::vector<double> place_mm;   ///< x,y,z of the placement for flat strokes, or empty
+    double place_width_mm = 0;      ///< of the whole drawing placed; 0: as written
+    double place_turn_deg = 0;      ///< anticlockwise, as seen by who stands before the surface
     Surface surface;
     std::filesystem::path project, exported, preview, forces;
     View view;
@@ -68,7 +71,7 @@ struct Paint {
 
 struct Inspect {
     std::filesystem::path file;
-    std::string unit;               ///< empty: guess
+    std::string unit, up;           ///< empty: guess; z
     std::vector<double> at_mm;      ///< of a project: three numbers, or empty
     std::filesystem::path save_ink; ///< write what lies there as an ink, or empty
     Common common;
@@ -137,7 +140,7 @@ struct MaskWork {
 struct Render {
     std::filesystem::path file, output;
     int turntable = 0;              ///< number of pictures; 0: one picture
-    std::string unit = "mm";
+    std::string unit, up;           ///< of a model file; empty: the default
     std::string material;           ///< empty: from the project's substrate, else porcelain
     Look look;
     View view;

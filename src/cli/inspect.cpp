@@ -136,8 +136,9 @@ int run(const Inspect& a) {
     for (const Vec3& p : soup.points) bounds.add(p);
     const mesh::UnitGuess guess = mesh::guess_unit(bounds);
     mesh::RepairOptions options;
-    if (const auto fixed = io::metres_per_unit_of(a.file)) options.metres_per_unit = *fixed;
-    else options.metres_per_unit = metres_per(a.unit.empty() ? guess.unit : a.unit).value_or(kMillimetre);
+    const auto fixed = io::metres_per_unit_of(a.file);
+    options.metres_per_unit = fixed.value_or(metres_per(a.unit.empty() ? guess.unit : a.unit).value_or(kMillimetre));
+    options.y_up = a.up == "y" && !fixed;
     options.progress = console.progress();
     mesh::Surface surface;
     try {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/place.h"
 #include "cli/steps.h"
 #include "core/files.h"
 #include "core/units.h"
@@ -57,7 +58,7 @@ void note_misses(const std::vector<stroke::StrokeReport>& reports,
 }  // namespace
 
 int run(const Paint& a) {
-    const Outputs outputs{a.project, a.exported, a.preview, a.view, a.surface.unit};
+    Outputs outputs{a.project, a.exported, a.preview, a.view, frame_of(a.surface.unit, a.surface.up)};
     check_outputs(outputs);
     check_output(a.forces);
     Console console(a.common.quiet);
@@ -67,7 +68,9 @@ int run(const Paint& a) {
     const bool goes_on = is_project_file(a.model);
     const std::unique_ptr<OpenProject> before = goes_on ? open_project(a.model, console) : nullptr;
     const stroke::Model model = before ? std::move(before->model) : load_model(a.model, a.surface, console);
-    place_strokes(strokes, model, a.place_mm, console);
+    if (before) outputs.frame = before->frame;
+    place_strokes(strokes, model, a, console);
+    if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
 
     stroke::Painting painting(model, {.substrate = a.surface.substrate,
                                       .record_forces = !a.forces.empty()});
@@ -89,7 +92,7 @@ int run(const Paint& a) {
         std::vector<stroke::Stroke> all = painting.journal().strokes();
         all.insert(all.end(), strokes.begin(), strokes.end());
         project = start_project(a.project, before ? before->source : a.model.string(),
-                                before ? before->unit : a.surface.unit, painting, all);
+                                outputs.frame, painting, all);
         project->append(painting.journal().strokes());
     }
     const auto painting_start = Clock::now();

@@ -23,7 +23,9 @@ std::filesystem::path numbered(const std::filesystem::path& path, int index, int
 // The model to replay on: the stored one, with a new atlas if asked for, or a revised file.
 stroke::Model replay_model(const Replay& a, OpenProject& project, Console& console) {
     Surface surface = a.surface;
-    surface.unit = a.model.empty() ? "mm" : project.unit;
+    const FileFrame frame = frame_of(a.surface.unit, a.surface.up, project.frame);
+    surface.unit = frame.unit;
+    surface.up = frame.y_up ? "y" : "z";
     if (surface.pages == 0) surface.pages = project.model.atlas.pages;
     if (!a.model.empty()) {
         if (surface.atlas_size == 0 && surface.texel_size_mm == 0)
@@ -88,10 +90,11 @@ void write_map(const std::filesystem::path& path, const std::string& name, const
 }  // namespace
 
 int run(const Replay& a) {
-    const Outputs outputs{a.out_project, a.exported, a.preview, a.view, a.surface.unit};
+    Outputs outputs{a.out_project, a.exported, a.preview, a.view, {}};
     check_outputs(outputs);
     Console console(a.common.quiet);
     const auto project = open_project(a.project, console);
+    outputs.frame = a.model.empty() ? project->frame : frame_of(a.surface.unit, a.surface.up, project->frame);
     std::vector<stroke::Stroke> strokes = project->file.strokes();
     const stroke::Model model = replay_model(a, *project, console);
 
@@ -115,7 +118,7 @@ int run(const Replay& a) {
     show_looks(project->file, painting, a.look, console);
     if (!a.out_project.empty()) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
-                                        project->unit, painting, strokes);
+                                        outputs.frame, painting, strokes);
         out.append(painting.journal().strokes());
         if (!strokes.empty()) out.save_canvases(painting.canvases(), strokes.back().id);
     }
@@ -149,7 +152,7 @@ int run(const Export& a) {
     const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
     if (extension == ".png" || extension == ".exr") write_map(a.output, map, painting, compose);
-    else write_outputs({.exported = a.output, .unit = project->unit}, painting, console);
+    else write_outputs({.exported = a.output, .frame = project->frame}, painting, console);
     console.clear();
     if (a.common.json)
         std::cout << nlohmann::json{{"project", a.project.string()},
@@ -178,7 +181,7 @@ int run(const Render& a) {
         show_layers(*painting, a.view.layers);
         show_looks(project->file, *painting, a.look, console);
     } else {
-        bare = load_bare(a.file, a.unit, console);
+        bare = load_bare(a.file, frame_of(a.unit, a.up), console);
     }
     const int count = std::max(1, a.turntable);
     std::vector<std::string> wrote;

@@ -23,9 +23,15 @@ namespace fs = std::filesystem;
 
 namespace tuft::cli {
 
+FileFrame frame_of(const std::string& unit, const std::string& up, const FileFrame& otherwise) {
+    return {.unit = unit.empty() ? otherwise.unit : unit, .y_up = up.empty() ? otherwise.y_up : up == "y"};
+}
+
 stroke::ModelOptions model_options(const Surface& s, Console& console) {
     stroke::ModelOptions options;
-    options.repair.metres_per_unit = metres_per(s.unit).value_or(kMillimetre);
+    const FileFrame frame = frame_of(s.unit, s.up);
+    options.repair.metres_per_unit = metres_per(frame.unit).value_or(kMillimetre);
+    options.repair.y_up = frame.y_up;
     options.unwrap.size = s.atlas_size;
     options.unwrap.texel_size = s.texel_size_mm * kMillimetre;
     options.unwrap.pages = std::max(s.pages, 1u);
@@ -49,7 +55,10 @@ stroke::Model load_model(const fs::path& path, const Surface& s, Console& consol
     mesh::PolygonSoup soup = io::read_model(path);
     report(progress, "reading", 1);
     stroke::ModelOptions options = model_options(s, console);
-    if (const auto fixed = io::metres_per_unit_of(path)) options.repair.metres_per_unit = *fixed;
+    if (const auto fixed = io::metres_per_unit_of(path)) {
+        options.repair.metres_per_unit = *fixed;
+        options.repair.y_up = false;  // the reader has turned it
+    }
     try {
         stroke::Model model = stroke::prepare_model(std::move(soup), options);
         for (const std::string& warning : model.repairs.warnings) console.note("warning: " + warning);
@@ -61,10 +70,11 @@ stroke::Model load_model(const fs::path& path, const Surface& s, Console& consol
     }
 }
 
-stroke::Model load_bare(const fs::path& path, const std::string& unit, Console& console) {
+stroke::Model load_bare(const fs::path& path, const FileFrame& frame, Console& console) {
     mesh::RepairOptions options;
-    options.metres_per_unit =
-        io::metres_per_unit_of(path).value_or(metres_per(unit).value_or(kMillimetre));
+    const auto fixed = io::metres_per_unit_of(path);
+    options.metres_per_unit = fixed.value_or(metres_per(frame.unit).value_or(kMillimetre));
+    options.y_up = frame.y_up && !fixed;
     options.progress = console.progress();
     stroke::Model model;
     try {
@@ -171,33 +181,6 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     return strokes;
 }
 
-void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
-                   const std::vector<double>& place_mm, Console& console) {
-    std::optional<mesh::SurfacePoint> at;
-    for (stroke::Stroke& s : strokes) {
-        if (!s.trace.flat || (place_mm.empty() && s.trace.placed)) continue;
-        if (!at) {
-            const Box& box = model.mesh->bounds;
-            if (!place_mm.empty())
-                at = model.query->closest_point(kMillimetre * Vec3(place_mm[0], place_mm[1], place_mm[2]));
-            else if (at = model.query->ray(box.centre() - Vec3{0, box.diagonal(), 0}, {0, 1, 0}); !at)
-                at = model.query->closest_point(box.centre() - Vec3{0, box.diagonal(), 0});
-            if (place_mm.empty())
-                console.note(fmt::format("the strokes name no place; they go to the front of the model, at {:.1f},{:.1f},{:.1f} mm (see --place)",
-                                         at->position.x / kMillimetre, at->position.y / kMillimetre,
-                                         at->position.z / kMillimetre));
-        }
-        // Upright as somebody sees it who stands before the surface; on a flat top, x stays to the right.
-        const Vec3 n = at->normal;
-        const Vec3 right = std::abs(n.z) < 0.95 ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n))
-                                                : make_frame(Vec3{0}, n).t;
-        s.trace.placement.origin = at->position;
-        s.trace.placement.right = right;
-        s.trace.placement.down = glm::cross(right, n);
-        s.trace.placed = true;
-    }
-}
-
 render::Image draw_picture(const stroke::Model& model, const stroke::Painting* painting,
                            const std::string& material, const View& v, int frame, int count,
                            Console& console) {
@@ -248,7 +231,7 @@ void write_outputs(const Outputs& o, const stroke::Painting& painting, Console& 
         const io::ModelMaps maps = io::make_maps(painting.stack(), model.texels, painting.substrate(),
                                                  painting.compose_options());
         io::export_model(o.exported, *model.mesh, model.atlas, maps,
-                         {.unit = o.unit, .progress = console.progress()});
+                         {.frame = o.frame, .progress = console.progress()});
     }
     if (!o.preview.empty())
         write_picture(o.preview, draw_picture(model, &painting, "", o.view, 0, 1, console));
@@ -258,12 +241,12 @@ void write_picture(const fs::path& path, const render::Image& image) {
     io::write_image(path, io::view_of(image.width, image.height, 3, image.rgb.data()));
 }
 
-io::Project start_project(const fs::path& path, const std::string& source, const std::string& unit,
+io::Project start_project(const fs::path& path, const std::string& source, const FileFrame& frame,
                           stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes) {
     const stroke::Model& model = painting.model();
     io::Project project = io::Project::create(
         path, {.source = source,
-               .unit = unit,
+               .frame = frame,
                .mesh = *model.mesh,
                .atlas = model.atlas,
                .substrate = ink::substrate_toml(painting.painted_on())});
@@ -310,7 +293,7 @@ std::unique_ptr<OpenProject> open_project(const fs::path& path, Console& console
     auto opened = std::make_unique<OpenProject>(OpenProject{.file = io::Project::open(path)});
     io::ProjectModel stored = opened->file.model();
     opened->source = stored.source;
-    opened->unit = stored.unit;
+    opened->frame = stored.frame;
     opened->substrate = ink::parse_substrate(stored.substrate, path.string());
     opened->model = stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), console.progress());
     return opened;

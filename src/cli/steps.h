@@ -15,6 +15,9 @@
 /// Steps that several commands share.
 namespace tuft::cli {
 
+/// What the arguments say of the model file, else `otherwise`.
+FileFrame frame_of(const std::string& unit, const std::string& up, const FileFrame& otherwise = {});
+
 /// Unit, atlas and UV options in the terms of `stroke`.
 stroke::ModelOptions model_options(const Surface& surface, Console& console);
 
@@ -22,7 +25,7 @@ stroke::ModelOptions model_options(const Surface& surface, Console& console);
 stroke::Model load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
 
 /// Reads and repairs a model file without giving it an atlas: enough to look at it.
-stroke::Model load_bare(const std::filesystem::path& path, const std::string& unit, Console& console);
+stroke::Model load_bare(const std::filesystem::path& path, const FileFrame& frame, Console& console);
 
 /// Throws `Error` when a file could not be written there: its folder is missing or not
 /// writable. Called before long work. Empty paths are fine.
@@ -36,16 +39,11 @@ std::vector<stroke::Stroke> load_strokes(const Paint& arguments, Console& consol
 /// Has only the layers of these names seen; throws `UsageError` for a name that is not there.
 void show_layers(stroke::Painting& painting, const std::vector<std::string>& names);
 
-/// Puts flat strokes that have no place of their own, or all of them when `place_mm` is given,
-/// onto the model: upright at the nearest point to the place, else at its front (-y side).
-void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
-                   const std::vector<double>& place_mm, Console& console);
-
 /// What every painting command can leave behind; empty paths are skipped.
 struct Outputs {
     std::filesystem::path project, exported, preview;
     View view;
-    std::string unit = "mm";
+    FileFrame frame;
 };
 void check_outputs(const Outputs& outputs);
 /// Exported model and preview; the project is written while painting.
@@ -65,13 +63,14 @@ void find_presets(stroke::Painting& painting, const std::vector<stroke::Stroke>&
 /// Stores the presets that these entries use.
 void put_presets(io::Project& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes);
 io::Project start_project(const std::filesystem::path& path, const std::string& source,
-                          const std::string& unit, stroke::Painting& painting,
+                          const FileFrame& frame, stroke::Painting& painting,
                           const std::vector<stroke::Stroke>& strokes);
 
 /// A project with its model ready to be painted on.
 struct OpenProject {
     io::Project file;
-    std::string source, unit;
+    std::string source;
+    FileFrame frame;  ///< of the model file
     ink::Substrate substrate;
     stroke::Model model;
 };

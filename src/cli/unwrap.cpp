@@ -18,7 +18,8 @@ int run(const Unwrap& a) {
     check_output(a.output);
     check_output(a.picture);
     Console console(a.common.quiet);
-    const stroke::Model model = load_bare(a.model, a.surface.unit, console);
+    const FileFrame frame = frame_of(a.surface.unit, a.surface.up);
+    const stroke::Model model = load_bare(a.model, frame, console);
     atlas::UnwrapOptions options = model_options(a.surface, console).unwrap;
     options.progress = console.progress();
     atlas::Unwrapped unwrapped;
@@ -27,7 +28,7 @@ int run(const Unwrap& a) {
     } catch (const Error& error) {
         throw Error(a.model.string(), error.what());
     }
-    io::export_model(a.output, *model.mesh, unwrapped.atlas, {}, {.unit = a.surface.unit});
+    io::export_model(a.output, *model.mesh, unwrapped.atlas, {}, {.frame = frame});
     if (!a.picture.empty()) {
         const atlas::AtlasPicture picture = atlas::draw_atlas(*model.mesh, unwrapped.atlas);
         io::write_image(a.picture, io::view_of(static_cast<int>(picture.width), static_cast<int>(picture.height), 3, picture.rgb.data()));

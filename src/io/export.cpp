@@ -204,14 +204,14 @@ void export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const at
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj")
         throw Error(path.string(),
                     "models are written as .glb, .gltf or .obj, not as '" + extension + "'");
-    const auto metres = metres_per(options.unit);
+    const auto metres = metres_per(options.frame.unit);
     if (!metres)
-        throw Error("unknown unit '" + options.unit + "'; there are um, mm, cm, m, in and ft");
+        throw Error("unknown unit '" + options.frame.unit + "'; there are um, mm, cm, m, in and ft");
     ExportScene scene{.mesh = mesh,
                       .wedges = split_wedges(mesh, atlas.corner_uvs),
                       .corner_uvs = atlas.corner_uvs,
                       .name = safe_stem(path),
-                      .z_up = options.z_up,
+                      .y_up = options.frame.y_up,
                       .metres_per_unit = *metres};
     const std::vector<Vec2f> page_uvs = split_pages(atlas, scene);
     std::vector<EncodedMap> encoded;

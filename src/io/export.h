@@ -8,6 +8,7 @@
 #include "atlas/atlas.h"
 #include "atlas/texel_map.h"
 #include "core/progress.h"
+#include "core/units.h"
 #include "ink/composite.h"
 #include "io/image.h"
 #include "mesh/triangle_mesh.h"
@@ -42,8 +43,7 @@ ink::AtlasMap<std::uint16_t> height16(const ink::AtlasMap<float>& height);
 std::string channel_name(const std::string& pigment);
 
 struct ExportOptions {
-    std::string unit = "mm";          ///< of OBJ coordinates; glTF is always in metres
-    bool z_up = true;                 ///< the model's up axis is z: glTF gets (x, z, −y), y up
+    FileFrame frame;                  ///< of OBJ coordinates; glTF is always in metres, y up
     bool normals_from_height = true;  ///< a normal map when there is a height map with any height
     ProgressFn progress = {};
 };
@@ -54,7 +54,7 @@ struct ExportOptions {
 ///   TEXCOORD_0 and (with a normal map) TANGENT; PNG maps in buffer views. A vertex is
 ///   repeated for each distinct normal or UV, triangles keep their order.
 /// - `.gltf`: the same as NAME.gltf, NAME.bin and NAME_*.png.
-/// - `.obj`: NAME.obj, NAME.mtl and NAME_*.png; coordinates in `unit`, axes as in the model;
+/// - `.obj`: NAME.obj, NAME.mtl and NAME_*.png; coordinates in `frame`;
 ///   vertices and triangles in their order.
 ///
 /// An atlas of several pages: OBJ gets UVs by the UDIM convention, pictures NAME_*.1001.png and

@@ -34,7 +34,7 @@ struct ExportScene {
     Wedges wedges;
     std::span<const Vec2f> corner_uvs;  ///< of the triangle's own page
     std::string name;
-    bool z_up = true;
+    bool y_up = false;  ///< of OBJ coordinates
     double metres_per_unit = 1e-3;
     std::vector<std::uint32_t> udims{1001};    ///< of each page
     std::vector<std::uint32_t> triangle_page;  ///< [n_triangles], or empty: all on page 0

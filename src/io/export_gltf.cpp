@@ -11,8 +11,8 @@ namespace tuft::io {
 namespace {
 
 /// Turns the model's frame into glTF's (y up).
-Vec3f to_gltf(const Vec3f& v, bool z_up) {
-    return z_up ? Vec3f(v.x, v.z, -v.y) : v;
+Vec3f to_gltf(const Vec3f& v) {
+    return {v.x, v.z, -v.y};
 }
 
 /// Unit tangents along +u with the handedness of the UVs; bitangent = w (n × t) points
@@ -45,7 +45,7 @@ std::vector<Vec4f> wedge_tangents(const ExportScene& scene) {
         const double scale = glm::length(sums[w]);
         const Vec3 t =
             scale > 0 ? make_frame(Vec3(0), n, sums[w] / scale).t : make_frame(Vec3(0), n).t;
-        tangents[w] = Vec4f(to_gltf(Vec3f(t), scene.z_up), signs[w] < 0 ? -1.0f : 1.0f);
+        tangents[w] = Vec4f(to_gltf(Vec3f(t)), signs[w] < 0 ? -1.0f : 1.0f);
     }
     return tangents;
 }
@@ -148,8 +148,8 @@ tinygltf::Primitive vertices_of(Builder& builder, const ExportScene& scene, bool
     Vec3f lo(std::numeric_limits<float>::infinity()), hi(-lo);
     for (std::size_t w = 0; w < n; ++w) {
         const std::uint32_t corner = scene.wedges.corner[w];
-        positions[w] = to_gltf(mesh.positions[scene.wedges.vertex[w]], scene.z_up);
-        normals[w] = to_gltf(mesh.corner_normals[corner], scene.z_up);
+        positions[w] = to_gltf(mesh.positions[scene.wedges.vertex[w]]);
+        normals[w] = to_gltf(mesh.corner_normals[corner]);
         uvs[w] = Vec2f(scene.corner_uvs[corner].x, 1 - scene.corner_uvs[corner].y);
         lo = glm::min(lo, positions[w]);
         hi = glm::max(hi, positions[w]);

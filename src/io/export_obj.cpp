@@ -118,9 +118,10 @@ void write_obj(const std::filesystem::path& path, const ExportScene& scene,
 
     TextFile file(path);
     file.text() += "mtllib " + mtl_name + "\no " + one_word(scene.name) + "\n";
+    const auto axes = [&](const Vec3& v) { return scene.y_up ? Vec3(v.x, v.z, -v.y) : v; };
     // Nine digits bring every float back, also through the change of unit.
     for (const Vec3f& p : mesh.positions) {
-        const Vec3 q = Vec3(p) / scene.metres_per_unit;
+        const Vec3 q = axes(Vec3(p)) / scene.metres_per_unit;
         append_row(file.text(), "v", std::array{q.x, q.y, q.z}, 9);
     }
     for (const std::uint32_t corner : wedges.corner) {
@@ -129,7 +130,7 @@ void write_obj(const std::filesystem::path& path, const ExportScene& scene,
         append_row(file.text(), "vt", std::array{uv.x, uv.y}, 9);
     }
     for (const std::uint32_t corner : wedges.corner) {
-        const Vec3 n(mesh.corner_normals[corner]);
+        const Vec3 n = axes(Vec3(mesh.corner_normals[corner]));
         append_row(file.text(), "vn", std::array{n.x, n.y, n.z}, 7);
     }
     file.text() += "usemtl decorated\n";

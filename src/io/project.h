@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "core/units.h"
 #include "ink/canvas.h"
 #include "mesh/triangle_mesh.h"
 #include "stroke/journal.h"
@@ -27,7 +28,7 @@ using PresetText = std::pair<std::string, std::string>;
 
 struct ProjectModel {
     std::string source;       ///< file the model came from, for people
-    std::string unit = "mm";  ///< unit of that file
+    FileFrame frame;          ///< of that file
     mesh::TriangleMesh mesh;  ///< metres
     atlas::Atlas atlas;
     std::string substrate;  ///< TOML text

@@ -50,7 +50,7 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
     if (model.atlas.pages < 1 || model.atlas.pages > 100 ||
         model.atlas.size % model.atlas.pages_per_side() != 0)
         damaged(path, "the atlas has no valid pages");
-    if (!metres_per(model.unit)) damaged(path, "the model's unit is unknown");
+    if (!metres_per(model.frame.unit)) damaged(path, "the model's unit is unknown");
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ void store_model(SQLite::Database& db, const ProjectModel& model) {
                           "atlas_size, gutter, texel_size, charts, uvs_from_file) "
                           "VALUES(1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     row.bind(1, model.source);
-    row.bind(2, model.unit);
+    row.bind(2, model.frame.unit);
     row.bind(3, static_cast<std::int64_t>(hash_of(m)));
     row.bind(4, static_cast<std::int64_t>(m.n_vertices()));
     row.bind(5, static_cast<std::int64_t>(m.n_triangles()));
@@ -128,6 +128,7 @@ void store_model(SQLite::Database& db, const ProjectModel& model) {
     put_array(db, "mesh", "triangle_groups", m.triangle_groups, kSingle);
     put_array(db, "atlas", "corner_uvs", a.corner_uvs, kUv);
     put_array(db, "atlas", "triangle_chart", a.triangle_chart, kSingle);
+    if (model.frame.y_up) put_array(db, "mesh", "y_up", std::vector<std::uint32_t>{1}, kSingle);
     if (a.pages > 1) put_array(db, "atlas", "pages", std::vector<std::uint32_t>{a.pages}, kSingle);
 }
 
@@ -138,7 +139,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
     if (!row.executeStep()) damaged(path, "it has no model");
     ProjectModel model;
     model.source = row.getColumn(0).getString();
-    model.unit = row.getColumn(1).getString();
+    model.frame.unit = row.getColumn(1).getString();
     const std::int64_t vertices = row.getColumn(2).getInt64(),
                        triangles = row.getColumn(3).getInt64();
     if (vertices < 1 || vertices > 3 * kMaxTriangles || triangles < 1 || triangles > kMaxTriangles)
@@ -175,6 +176,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
     a.triangle_chart = get_array<std::uint32_t>(db, path, "atlas", "triangle_chart", kSingle, n_t);
     const auto pages = get_array<std::uint32_t>(db, path, "atlas", "pages", kSingle, 1);
     if (!pages.empty()) a.pages = pages[0];
+    model.frame.y_up = !get_array<std::uint32_t>(db, path, "mesh", "y_up", kSingle, 1).empty();
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
     check(model, path);
     return model;

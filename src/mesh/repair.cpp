@@ -71,7 +71,7 @@ void Repair::take_points() {
     double largest = 0;
     mesh_.positions.reserve(soup_.points.size());
     for (const Vec3& p : soup_.points) {
-        const Vec3 q = p * options_.metres_per_unit;
+        const Vec3 q = (options_.y_up ? Vec3(p.x, -p.z, p.y) : p) * options_.metres_per_unit;
         const double reach = std::abs(q.x) + std::abs(q.y) + std::abs(q.z);
         if (!(reach < 1e30))
             throw Error("the mesh has points that are not finite numbers or lie beyond 1e30 m");

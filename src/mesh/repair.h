@@ -12,6 +12,7 @@ namespace tuft::mesh {
 
 struct RepairOptions {
     double metres_per_unit = 1e-3;  ///< the file's unit; millimetres by default
+    bool y_up = false;              ///< in the file y is up: points are turned to (x, −z, y)
     double crease_angle = 40.0 * 0.017453292519943295;  ///< radians; normals split above it
     ProgressFn progress = nullptr;
 };

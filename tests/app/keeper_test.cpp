@@ -38,7 +38,7 @@ TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
     stroke::Painting painting(model);
     Keeper keeper;
     const auto path = folder_ / "work.tuft";
-    ASSERT_EQ(keeper.start(path, "sheet.ply", "mm", painting), "");
+    ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
     paint(painting, keeper, 0);
     EXPECT_EQ(keeper.trouble(), "");
 
@@ -66,8 +66,8 @@ TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
     stroke::Painting painting(model);
     Keeper keeper;
     const auto path = folder_ / "work.tuft";
-    ASSERT_EQ(keeper.start(path, "sheet.ply", "mm", painting), "");
-    EXPECT_NE(keeper.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", "mm", painting), "");
+    ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
+    EXPECT_NE(keeper.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting), "");
     EXPECT_EQ(keeper.path(), path);
     paint(painting, keeper, 0);
     EXPECT_EQ(keeper.trouble(), "");

@@ -223,7 +223,7 @@ TEST(Export, FailuresLeaveNothingBehind) {
     const atlas::Atlas atlas = cylinder_atlas(mesh);
     const ModelMaps maps = pattern_maps(16);
     EXPECT_THROW(export_model(folder / "m.fbx", mesh, atlas, maps), Error);
-    EXPECT_THROW(export_model(folder / "m.obj", mesh, atlas, maps, {.unit = "furlong"}), Error);
+    EXPECT_THROW(export_model(folder / "m.obj", mesh, atlas, maps, {.frame = {.unit = "furlong"}}), Error);
     EXPECT_THROW(export_model(folder / "none/m.glb", mesh, atlas, maps), Error);
     EXPECT_THROW(write_together(folder / "m.glb",
                                 [](const std::filesystem::path& staging) {

@@ -21,7 +21,7 @@ using namespace testing;
 ProjectModel sample_model() {
     ProjectModel model;
     model.source = "bowl.ply";
-    model.unit = "mm";
+    model.frame = {.unit = "in", .y_up = true};
     model.mesh = cylinder();
     model.mesh.vertex_colours.assign(model.mesh.n_vertices(), {10, 20, 30, 255});
     model.atlas = cylinder_atlas(model.mesh);
@@ -111,7 +111,8 @@ TEST(Project, ModelAndAtlasComeBackToTheBit) {
     EXPECT_EQ(project.written_by().substr(0, 5), "tuft ");
     const ProjectModel back = project.model();
     EXPECT_EQ(back.source, model.source);
-    EXPECT_EQ(back.unit, model.unit);
+    EXPECT_EQ(back.frame.unit, model.frame.unit);
+    EXPECT_EQ(back.frame.y_up, model.frame.y_up);
     EXPECT_EQ(back.substrate, model.substrate);
     EXPECT_EQ(back.mesh.positions, model.mesh.positions);
     EXPECT_EQ(back.mesh.triangles, model.mesh.triangles);

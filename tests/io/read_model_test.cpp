@@ -18,7 +18,7 @@ TEST(ReadModel, ObjReadBackIsTheSameMeshInTheUnitAsked) {
     const ModelMaps maps = pattern_maps(64);
     for (const auto& [unit, metres] :
          {std::pair{"mm", 1e-3}, std::pair{"in", 0.0254}, std::pair{"m", 1.0}}) {
-        export_model(folder / "m.obj", mesh, cylinder_atlas(mesh), maps, {.unit = unit});
+        export_model(folder / "m.obj", mesh, cylinder_atlas(mesh), maps, {.frame = {.unit = unit}});
         const mesh::PolygonSoup soup = read_model(folder / "m.obj");
         expect_same(soup, mesh, metres, 0);
         EXPECT_EQ(soup.points.size(), mesh.n_vertices()) << "vertices stay as they are";

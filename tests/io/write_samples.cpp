@@ -16,8 +16,7 @@ int main(int argc, char** argv) {
         export_model(folder / "relief.glb", mesh, atlas, pattern_maps(64));
         export_model(folder / "flat.glb", mesh, atlas, pattern_maps(64, true));
         export_model(folder / "with files.gltf", mesh, atlas, pattern_maps(64));
-        export_model(folder / "七上八下.glb", mesh, atlas, {pattern_maps(16).base_colour, {}, {}},
-                     {.z_up = false});
+        export_model(folder / "七上八下.glb", mesh, atlas, {pattern_maps(16).base_colour, {}, {}});
     } catch (const tuft::Error& e) {
         std::fprintf(stderr, "%s\n", e.what());
         return 1;

@@ -1,0 +1,93 @@
+#include "cli/place.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/units.h"
+
+namespace tuft::cli {
+
+namespace {
+
+// Right and down of a drawing at a point: upright as somebody sees it who stands before the
+// surface; on a flat top, x stays to the right.
+std::pair<Vec3, Vec3> upright(const Vec3& n, double turn) {
+    const Vec3 right = std::abs(n.z) < 0.95 ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n)) : make_frame(Vec3{0}, n).t;
+    const Vec3 down = glm::cross(right, n);
+    return {std::cos(turn) * right - std::sin(turn) * down, std::cos(turn) * down + std::sin(turn) * right};
+}
+
+double extent_along(const Box& box, const Vec3& direction) {
+    return glm::dot(box.size(), glm::abs(direction));
+}
+
+}  // namespace
+
+void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a,
+                   Console& console) {
+    std::vector<stroke::Trace*> drawing;
+    Box area;
+    for (stroke::Stroke& s : strokes) {
+        if (!s.trace.flat || (a.place_mm.empty() && s.trace.placed)) continue;
+        drawing.push_back(&s.trace);
+        for (const stroke::TraceSample& sample : s.trace.samples) area.add(sample.position);
+    }
+    if (area.empty()) return;
+    const Box& box = model.mesh->bounds;
+    const Vec3 before = box.centre() - Vec3{0, box.diagonal(), 0};
+    std::optional<mesh::SurfacePoint> at;
+    if (!a.place_mm.empty())
+        at = model.query->closest_point(kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]));
+    else if (at = model.query->ray(before, {0, 1, 0}); !at)
+        at = model.query->closest_point(before);
+    const auto [right, down] = upright(at->normal, a.place_turn_deg * kDegree);
+    const double width = std::max(area.size().x, 0.05 * area.size().y);
+    double scale = 1;
+    std::string note;
+    if (a.place_width_mm > 0 && width > 0) {
+        scale = a.place_width_mm * kMillimetre / width;
+    } else if (a.place_mm.empty() && width > 0) {
+        const double fill = std::max(area.size().x / extent_along(box, right), area.size().y / extent_along(box, down));
+        if (fill > 1 || fill < 0.01) {
+            scale = 0.6 / fill;
+            note = fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide (see --place-width)",
+                               area.size().x / kMillimetre, scale * area.size().x / kMillimetre);
+        }
+    }
+    if (a.place_mm.empty())
+        console.note(fmt::format("the strokes name no place; they go to the front of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",
+                                 at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre, note));
+    for (stroke::Trace* trace : drawing) {
+        for (stroke::TraceSample& sample : trace->samples) {
+            sample.position = scale * (sample.position - area.centre());
+            sample.time *= scale;
+        }
+        trace->placement.origin = at->position;
+        trace->placement.right = right;
+        trace->placement.down = down;
+        trace->placed = true;
+    }
+}
+
+void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, const stroke::Model& model) {
+    Vec3 sum{0};
+    double count = 0;
+    for (const stroke::Stroke& s : strokes) {
+        if (s.action != stroke::Action::stroke || s.trace.samples.empty()) continue;
+        const auto weight = static_cast<double>(s.trace.samples.size());
+        const Vec3 at = s.trace.flat ? s.trace.placement.origin : s.trace.samples[s.trace.samples.size() / 2].position;
+        if (const auto near = model.query->closest_point(at)) sum += weight * near->face_normal;
+        count += weight;
+    }
+    if (!(glm::length(sum) > 0.7 * count)) return;  // they go round the model, or there are none
+    const Vec3 n = glm::normalize(sum);
+    if (std::hypot(n.x, n.y) > 0.1) view.azimuth = std::atan2(n.x, -n.y) / kDegree;
+    view.elevation = std::clamp(std::asin(n.z) / kDegree + 10, -80.0, 80.0);
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "cli/arguments.h"
+#include "cli/console.h"
+#include "stroke/journal.h"
+#include "stroke/model.h"
+
+/// Where drawings and handwriting without a place of their own go.
+namespace tuft::cli {
+
+/// Puts flat strokes that have no place of their own, or all of them when a place is given,
+/// onto the model: as one drawing, upright, its middle at the nearest point to the place, else
+/// at the model's front (-y side). Without a width given, a drawing that has no place and is
+/// larger than the model or tiny beside it is scaled to fit, with a note. Scaling keeps the
+/// hand's speed.
+void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
+                   const Paint& arguments, Console& console);
+
+/// Turns the view to the side the strokes are on, when they are on one side.
+void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes,
+                     const stroke::Model& model);
+
+}  // namespace tuft::cli

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "program.h"
+
+/// Where drawings go that say no place, and which way up the model is.
+namespace tuft::test {
+namespace {
+
+using nlohmann::json;
+
+class Place : public Program {
+  protected:
+    // A box of 80 x 60 x 40 mm about the origin, in millimetres with z up, or with y up.
+    static std::string box(bool y_up) {
+        std::ostringstream obj;
+        for (const int z : {-20, 20})
+            for (const int y : {-30, 30})
+                for (const int x : {-40, 40}) {
+                    if (y_up)
+                        obj << "v " << x << ' ' << z << ' ' << -y << '\n';
+                    else
+                        obj << "v " << x << ' ' << y << ' ' << z << '\n';
+                }
+        obj << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+        return obj.str();
+    }
+
+    // Two lines, `width` wide and a quarter as high, from (x, y) on, in the file's own numbers.
+    static std::string lines(double x, double y, double width) {
+        std::ostringstream ink;
+        ink << "<ink xmlns=\"http://www.w3.org/2003/InkML\">";
+        for (const double below : {0.0, 0.25}) {
+            ink << "<trace>";
+            for (int i = 0; i <= 16; ++i)
+                ink << (i ? ", " : "") << x + width * i / 16 << ' ' << y + width * below;
+            ink << "</trace>";
+        }
+        return ink.str() + "</ink>";
+    }
+
+    struct Reach {
+        std::array<double, 3> low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+        double size(int axis) const { return high[axis] - low[axis]; }
+        double middle(int axis) const { return 0.5 * (high[axis] + low[axis]); }
+    };
+
+    // Where the ferrule went, mm.
+    Reach painted(const std::string& file, const std::string& more) const {
+        const Ran ran =
+            tuft("paint " + path("box.obj") + " --brush wolf-small --atlas-size 256 --strokes " +
+                 path(file) + " --forces " + path("f.csv") + " " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        Reach reach;
+        std::istringstream csv(read(path("f.csv")));
+        std::string line;
+        std::getline(csv, line);
+        while (std::getline(csv, line)) {
+            std::replace(line.begin(), line.end(), ',', ' ');
+            std::istringstream row(line);
+            double stroke = 0, time = 0;
+            row >> stroke >> time;
+            for (int axis = 0; axis < 3; ++axis) {
+                double v = 0;
+                row >> v;
+                reach.low[axis] = std::min(reach.low[axis], 1e3 * v);
+                reach.high[axis] = std::max(reach.high[axis], 1e3 * v);
+            }
+        }
+        return reach;
+    }
+};
+
+// The path is resampled at a texel or so, 0.5 mm here.
+constexpr double kStep = 0.5;
+
+TEST_F(Place, ADrawingLiesWithItsMiddleAtThePlaceAsWideAsAsked) {
+    write("box.obj", box(false));
+    write("lines.inkml", lines(9000, -4000, 10));
+    const Reach plain = painted("lines.inkml", "--place 10,0,20");
+    EXPECT_NEAR(plain.size(0), 10, kStep);
+    // The ferrule leans away from the tip: where it is shows against a drawing about the origin.
+    write("about.inkml", lines(-5, -1.25, 10));
+    const Reach about = painted("about.inkml", "--place 0,0,20");
+    EXPECT_NEAR(plain.middle(0), 10 + about.middle(0), kStep);
+    EXPECT_NEAR(plain.middle(1), about.middle(1), kStep);
+    const Reach wide = painted("lines.inkml", "--place 10,0,20 --place-width 40");
+    EXPECT_NEAR(wide.size(0), 40, kStep);
+    EXPECT_NEAR(wide.size(1), 10, kStep);
+    const Reach turned = painted("lines.inkml", "--place 10,0,20 --place-width 40 --place-turn 90");
+    EXPECT_NEAR(turned.size(0), 10, kStep);
+    EXPECT_NEAR(turned.size(1), 40, kStep);
+    EXPECT_NEAR(turned.middle(1), about.middle(0), kStep) << "the lean turns too";
+}
+
+TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
+    write("box.obj", box(false));
+    write("device.inkml", lines(12000, 3000, 8000));  // a tablet's own units, read as millimetres
+    const Reach reach = painted("device.inkml", "");
+    EXPECT_NEAR(reach.size(0), 48, kStep) << "six tenths of the front";
+    EXPECT_LT(reach.high[1], -30 + 1e-3) << "before the front";
+    write("fits.inkml", lines(0, 0, 30));
+    const Reach fits = painted("fits.inkml", "");
+    EXPECT_NEAR(fits.size(0), 30, kStep) << "what fits stays as it is written";
+    EXPECT_NEAR(reach.middle(0), fits.middle(0), kStep);
+}
+
+TEST_F(Place, APictureIsTakenFromTheSideThatIsPaintedOn) {
+    write("box.obj", box(false));
+    write("lines.inkml", lines(0, 0, 30));
+    const auto picture = [&](const std::string& view) {
+        const Ran ran =
+            tuft("paint " + path("box.obj") +
+                 " --brush wolf-small --atlas-size 256 --place 0,30,0 --size 64x64 --strokes " +
+                 path("lines.inkml") + " --preview " + path("v.png") + view);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return read(path("v.png"));
+    };
+    const std::string by_itself = picture("");
+    EXPECT_EQ(by_itself, picture(" --view 180,10"));
+    EXPECT_NE(by_itself, picture(" --view 0,10"));
+}
+
+TEST_F(Place, AFileWithYUpIsTheSameModelStandingUpAndGoesBackAsItCame) {
+    write("z.obj", box(false));
+    write("y.obj", box(true));
+    write("lines.inkml", lines(0, 0, 30));
+    const auto paint = [&](const std::string& file, const std::string& more) {
+        const Ran ran =
+            tuft("paint " + path(file) + " --brush wolf-small --atlas-size 256 --strokes " +
+                 path("lines.inkml") + " --json --project " + path("p.tuft") + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return json::parse(ran.out)["canvas_hash"].get<std::string>();
+    };
+    const auto points = [&](const std::string& file) {
+        std::istringstream obj(read(path(file)));
+        std::vector<std::array<double, 3>> found;
+        for (std::string line; std::getline(obj, line);)
+            if (line.starts_with("v ")) {
+                std::istringstream row(line.substr(2));
+                std::array<double, 3> p{};
+                row >> p[0] >> p[1] >> p[2];
+                for (double& v : p) v = std::round(v * 1e4) / 1e4 + 0.0;
+                found.push_back(p);
+            }
+        return found;
+    };
+    const std::string standing = paint("z.obj", "");
+    EXPECT_NE(paint("y.obj", ""), standing);
+    EXPECT_EQ(paint("y.obj", " --up y"), standing);
+    // From the project again, and on a revised file in the same frame.
+    ASSERT_EQ(tuft("export " + path("p.tuft") + " -o " + path("back.obj")).status, 0);
+    EXPECT_EQ(points("back.obj"), points("y.obj"));
+    const Ran replayed = tuft("replay " + path("p.tuft") + " --model " + path("y.obj") +
+                              " --json --export " + path("again.obj"));
+    ASSERT_EQ(replayed.status, 0) << replayed.err;
+    EXPECT_EQ(json::parse(replayed.out)["canvas_hash"], standing);
+    EXPECT_EQ(points("again.obj"), points("y.obj"));
+    EXPECT_EQ(tuft("unwrap " + path("y.obj") + " --up y -o " + path("u.obj")).status, 0);
+    EXPECT_EQ(points("u.obj"), points("y.obj"));
+    EXPECT_EQ(tuft("inspect " + path("y.obj") + " --up x").status, 2);
+}
+
+}  // namespace
+}  // namespace tuft::test
