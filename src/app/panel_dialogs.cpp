@@ -73,7 +73,7 @@ void open_dialog(Session& s) {
     else if (s.open_options.frame.unit == m.unit.unit) ImGui::TextDisabled("%s", ui.tr("guessed from the size"));
     else ImGui::TextDisabled("%s: %s", ui.tr("guessed"), m.unit.unit.c_str());
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", ui.tr("Axis that points up"));
+    ImGui::TextDisabled("%s", ui.tr("Upward axis"));
     ImGui::SameLine(ui.px(150));
     static const std::vector<std::string> axes{"z", "y"};
     std::string up = s.open_options.frame.y_up || in.unit_fixed ? "y" : "z";
