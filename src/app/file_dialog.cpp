@@ -29,10 +29,13 @@ std::string size_text(std::uintmax_t bytes) {
 
 }  // namespace
 
+bool FileDialog::reads() const { return purpose_ != Purpose::save && purpose_ != Purpose::export_model && purpose_ != Purpose::save_ink; }
+
 bool FileDialog::suits(const fs::path& file) const {
     const std::string e = lower(file.extension().string());
     if (purpose_ == Purpose::save) return e == ".tuft";
     if (purpose_ == Purpose::export_model) return e == ".glb" || e == ".gltf" || e == ".obj";
+    if (purpose_ == Purpose::ink || purpose_ == Purpose::save_ink) return e == ".toml";
     if (purpose_ == Purpose::writing) return e == ".svg" || e == ".inkml";
     return (e == ".tuft" && purpose_ != Purpose::revise) || e == ".ply" || e == ".obj" || e == ".stl" || e == ".off" || e == ".glb" || e == ".gltf";
 }
@@ -81,13 +84,13 @@ std::optional<fs::path> FileDialog::accept(Ui&) {
         name_[0] = 0;
         return std::nullopt;
     }
-    if (purpose_ == Purpose::open || purpose_ == Purpose::writing || purpose_ == Purpose::revise) {
+    if (reads()) {
         if (!fs::exists(path, ec)) {
             fault_ = "There is no file of that name.";
             return std::nullopt;
         }
     } else {
-        if (!suits(path)) path += purpose_ == Purpose::save ? ".tuft" : ".glb";
+        if (!suits(path)) path += purpose_ == Purpose::save ? ".tuft" : purpose_ == Purpose::save_ink ? ".toml" : ".glb";
         if (::access(path.parent_path().c_str(), W_OK) != 0) {
             fault_ = "Nothing can be written into this folder.";
             return std::nullopt;
@@ -107,14 +110,15 @@ std::optional<fs::path> FileDialog::draw(Ui& ui) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSize(ImVec2(std::min(ui.px(680), screen.x - 20), std::min(ui.px(470), screen.y - 20)));
-    const char* title = purpose_ == Purpose::open ? "Open a model or project" : purpose_ == Purpose::writing ? "Writing or drawing to place" : purpose_ == Purpose::revise ? "Revised model" : purpose_ == Purpose::save ? "Save project as" : "Export to";
+    static constexpr const char* titles[] = {"Open a model or project", "Save project as", "Export to", "Writing or drawing to place", "Revised model", "Open an ink", "Save the ink as"};
+    const char* title = titles[static_cast<int>(purpose_)];
     ImGui::Begin((std::string(ui.tr(title)) + "###files").c_str(), nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
     ImGui::BeginChild("places", ImVec2(ui.px(130), -ui.px(46)));
     ui.heading("Places");
     if (const char* home = std::getenv("HOME"); home && ImGui::Selectable(ui.tr("Home"))) go(home);
-    if (ImGui::Selectable(ui.tr("Samples"))) go(data_folder() / (purpose_ == Purpose::writing ? "samples/strokes" : "models"));
+    if (ImGui::Selectable(ui.tr("Samples"))) go(data_folder() / (purpose_ == Purpose::writing ? "samples/strokes" : purpose_ == Purpose::ink ? "models/inks" : "models"));
     std::error_code ec;
     if (ImGui::Selectable(ui.tr("Here"))) go(fs::current_path(ec));
     ImGui::EndChild();
@@ -157,7 +161,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui) {
     const bool entered = ImGui::InputTextWithHint("##name", ui.tr("file name"), name_, sizeof name_, ImGuiInputTextFlags_EnterReturnsTrue);
     ui.mark("file name");
     ImGui::SameLine();
-    const char* action = ask_replace_ ? "Replace" : purpose_ == Purpose::open || purpose_ == Purpose::writing || purpose_ == Purpose::revise ? "Open" : purpose_ == Purpose::save ? "Save" : "Export";
+    const char* action = ask_replace_ ? "Replace" : reads() ? "Open" : purpose_ == Purpose::export_model ? "Export" : "Save";
     if ((ui.primary_button(action, 100, name_[0] != 0) || entered) && name_[0]) chosen = accept(ui);
     ImGui::SameLine();
     if (ui.button("Cancel", nullptr, 100)) shown_ = false;

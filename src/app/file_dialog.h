@@ -12,7 +12,7 @@ namespace tuft::app {
 /// Choosing a file to open, or a name to write to.
 class FileDialog {
   public:
-    enum class Purpose { open, save, export_model, writing, revise };
+    enum class Purpose { open, save, export_model, writing, revise, ink, save_ink };
 
     void show(Purpose purpose, const std::filesystem::path& start);
     bool shown() const { return shown_; }
@@ -29,6 +29,7 @@ class FileDialog {
     };
     void read_folder();
     void go(const std::filesystem::path& folder);
+    bool reads() const;           ///< a file that is there; else one to be written
     bool suits(const std::filesystem::path& file) const;
     std::optional<std::filesystem::path> accept(Ui& ui);
 

@@ -51,7 +51,7 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
 }
 
 void Keeper::prepare(stroke::Painting& painting, const std::string& brush, const std::string& ink) {
-    if (!brushes_.contains(brush)) {
+    if (!brush.empty() && !brushes_.contains(brush)) {
         const std::string toml = brush::preset_toml(painting.brush(brush));
         brush::Preset preset = brush::parse_preset(toml, brush);
         preset.name = brush;
@@ -67,6 +67,16 @@ void Keeper::prepare(stroke::Painting& painting, const std::string& brush, const
         inks_[ink] = toml;
         attempt([&] { if (project_) project_->put_ink({ink, toml}); });
     }
+}
+
+void Keeper::store_looks(const stroke::Painting& painting) {
+    attempt([&] { if (project_) io::store_looks(*project_, painting); });
+}
+
+std::vector<std::string> Keeper::inks() const {
+    std::vector<std::string> names;
+    for (const auto& [name, toml] : inks_) names.push_back(name);
+    return names;
 }
 
 void Keeper::flush() {

@@ -25,15 +25,18 @@ class Keeper {
     std::string start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                       stroke::Painting& painting);
 
-    /// The preset as a replay of the file will read it; call before a stroke uses it.
+    /// The presets as a replay of the file will read them; call before a stroke uses them. Empty: none.
     void prepare(stroke::Painting& painting, const std::string& brush, const std::string& ink);
     void add(const stroke::Stroke& stroke);
+    /// Stores what the painting is shown as.
+    void store_looks(const stroke::Painting& painting);
     void remove(std::uint64_t id);
     void set_hidden(std::uint64_t id, bool hidden);
     /// Stores the texels, so that the next opening needs no replay.
     void store_canvas(const stroke::Painting& painting);
 
     std::filesystem::path path() const { return project_ ? project_->path() : std::filesystem::path{}; }
+    std::vector<std::string> inks() const;  ///< names of those that the project holds
     const std::string& trouble() const { return trouble_; }
     std::size_t waiting() const { return pending_.size(); }
 

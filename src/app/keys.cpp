@@ -32,6 +32,8 @@ constexpr std::array<Shipped, static_cast<std::size_t>(Act::count)> kShipped{{
     {"place", "Place writing", {GLFW_KEY_T, 0}},
     {"eraser", "Eraser", {GLFW_KEY_E, 0}},
     {"fill", "Fill", {GLFW_KEY_G, 0}},
+    {"pick", "Pick", {GLFW_KEY_I, 0}},
+    {"mask", "Mask", {GLFW_KEY_M, 0}},
     {"lighter", "Press less", {GLFW_KEY_LEFT_BRACKET, 0}},
     {"heavier", "Press more", {GLFW_KEY_RIGHT_BRACKET, 0}},
     {"lean-left", "Lean to the left", {GLFW_KEY_LEFT, 0}},

@@ -11,7 +11,7 @@ namespace tuft::app {
 enum class Act {
     open, save, export_to, quit, keys,
     undo, redo, delete_stroke,
-    brush, line, curve, writing, eraser, fill,
+    brush, line, curve, writing, eraser, fill, pick, mask,
     lighter, heavier, lean_left, lean_right, lean_away, lean_near, upright,
     frame_all, frame_cursor, front, back, right, left, top, bottom, parallel,
     see_through, atlas, next_shading,

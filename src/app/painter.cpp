@@ -34,8 +34,13 @@ void shift(stroke::Stroke& stroke, const RigidMove& move) {
 
 }  // namespace
 
-Painter::Painter(Work work) : work_(std::move(work)), roughness_(work_.painting->substrate().roughness) {
+Painter::Painter(Work work) : work_(std::move(work)) {
     work_.painting->take_dirty();
+    const std::vector<std::string> shipped = ink::list_inks();
+    for (const std::string& name : work_.keeper.inks())
+        if (std::find(shipped.begin(), shipped.end(), name) == shipped.end()) own_inks_.push_back(work_.painting->ink(name));
+    update_.own_inks = own_inks_;
+    publish_looks();
     groups_.assign(work_.painting->journal().strokes().size(), 1);
     publish(true);
     thread_ = std::thread([this] { run(); });
@@ -78,6 +83,10 @@ Update Painter::take() {
     update_.can_undo = out.can_undo;
     update_.can_redo = out.can_redo;
     update_.layers = out.layers;
+    update_.masks = out.masks;
+    update_.own_inks.reset();
+    update_.looks.reset();
+    update_.picked.clear();
     update_.wet = out.wet;
     update_.undo_seconds = out.undo_seconds;
     update_.trouble = out.trouble;
@@ -117,10 +126,7 @@ void Painter::perform(Command& command) {
     std::visit(Overloaded{[this](BeginStroke& c) { begin(c); }, [this](ExtendStroke& c) { extend(c); },
                           [this](EndStroke&) { end(); },
                           [this](CareForBrush& c) { care(c); }, [this](PaintTraces& c) { paint_traces(c); },
-                          [this](CancelStroke&) {
-                              work_.painting->cancel();
-                              publish();
-                          },
+                          [this](CancelStroke&) { cancel(); },
                           [this](UndoStroke&) { undo(); }, [this](RedoStroke&) { redo(); },
                           [this](SaveProject& c) {
                               const std::string fault =
@@ -132,11 +138,11 @@ void Painter::perform(Command& command) {
                           [this](SendTexture& c) {
                               publish();
                               work_.texture->show_wetness(c.wetness, *work_.painting);
-                              render::MapPixels pixels = work_.texture->pixels();
-                              const std::lock_guard lock(mutex_);
-                              update_.pixels = std::move(pixels);
-                              update_.tiles.clear();
+                              send_pixels();
                           },
+                          [this](PickInk& c) { pick(c); }, [this](TakeInk& c) { add_ink(std::move(c.ink)); },
+                          [this](RecolourInk& c) { recolour(c); }, [this](ShowOn& c) { show_on(c); },
+                          [this](ChangeMasks& c) { change_masks(c); }, [this](ShowMask& c) { show_mask(c); },
                           [this](ExportModel& c) { export_model(c); }, [this](EditStroke& c) { edit(c); }},
                command);
 }
@@ -187,6 +193,7 @@ void Painter::publish(bool strokes_changed) {
     const stroke::BrushInHand* held = work_.painting->held(current_.brush);
     update_.fullness = held ? held->reservoir.fullness() : 1;
     update_.layers = painting.layers();
+    update_.masks = painting.masks();
     update_.wet = std::ranges::any_of(painting.canvases(), [](const stroke::LayerTexels& l) { return l.canvas->wet(); });
     update_.can_undo = painting.journal().can_undo();
     update_.undo_seconds = undo_seconds_;
@@ -201,12 +208,15 @@ void Painter::publish(bool strokes_changed) {
 void Painter::begin(const BeginStroke& command) {
     current_ = command;
     work_.keeper.prepare(*work_.painting, command.brush, command.ink);
+    loads_ = load_tip(command);
     stroke::Stroke stroke;
     stroke.trace.flat = false;
     stroke.trace.brush = command.brush;
     stroke.trace.ink = command.ink;
-    if (command.carry) stroke.settings.dip = "carry";
+    if (command.carry || loads_ > 0) stroke.settings.dip = "carry";
+    if (command.wet) stroke.settings.film = "wet";
     stroke.layer = command.layer;
+    stroke.mask = command.mask;
     stroke.trace.erases = command.erases;
     work_.painting->begin(std::move(stroke));
 }
@@ -219,12 +229,9 @@ void Painter::care(const CareForBrush& command) {
     entry.trace.brush = command.brush;
     if (command.action == stroke::Action::dip) entry.trace.ink = command.ink;
     entry.seconds = command.seconds;
+    entry.extent = command.extent;
     entry.settings.dip = "carry";
-    work_.painting->paint(std::move(entry));
-    work_.keeper.add(work_.painting->journal().strokes().back());
-    groups_.push_back(1);
-    undone_groups_.clear();
-    publish(true);
+    act(std::move(entry));
 }
 
 void Painter::change_layers(const ChangeLayers& command) {
@@ -240,13 +247,14 @@ void Painter::change_layers(const ChangeLayers& command) {
 
 void Painter::fill(const FillModel& command) {
     progress("Filling")("", 0);
-    work_.keeper.prepare(*work_.painting, current_.brush.empty() ? "wolf-medium" : current_.brush, command.ink);
+    work_.keeper.prepare(*work_.painting, "", command.ink);
     stroke::Stroke entry;
     entry.action = stroke::Action::fill;
     entry.trace.flat = false;
     entry.trace.ink = command.ink;
     entry.fill = command.fill;
     entry.layer = command.layer;
+    entry.mask = command.mask;
     act(std::move(entry));
 }
 
@@ -275,7 +283,9 @@ void Painter::paint_traces(PaintTraces& command) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
         work_.keeper.prepare(*work_.painting, all[i].brush, all[i].ink);
-        work_.painting->paint({.trace = std::move(all[i]), .layer = command.layer});
+        stroke::Stroke entry{.trace = std::move(all[i]), .layer = command.layer, .mask = command.mask};
+        if (command.wet) entry.settings.film = "wet";
+        work_.painting->paint(std::move(entry));
         work_.keeper.add(work_.painting->journal().strokes().back());
         ++groups_.back();
         publish(true);
@@ -301,9 +311,10 @@ void Painter::end() {
     painting.end();
     work_.keeper.add(painting.journal().strokes().back());
     const stroke::Stroke original = painting.journal().strokes().back();
-    std::size_t made = 1;
+    std::size_t made = 1 + loads_;
     publish(true);
     for (const stroke::PoseMap& map : stroke::symmetry_copies(current_.symmetry)) {
+        made += load_tip(current_);
         stroke::Stroke copy = original;
         copy.trace.label = "symmetric to " + std::to_string(original.id);
         for (stroke::TraceSample& sample : copy.trace.samples) {
@@ -319,6 +330,16 @@ void Painter::end() {
     if (current_.joined && !groups_.empty()) groups_.back() += made;
     else groups_.push_back(made);
     undone_groups_.clear();
+}
+
+void Painter::cancel() {
+    if (!work_.painting->in_stroke()) return;
+    work_.painting->cancel();
+    for (; loads_ > 0; --loads_) {
+        work_.keeper.remove(work_.painting->journal().strokes().back().id);
+        work_.painting->undo();
+    }
+    publish(true);
 }
 
 void Painter::undo() {

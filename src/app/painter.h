@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,14 +26,19 @@ struct BeginStroke {
     stroke::Symmetry symmetry;
     bool carry = false;           ///< goes on with the hair and ink of the stroke before
     std::uint32_t layer = stroke::kFirstLayer;
+    std::uint32_t mask = 0;       ///< kept to; 0: none
     bool erases = false;          ///< takes ink off
+    bool wet = false;             ///< ink that flows and mixes
+    std::string tip_ink;          ///< every stroke begins with this one in the tip; empty: with one ink
+    double tip_depth = 0.3;       ///< of it, part of the tuft's length
     bool joined = false;          ///< is undone together with the one before it
 };
-/// Dips, rinses or combs a brush, or lets the ink dry.
+/// Dips, rinses, wipes or combs a brush, or lets the ink dry.
 struct CareForBrush {
     stroke::Action action = stroke::Action::dip;
     std::string brush, ink;
     double seconds = 0;           ///< of drying; 0: until all is dry
+    stroke::Extent extent = {};   ///< of a dip or a wipe
 };
 struct ExtendStroke {
     std::vector<brush::Pose> poses;
@@ -44,6 +50,8 @@ struct PaintTraces {
     std::vector<stroke::Trace> traces;
     stroke::Symmetry symmetry;    ///< its turns; writing is not mirrored
     std::uint32_t layer = stroke::kFirstLayer;
+    std::uint32_t mask = 0;
+    bool wet = false;
 };
 struct CancelStroke {};
 struct UndoStroke {};
@@ -53,6 +61,34 @@ struct FillModel {
     std::string ink;
     stroke::Fill fill;
     std::uint32_t layer = stroke::kFirstLayer;
+    std::uint32_t mask = 0;
+};
+/// The eyedropper: what lies at a place becomes an ink of its own.
+struct PickInk {
+    Vec3 point{0};                ///< metres, model frame
+};
+/// Takes an ink in from outside.
+struct TakeInk {
+    ink::Ink ink;
+};
+/// Shows what is painted with one ink as if it were another one.
+struct RecolourInk {
+    std::string name;
+    ink::Ink wanted;
+};
+/// Shows the work on another material; nothing is painted anew.
+struct ShowOn {
+    std::string substrate;
+};
+/// Makes or ends a mask.
+struct ChangeMasks {
+    stroke::MaskEdit edit;
+    std::uint32_t with = 0;       ///< a new one: another mask that it is taken together with; 0: none
+    stroke::MaskKind how = stroke::MaskKind::unite;  ///< or intersect
+};
+/// Veils what a mask leaves out; 0: nothing.
+struct ShowMask {
+    std::uint32_t id = 0;
 };
 /// Adds, changes, moves or removes a layer.
 struct ChangeLayers {
@@ -87,7 +123,7 @@ struct EditStroke {
     bool remove = false;
 };
 using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
-                             ExportModel, EditStroke, FillModel, ChangeLayers, SendTexture>;
+                             ExportModel, EditStroke, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
 
 /// A stroke for the list.
 struct StrokeLine {
@@ -98,6 +134,13 @@ struct StrokeLine {
     double length = 0;            ///< metres of the hand's way
     std::vector<Vec3f> places;    ///< metres, model frame: where the hand was; empty for flat traces
     std::vector<Vec3f> way;       ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
+};
+
+/// How the work is shown, apart from how it was painted.
+struct Looks {
+    std::map<std::string, ink::Ink> recolours;  ///< by the name of the ink painted with
+    std::string substrate, painted_on;
+    float roughness = 0.1f;       ///< of the bare surface, as shown
 };
 
 /// What changed since the last look.
@@ -115,6 +158,10 @@ struct Update {
     double fullness = 1;          ///< ink in the brush last painted with, of its capacity
     bool can_undo = false, can_redo = false;
     stroke::LayerTable layers;
+    stroke::MaskTable masks;
+    std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones
+    std::optional<Looks> looks;
+    std::string picked;           ///< name of an ink just picked up or taken in
     bool wet = false;             ///< some ink is
     std::string trouble;          ///< why work is not being kept, ""
     std::filesystem::path project;
@@ -149,7 +196,6 @@ class Painter {
     /// The texture as it was at the start; once.
     render::MapPixels take_pixels() { return std::move(work_.pixels); }
     const std::string& source() const { return work_.source; }
-    float roughness() const { return roughness_; }
 
   private:
     void run();
@@ -157,9 +203,19 @@ class Painter {
     void begin(const BeginStroke& command);
     void extend(const ExtendStroke& command);
     void end();
+    void cancel();
     void fill(const FillModel& command);
     void act(stroke::Stroke entry);
     void change_layers(const ChangeLayers& command);
+    void change_masks(const ChangeMasks& command);
+    void show_mask(const ShowMask& command);
+    void pick(const PickInk& command);
+    void add_ink(ink::Ink ink);
+    void recolour(const RecolourInk& command);
+    void show_on(const ShowOn& command);
+    void send_pixels();
+    void publish_looks();
+    std::size_t load_tip(const BeginStroke& command);
     void paint_traces(PaintTraces& command);
     void care(const CareForBrush& command);
     void undo();
@@ -174,8 +230,9 @@ class Painter {
     ProgressFn progress(const std::string& name);
 
     Work work_;
-    float roughness_ = 0.1f;
     BeginStroke current_;
+    std::size_t loads_ = 0;                ///< entries that loaded the brush for the stroke in work
+    std::vector<ink::Ink> own_inks_;
     double undo_seconds_ = 0;
     double asked_ = 0, last_publish_ = 0;
     std::vector<std::size_t> groups_, undone_groups_;  ///< strokes that one movement of the hand made

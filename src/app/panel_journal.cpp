@@ -7,11 +7,18 @@
 namespace tuft::app {
 namespace {
 
-void draw_way(const StrokeLine& line, ImVec2 at, float size) {
+void draw_way(const Session& s, const StrokeLine& line, ImVec2 at, float size) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImVec2 middle(at.x + 0.5f * size, at.y + 0.5f * size);
+    if (line.action != stroke::Action::stroke) {
+        const bool inked = line.action == stroke::Action::dip || line.action == stroke::Action::fill;
+        if (inked) draw->AddCircleFilled(middle, 0.24f * size, ink_colour(s, line.ink), 32);
+        draw->AddCircle(middle, 0.24f * size, s.ui.faint, 32);
+        return;
+    }
     draw->AddRectFilled(at, ImVec2(at.x + size, at.y + size), IM_COL32(238, 236, 230, line.hidden ? 70 : 255), 3);
     const float pad = 0.16f * size, inner = size - 2 * pad;
-    const unsigned colour = (ink_colour(line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
+    const unsigned colour = (ink_colour(s, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
     for (std::size_t i = 1; i < line.way.size(); ++i) {
         const Vec3f &a = line.way[i - 1], &b = line.way[i];
         draw->AddLine(ImVec2(at.x + pad + a.x * inner, at.y + pad + a.y * inner),
@@ -31,7 +38,9 @@ void edit_row(Session& s, const StrokeLine& line) {
     if (ui.choice("Move", s.shift_stroke, "Then drag it over the model with the left button", 2 * half + 8)) s.shift_stroke = !s.shift_stroke;
     std::string brush = line.brush, ink = line.ink;
     if (ui.combo("Change brush", brush, s.brushes)) s.painter->post(EditStroke{.id = line.id, .brush = brush});
-    if (ui.combo("Change ink", ink, s.inks)) s.painter->post(EditStroke{.id = line.id, .ink = ink});
+    std::vector<std::string> inks = s.inks;
+    for (const ink::Ink& own : s.own_inks) inks.push_back(own.name);
+    if (ui.combo("Change ink", ink, inks)) s.painter->post(EditStroke{.id = line.id, .ink = ink});
 }
 
 void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
@@ -44,7 +53,7 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
         s.shift_stroke = false;
     }
     s.ui.mark("stroke " + std::to_string(number));
-    draw_way(line, ImVec2(at.x, at.y), size);
+    draw_way(s, line, ImVec2(at.x, at.y), size);
     char text[96];
     static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe"};
     if (line.action != stroke::Action::stroke) std::snprintf(text, sizeof text, "%zu   %s", number, s.ui.tr(actions[static_cast<int>(line.action)]));
@@ -52,7 +61,7 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);
-    const std::string what = line.action == stroke::Action::layer ? line.label : std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
+    const std::string what = stroke::keeps_texels(line.action) ? line.label : std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
     draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, what.c_str());
     if (ImGui::IsItemHovered() && !line.label.empty()) ImGui::SetTooltip("%s", line.label.c_str());
     if (chosen) edit_row(s, line);

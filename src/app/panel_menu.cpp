@@ -30,6 +30,8 @@ void edit_menu(Session& s) {
     if (s.ui.menu_item("Undo", name_of(s.keys.chord(Act::undo)).c_str(), false, s.last.can_undo) && s.painter) s.painter->post(UndoStroke{});
     if (s.ui.menu_item("Redo", name_of(s.keys.chord(Act::redo)).c_str(), false, s.last.can_redo) && s.painter) s.painter->post(RedoStroke{});
     ImGui::Separator();
+    if (s.ui.menu_item("Recolour...", nullptr, false, s.painter != nullptr)) s.show_colours = true;
+    s.ui.hint("Shows what is painted in other inks, or on another material, without painting it anew");
     if (s.ui.menu_item("Settings...")) s.show_settings = true;
     ImGui::EndMenu();
 }

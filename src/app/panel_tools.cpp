@@ -8,8 +8,6 @@
 #include "brush/tuft.h"
 #include "core/files.h"
 #include "core/units.h"
-#include "ink/composite.h"
-#include "ink/kubelka_munk.h"
 
 namespace tuft::app {
 namespace {
@@ -105,47 +103,6 @@ void brush_rack(Session& s) {
         if (names.size() > 1) row(sort.c_str(), names);
     if (!single.empty()) row("other", single);
     ImGui::TextUnformatted(s.ui.tr(s.brush.c_str()));
-}
-
-void ink_palette(Session& s) {
-    s.ui.heading("Ink");
-    const float size = s.ui.px(30);
-    const auto columns = static_cast<std::size_t>(std::max(1.0f, ImGui::GetContentRegionAvail().x / (size + ImGui::GetStyle().ItemSpacing.x)));
-    for (std::size_t i = 0; i < s.inks.size(); ++i) {
-        const std::string& name = s.inks[i];
-        if (i % columns) ImGui::SameLine();
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        if (ImGui::InvisibleButton(("ink " + name).c_str(), ImVec2(size, size))) s.ink = name;
-        s.ui.mark(name);
-        ImDrawList* draw = ImGui::GetWindowDrawList();
-        const ImVec2 centre(at.x + 0.5f * size, at.y + 0.5f * size);
-        draw->AddCircleFilled(centre, 0.42f * size, ink_colour(name), 32);
-        draw->AddCircle(centre, 0.42f * size, IM_COL32(128, 128, 128, 160), 32);
-        if (name == s.ink) draw->AddCircle(centre, 0.5f * size, s.ui.accent, 32, s.ui.px(2));
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", s.ui.tr(name.c_str()));
-    }
-    ImGui::TextUnformatted(s.ui.tr(s.ink.c_str()));
-}
-
-// What is done with a brush between strokes.
-void care_section(Session& s) {
-    Ui& ui = s.ui;
-    if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", (kToolWidth - 24 - 8) / 2 - 6))
-        s.painter->post(CareForBrush{stroke::Action::dry, s.brush, "", 60});
-    ImGui::SameLine();
-    if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", (kToolWidth - 24 - 8) / 2 - 6))
-        s.painter->post(CareForBrush{stroke::Action::dry, s.brush, "", 0});
-    ui.toggle("Carry ink over", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
-    if (!s.carry) return;
-    const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
-    const auto act = [&](stroke::Action action) { s.painter->post(CareForBrush{action, s.brush, s.ink}); };
-    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", third)) act(stroke::Action::dip);
-    ImGui::SameLine();
-    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", third)) act(stroke::Action::rinse);
-    ImGui::SameLine();
-    if (ui.button("Comb", "Hair straight and together, the ink stays", third)) act(stroke::Action::reshape);
-    ImGui::ProgressBar(static_cast<float>(s.last.fullness), ImVec2(-1, ui.px(6)), "");
-    ui.hint("Ink left in the brush");
 }
 
 // The curve from a pen's pressure to the brush's depth; its ends and its middle can be dragged. The dot
@@ -247,7 +204,9 @@ void tool_buttons(Session& s) {
         {Tool::curve, "Curve", "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"},
         {Tool::writing, "Place", "Lays writing or a drawing from a file where you click (T)"},
         {Tool::eraser, "Eraser", "Takes ink off with the brush, as deep as it is pressed; a pen's other end does so too (E)"},
-        {Tool::fill, "Fill", "Lays the chosen ink over the whole model, a part or a chart where you click (G)"}};
+        {Tool::fill, "Fill", "Lays the chosen ink over the whole model, a part or a chart where you click (G)"},
+        {Tool::pick, "Pick", "Click: the pigments that lie there become an ink of their own, in the proportions they have (I)"},
+        {Tool::mask, "Mask", "Says where strokes and fills may leave ink (M)"}};
     const float third = (ImGui::GetContentRegionAvail().x / s.ui.settings().scale - 10) / 3;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(2), s.ui.px(5)));
     for (std::size_t i = 0; i < std::size(entries); ++i) {
@@ -305,22 +264,6 @@ void curve_section(Session& s) {
 
 }  // namespace
 
-unsigned ink_colour(const std::string& name) {
-    static std::map<std::string, unsigned> known;
-    if (const auto at = known.find(name); at != known.end()) return at->second;
-    unsigned colour = IM_COL32(40, 40, 40, 255);
-    try {
-        const ink::Rgb linear = ink::colour_of_film(ink::load_ink(name), {0.88f, 0.88f, 0.88f});
-        int rgb[3];
-        for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<int>(std::lround(255 * ink::srgb_encode(linear[c])));
-        colour = IM_COL32(rgb[0], rgb[1], rgb[2], 255);
-    } catch (const Error&) {
-        // An unreadable preset is dark here and says why when it is painted with.
-    }
-    known[name] = colour;
-    return colour;
-}
-
 void tool_panel(Session& s, float top, float bottom, float left) {
     ImGui::SetNextWindowPos(ImVec2(left, top));
     ImGui::SetNextWindowSize(ImVec2(s.ui.px(kToolWidth), bottom - top));
@@ -330,11 +273,12 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     curve_section(s);
     writing_section(s);
     fill_section(s);
-    brush_rack(s);
-    ink_palette(s);
-    care_section(s);
-    hand_section(s);
-    symmetry_section(s);
+    mask_section(s);
+    const bool brushes = s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask;
+    if (brushes) brush_rack(s);
+    if (s.tool != Tool::mask && s.tool != Tool::eraser) ink_section(s);
+    if (brushes) hand_section(s);
+    if (brushes) symmetry_section(s);
     section_section(s);
     ImGui::End();
 }

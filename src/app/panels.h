@@ -11,8 +11,12 @@ inline constexpr float kToolWidth = 256, kJournalWidth = 256, kStatusHeight = 30
 
 void menu_bar(Session& s);
 void tool_panel(Session& s, float top, float bottom, float left);
+/// In place of the tools: what is painted with which ink is shown as, and on which material.
+void colours_panel(Session& s, float top, float bottom, float left);
 void journal_panel(Session& s, float top, float bottom, float left);
 void layers_section(Session& s);
+void ink_section(Session& s);
+void mask_section(Session& s);
 void status_bar(Session& s, float top);
 void welcome(Session& s);
 void open_dialog(Session& s);
@@ -30,6 +34,8 @@ void view_marks(const Session& s, const render::GlCamera& camera);
 ExportModel export_command(const Session& s, const std::filesystem::path& path);
 /// Marks on the atlas: its frame, figures, and where the cursor over the model is in it.
 void atlas_marks(const Session& s, const std::optional<Vec2>& cursor);
+/// Makes a mask under a name that is free, with the chosen one if that is asked for.
+void make_mask(Session& s, stroke::Mask mask);
 /// Strokes that do not touch the revised model.
 void misfit_dialog(Session& s);
 /// The movement that takes a place of the surface with its normal to another.
@@ -39,7 +45,8 @@ RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint
 double height_range(const Session& s);
 
 /// sRGB colour (ImU32) of a full film of this ink on porcelain.
-unsigned ink_colour(const std::string& ink);
+unsigned ink_colour(const Session& s, const std::string& ink);
+unsigned ink_colour(const ink::Ink& ink);
 
 /// Modal window in the middle; true while it is drawn. Close it with `end_dialog`.
 bool begin_dialog(Session& s, const char* title, float width);

@@ -1,7 +1,10 @@
 #include "app/session.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <sstream>
 
 #include "core/files.h"
@@ -11,6 +14,21 @@ namespace fs = std::filesystem;
 
 namespace tuft::app {
 namespace {
+
+// An ink from the eyedropper or a file comes into the hand; the brush goes on.
+void take_picked(Session& s, const std::string& name) {
+    s.ink = name;
+    if (s.tool == Tool::pick) s.tool = Tool::brush;
+    const ink::Ink* ink = find_ink(s, name);
+    if (!ink) return;
+    std::string parts;
+    for (const ink::InkPart& part : ink->parts) {
+        char text[96];
+        std::snprintf(text, sizeof text, "%s%.0f %% %s", parts.empty() ? "" : ", ", 100 * part.fraction / std::max(1e-9, ink->strength()), part.pigment.name.c_str());
+        parts += text;
+    }
+    say(s, name + ": " + parts);
+}
 
 std::unique_ptr<Painter> start_painter(Session& s, Painter::Work work) {
     const fs::path project = work.keeper.path();
@@ -41,7 +59,53 @@ void open_writing(Session& s, const fs::path& path) {
     }
 }
 
+void open_ink(Session& s, const fs::path& path) {
+    if (!s.painter) return say(s, "Open a model first.");
+    try {
+        ink::Ink ink = ink::load_ink(path.string());
+        if (ink.name.empty()) ink.name = path.stem().string();
+        s.painter->post(TakeInk{std::move(ink)});
+    } catch (const Error& error) {
+        say(s, error.what());
+    }
+}
+
+void save_ink(Session& s, const fs::path& path) {
+    const ink::Ink* ink = find_ink(s, s.ink);
+    if (!ink) return;
+    ink::Ink named = *ink;
+    named.name = path.stem().string();
+    try {
+        const std::string text = ink::ink_toml(named);
+        write_file(path, text.data(), text.size());
+        say(s, "Saved as " + path.string());
+    } catch (const Error& error) {
+        say(s, error.what());
+    }
+}
+
+const ink::Ink* find_ink(const Session& s, const std::string& name) {
+    for (const ink::Ink& ink : s.own_inks)
+        if (ink.name == name) return &ink;
+    static std::map<std::string, std::optional<ink::Ink>> shipped;
+    const auto [at, is_new] = shipped.try_emplace(name);
+    try {
+        if (is_new) at->second = ink::load_ink(name);
+    } catch (const Error&) {
+        // Whoever paints with it hears why.
+    }
+    return at->second ? &*at->second : nullptr;
+}
+
+void choose_mask(Session& s, std::uint32_t id) {
+    s.mask = id;
+    if (s.veiled == id || !s.painter) return;
+    s.veiled = id;
+    s.painter->post(ShowMask{id});
+}
+
 void open_path(Session& s, const fs::path& path) {
+    if (path.extension() == ".toml") return open_ink(s, path);
     if (const std::string e = path.extension().string(); e == ".svg" || e == ".inkml") return open_writing(s, path);
     s.pictures.rest();
     s.inspected.reset();
@@ -77,6 +141,7 @@ bool close_dialog(Session& s) {
     else if (s.show_misfits) s.show_misfits = false;
     else if (s.shift_stroke) s.shift_stroke = false;
     else if (s.show_settings) s.show_settings = false;
+    else if (s.show_colours) s.show_colours = false;
     else if (s.show_export) s.show_export = false;
     else if (s.opening.running()) s.opening.cancel();
     else if (s.inspected) s.inspected.reset();
@@ -101,7 +166,10 @@ void close_model(Session& s) {
     s.strokes.clear();
     s.selected = 0;
     s.misfits.clear();
-    s.show_misfits = s.shift_stroke = false;
+    s.show_misfits = s.shift_stroke = s.show_colours = false;
+    s.mask = s.veiled = s.masks_seen = 0;
+    s.lasso.clear();
+    s.own_inks.clear();
     s.tuft = {};
     s.curve = {};
     if (empty && is_unnamed(project)) {
@@ -131,6 +199,8 @@ void poll_session(Session& s) {
         if (s.painter && !s.strokes.empty() && is_unnamed(s.last.project)) remember_project(s.last.project);
         close_model(s);
         s.painter = start_painter(s, std::move(*result.work));
+        s.last = {};
+        if (!find_ink(s, s.ink)) s.ink = "carbon";
         s.model_is_new = true;
         s.symmetry.centre = s.painter->model().mesh->bounds.centre();
         say(s, revised ? "The strokes are painted on the revised model; the former project is as it was." : "");
@@ -142,6 +212,9 @@ void poll_session(Session& s) {
     if (s.painter) {
         Update u = s.painter->take();
         if (u.strokes) s.strokes = std::move(*u.strokes);
+        if (u.own_inks) s.own_inks = std::move(*u.own_inks);
+        if (u.looks) s.looks = std::move(*u.looks);
+        if (!u.picked.empty()) take_picked(s, u.picked);
         for (std::string& message : u.messages) {
             if (message.starts_with("Saved")) {
                 remember_project(u.project);
@@ -157,6 +230,11 @@ void poll_session(Session& s) {
         u.tiles = std::move(tiles);
         if (!u.pixels) u.pixels = std::move(s.last.pixels);
         if (!u.tuft) u.tuft = std::move(s.last.tuft);
+        const stroke::MaskTable& masks = u.masks;
+        // A mask that was just made is the one wanted; one that is gone holds nothing back.
+        if (masks.next_id > s.masks_seen && s.masks_seen > 0 && !masks.masks.empty()) choose_mask(s, masks.masks.back().id);
+        else if (s.mask != 0 && !masks.find(s.mask)) choose_mask(s, 0);
+        s.masks_seen = masks.next_id;
         s.last = std::move(u);
     }
 }

@@ -31,7 +31,7 @@ struct Misfit {
     double distance = 0;          ///< metres from the tuft to the model, at the nearest
 };
 
-enum class Tool { brush, line, curve, writing, eraser, fill };
+enum class Tool { brush, line, curve, writing, eraser, fill, pick, mask };
 enum class Keymap { blender, maya };
 
 /// How the model is looked at.
@@ -47,6 +47,15 @@ struct ViewState {
     bool atlas = false;           ///< the atlas beside the model
     Vec2 atlas_centre{0.5};       ///< uv in the middle of it
     double atlas_zoom = 1;        ///< 1: all of it is seen
+};
+
+/// The mask that is made next.
+struct MaskChoice {
+    stroke::MaskKind kind = stroke::MaskKind::angle;
+    double within = 0.7853981634, soft = 0;  ///< radians
+    bool through = false;         ///< a lasso takes what lies behind too
+    std::string group;
+    int with = 0;                 ///< the chosen mask: 0 as it is, 1 united with it, 2 only within it
 };
 
 /// Which part of the window the model has, pixels.
@@ -98,6 +107,16 @@ struct Session {
     bool more_hand = false;                ///< all settings of the hand are shown
     double highest = 0;                    ///< micrometres, of the ink seen so far
     bool carry = false;                    ///< ink lasts from stroke to stroke
+    bool wet = false;                      ///< ink flows, mixes and dries
+    bool two_inks = false;                 ///< the tip has another ink than the belly
+    std::string tip_ink = "carbon";
+    double tip_depth = 0.3;                ///< part of the tuft's length
+    double dip_depth = 1;                  ///< likewise, of Dip and Wipe
+    std::vector<ink::Ink> own_inks;        ///< of this work
+    Looks looks;
+    bool show_colours = false;
+    std::string recipe_of;                 ///< ink whose recipe is open there
+    ink::Ink recipe;                       ///< as its sliders stand
     bool hand_down = false;
 
     double pen_pressure = -1;              ///< of the pen now; below 0: no pen
@@ -106,6 +125,11 @@ struct Session {
     std::optional<Act> key_asked;          ///< action that the next key is given to
 
     std::uint32_t layer = stroke::kFirstLayer;  ///< painted on
+    std::uint32_t mask = 0;                ///< kept to; 0: none
+    std::uint32_t veiled = 0;              ///< the mask whose veil is asked for
+    std::uint32_t masks_seen = 0;          ///< `MaskTable::next_id` at the last look; 0: none yet
+    MaskChoice mask_choice;
+    std::vector<Vec2> lasso;               ///< pixels, while it is drawn
     stroke::Fill fill;
     bool erasing = false;                  ///< the stroke in the hand takes ink off
     double layer_opacity = -1;             ///< while its slider is in the hand
@@ -135,6 +159,13 @@ void open_sample(Session& s, const std::filesystem::path& path);
 bool close_dialog(Session& s);
 /// Takes writing into the hand to be placed.
 void open_writing(Session& s, const std::filesystem::path& path);
+/// Takes an ink from a file; writes the one in hand to a file.
+void open_ink(Session& s, const std::filesystem::path& path);
+void save_ink(Session& s, const std::filesystem::path& path);
+/// An ink of this work, or a shipped one; nullptr when it cannot be read.
+const ink::Ink* find_ink(const Session& s, const std::string& name);
+/// Keeps strokes to a mask and veils what it leaves out; 0: none.
+void choose_mask(Session& s, std::uint32_t id);
 /// Looks at a model that shall take the place of the one in work, with its strokes.
 void revise_with(Session& s, const std::filesystem::path& path);
 /// Goes on from the dialog of a model that was looked at.

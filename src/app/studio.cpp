@@ -105,7 +105,7 @@ void Studio::panels(int height) {
     if (s.painter) {
         const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
         const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
-        tool_panel(s, top, bottom, s.wanted.left_handed ? right : 0);
+        (s.show_colours ? colours_panel : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : 0);
         journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
         status_bar(s, bottom);
         tuft_inset(s);
@@ -127,6 +127,8 @@ void Studio::panels(int height) {
         else if (s.files.purpose() == FileDialog::Purpose::save) save_as(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::revise) revise_with(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::writing) open_writing(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::ink) open_ink(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::save_ink) save_ink(s, *path);
         else if (s.painter)
             s.painter->post(export_command(s, *path));
     }
@@ -196,7 +198,7 @@ void Studio::update_tuft(double now) {
     s.pressed = s.last.tuft && !s.last.tuft->branches.empty();
     if (s.pressed) {
         s.tuft = *s.last.tuft;
-    } else if (s.tool != Tool::writing && !s.shift_stroke && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
+    } else if (s.tool != Tool::writing && s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask && !s.shift_stroke && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
         if (!preview_ || preview_brush_ != s.brush) {
             preview_ = brush::make_tuft(brush::load_preset(s.brush));
             preview_brush_ = s.brush;
@@ -230,7 +232,7 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
     const bool dark = s.ui.settings().theme == Theme::dark;
     const render::GlSolid solid = solid_of(s.tuft);
     render::GlView::Frame f{.camera = camera(), .solid = &solid, .opacity = s.view.see_through ? 0.25f : s.pressed ? 0.92f : 0.72f};
-    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)], .roughness = s.painter->roughness(),
+    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)], .roughness = s.looks.roughness,
                       .height_range = static_cast<float>(height_range(s)), .section = section_plane(s)};
     f.look.light = render::make_light(s.view.rig, f.camera);
     f.look.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);

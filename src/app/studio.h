@@ -72,6 +72,10 @@ class Studio {
     std::optional<Vec2> atlas_cursor() const;
     bool in_atlas(const Event& event) const;
     void atlas_press(const Event& event);
+    void pick_press(const Event& event);
+    void mask_press(const Event& event);
+    void lasso_move(const Event& event);
+    void lasso_release();
     void atlas_wheel(const Event& event);
     void look_at_uv(const Vec2& uv);
     bool shift_press(const Event& event);

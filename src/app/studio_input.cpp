@@ -32,7 +32,8 @@ Aim Studio::aim_of(const Event& e) const {
 void Studio::post(std::vector<HandStep> steps, double time) {
     Session& s = session_;
     for (HandStep& step : steps) {
-        if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .layer = s.layer, .erases = s.erasing});
+        if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .layer = s.layer, .mask = s.mask, .erases = s.erasing, .wet = s.wet,
+                                                                                     .tip_ink = s.two_inks ? s.tip_ink : "", .tip_depth = s.tip_depth});
         else if (step.kind == HandStep::Kind::end) s.painter->post(EndStroke{});
         else s.painter->post(ExtendStroke{std::move(step.poses), time});
     }
@@ -79,11 +80,13 @@ void Studio::press(const Event& e) {
     if (drag_ != Drag::none || e.button != 0) return;
     if (shift_press(e)) return;
     if (s.tool == Tool::writing) return lay_writing();
+    if (s.tool == Tool::pick) return pick_press(e);
+    if (s.tool == Tool::mask) return mask_press(e);
     if (s.tool == Tool::fill) {
         const auto hit = aim_at(*s.painter->model().query, aim_of(e));
         if (!hit) return;
         s.fill.at = hit->position;
-        s.painter->post(FillModel{s.ink, s.fill, s.layer});
+        s.painter->post(FillModel{s.ink, s.fill, s.layer, s.mask});
         return;
     }
     s.erasing = s.tool == Tool::eraser || e.eraser;
@@ -105,6 +108,7 @@ void Studio::move(const Event& e) {
         return;
     }
     if (s.curve.grabbed >= 0) return curve_drag(e);
+    if (!s.lasso.empty()) return lasso_move(e);
     if (s.shift_from) {
         if (const auto to = aim_at(*s.painter->model().query, aim_of(e))) s.shift_to = to;
         return;
@@ -127,6 +131,7 @@ void Studio::release(const Event& e) {
         hand_.reset();
         s.hand_down = false;
     }
+    if (e.button == 0 && !s.lasso.empty()) lasso_release();
     if (e.button == 0 && s.shift_from) shift_release(e);
     if (e.button == 0 && s.curve.grabbed >= 0) curve_release(e);
     drag_ = Drag::none;
@@ -142,6 +147,7 @@ void Studio::key(const Event& e) {
         return;
     }
     if (hand_) return;
+    if (e.key == GLFW_KEY_ESCAPE && !s.lasso.empty()) return s.lasso.clear();
     if (e.key == GLFW_KEY_ESCAPE && close_dialog(s)) return;
     if (ImGui::GetIO().WantTextInput) return;
     if ((e.key == GLFW_KEY_ENTER || e.key == GLFW_KEY_KP_ENTER) && !s.key_asked && dialog_open()) {
@@ -202,6 +208,8 @@ void Studio::perform(Act act) {
         case Act::writing: s.tool = Tool::writing; break;
         case Act::eraser: s.tool = Tool::eraser; break;
         case Act::fill: s.tool = Tool::fill; break;
+        case Act::pick: s.tool = Tool::pick; break;
+        case Act::mask: s.tool = Tool::mask; break;
         case Act::atlas: s.view.atlas = !s.view.atlas; break;
         case Act::see_through: s.view.see_through = !s.view.see_through; break;
         case Act::next_shading: s.view.shown = static_cast<ModelView>((static_cast<int>(s.view.shown) + 1) % kModelViews); break;

@@ -18,7 +18,12 @@ void Studio::set(const std::string& name, const std::string& value) {
         throw Error("unknown " + name + " '" + value + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
     };
     if (name == "brush") s.brush = s.brushes[static_cast<std::size_t>(one_of(s.brushes))];
-    else if (name == "ink") s.ink = s.inks[static_cast<std::size_t>(one_of(s.inks))];
+    else if (name == "ink" || name == "tip-ink") {
+        std::vector<std::string> names = s.inks;
+        for (const ink::Ink& ink : s.own_inks) names.push_back(ink.name);
+        const std::string& ink = names[static_cast<std::size_t>(one_of(names))];
+        name == "ink" ? s.ink = ink : s.tip_ink = ink;
+    }
     else if (name == "shading")
         s.view.shown = static_cast<ModelView>(one_of({"glaze", "clay", "flat", "height", "wetness", "texels", "charts", "stretch"}));
     else if (name == "light") s.view.rig = static_cast<render::LightRig>(one_of({"studio", "window", "raking"}));
@@ -37,13 +42,18 @@ void Studio::set(const std::string& name, const std::string& value) {
     } else if (name == "texels") s.open_options.atlas_size = static_cast<std::uint32_t>(std::clamp(number, 64.0, 16384.0));
     else if (name == "pressure") s.hand.pressure = std::clamp(number, 0.02, 1.0);
     else if (name == "carry") s.carry = on;
+    else if (name == "wet") s.wet = on;
+    else if (name == "two-inks") s.two_inks = on;
+    else if (name == "tip") s.tip_depth = std::clamp(number, 0.05, 0.9);
+    else if (name == "mask-kind") s.mask_choice.kind = stroke::mask_kind_of(value);
+    else if (name == "mask-within") s.mask_choice.within = std::clamp(number, 0.0, 180.0) * kDegree;
     else if (name == "string") s.hand.string = std::max(0.0, number) * kMillimetre;
     else if (name == "radial") s.symmetry.radial = std::clamp(static_cast<int>(number), 1, 32);
     else if (name == "mirror") {
         s.symmetry.mirror_x = value.find('x') != std::string::npos;
         s.symmetry.mirror_y = value.find('y') != std::string::npos;
         s.symmetry.mirror_z = value.find('z') != std::string::npos;
-    } else if (name == "tool") s.tool = static_cast<Tool>(one_of({"brush", "line", "curve", "writing", "eraser", "fill"}));
+    } else if (name == "tool") s.tool = static_cast<Tool>(one_of({"brush", "line", "curve", "writing", "eraser", "fill", "pick", "mask"}));
     else if (name == "section") {
         s.view.section = number > 0;
         s.view.section_at = std::clamp(number, 0.02, 1.0);

@@ -11,6 +11,9 @@ namespace {
 
 using Rgba = std::array<std::uint8_t, 4>;
 
+constexpr int kVeil = 42;                            // percent of the veil's colour
+constexpr std::array<int, 3> kVeilColour{64, 104, 178};  // sRGB
+
 // Averages are of light, not of its code values.
 struct SrgbTable {
     std::array<float, 256> decode{};
@@ -79,7 +82,6 @@ Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
 void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
     const atlas::TexelMap& map = painting.model().texels;
     const ink::Stack stack = painting.stack();
-    const ink::GutterPlan& plan = *painting.compose_options().seams;
     const std::size_t size = colour_.size;
     for (const std::uint32_t slot : slots) {
         const std::size_t tile = map.tile_of_slot[slot];
@@ -93,19 +95,57 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
                 height_[y * size + x] = static_cast<std::uint8_t>(std::clamp(10.0f * (wetness_ ? wet[t] : look.height[t]), 0.0f, 255.0f));
         }
     }
-    for (const std::uint32_t slot : slots)
-        for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
-            const std::uint32_t entry = plan.entries[e];
-            float sum = 0;
-            for (std::uint32_t k = plan.gutter.start[entry]; k < plan.gutter.start[entry + 1]; ++k) {
-                const atlas::GutterTap& tap = plan.gutter.taps[k];
-                const std::size_t tile = map.tile_of_slot[tap.texel / atlas::kTileTexels], t = tap.texel % atlas::kTileTexels;
-                const std::size_t x = tile % map.tiles_per_side * atlas::kTile + t % atlas::kTile;
-                const std::size_t y = tile / map.tiles_per_side * atlas::kTile + t / atlas::kTile;
-                sum += tap.weight * static_cast<float>(height_[y * size + x]);
-            }
-            height_[plan.gutter.texels[entry]] = static_cast<std::uint8_t>(std::clamp(sum, 0.0f, 255.0f));
+    for (const std::uint32_t slot : slots) continue_over_seams(height_, slot, painting);
+}
+
+// Gutter texels that take something from the slot take it now.
+void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot, const stroke::Painting& painting) const {
+    const atlas::TexelMap& map = painting.model().texels;
+    const ink::GutterPlan& plan = *painting.compose_options().seams;
+    const std::size_t size = colour_.size;
+    for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
+        const std::uint32_t entry = plan.entries[e];
+        float sum = 0;
+        for (std::uint32_t k = plan.gutter.start[entry]; k < plan.gutter.start[entry + 1]; ++k) {
+            const atlas::GutterTap& tap = plan.gutter.taps[k];
+            const std::size_t tile = map.tile_of_slot[tap.texel / atlas::kTileTexels], t = tap.texel % atlas::kTileTexels;
+            const std::size_t x = tile % map.tiles_per_side * atlas::kTile + t % atlas::kTile;
+            const std::size_t y = tile / map.tiles_per_side * atlas::kTile + t / atlas::kTile;
+            sum += tap.weight * static_cast<float>(values[y * size + x]);
         }
+        values[plan.gutter.texels[entry]] = static_cast<std::uint8_t>(std::clamp(sum, 0.0f, 255.0f));
+    }
+}
+
+void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Painting& painting) {
+    veil_.clear();
+    if (!mask) return;
+    const atlas::TexelMap& map = painting.model().texels;
+    const std::size_t size = colour_.size;
+    veil_.assign(size * size, 0);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        const std::size_t tile = map.tile_of_slot[slot];
+        const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            const std::size_t x = x0 + static_cast<std::size_t>(t % atlas::kTile), y = y0 + static_cast<std::size_t>(t / atlas::kTile);
+            if (x < size && y < size && map.tiles[slot].piece[static_cast<std::size_t>(t)] != atlas::kNoPiece)
+                veil_[y * size + x] = static_cast<std::uint8_t>(255 - mask->coverage(slot, t));
+        }
+    }
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) continue_over_seams(veil_, slot, painting);
+}
+
+void Texture::refresh_all(const stroke::Painting& painting) {
+    colour_ = ink::compose_srgb8(painting.stack(), painting.model().texels, painting.substrate(), painting.compose_options());
+    refresh_heights(painting.stack().touched_slots(), painting);
+}
+
+std::array<std::uint8_t, 4> Texture::texel(std::size_t x, std::size_t y) const {
+    const std::size_t at = y * colour_.size + x;
+    Rgba out{colour_.texels[3 * at], colour_.texels[3 * at + 1], colour_.texels[3 * at + 2], height_[at]};
+    if (veil_.empty() || veil_[at] == 0) return out;
+    for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(out[c] + veil_[at] * kVeil * (kVeilColour[c] - out[c]) / (255 * 100));
+    return out;
 }
 
 render::TilePixels Texture::tile(std::uint32_t index) const {
@@ -115,8 +155,7 @@ render::TilePixels Texture::tile(std::uint32_t index) const {
     const std::size_t x0 = index % per_side * atlas::kTile, y0 = index / per_side * atlas::kTile;
     for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
         const std::size_t x = std::min(size - 1, x0 + t % atlas::kTile), y = std::min(size - 1, y0 + t / atlas::kTile);
-        const std::uint8_t* rgb = &colour_.texels[3 * (y * size + x)];
-        out.rgba[t] = {rgb[0], rgb[1], rgb[2], height_[y * size + x]};
+        out.rgba[t] = texel(x, y);
     }
     for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
         const std::size_t side = static_cast<std::size_t>(atlas::kTile) >> level;
@@ -133,11 +172,7 @@ render::MapPixels Texture::pixels() const {
     map.levels[0].resize(padded * padded);
     parallel_for(padded, 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y)
-            for (std::size_t x = 0; x < padded; ++x) {
-                const std::size_t at = std::min(size - 1, y) * size + std::min(size - 1, x);
-                map.levels[0][y * padded + x] = {colour_.texels[3 * at], colour_.texels[3 * at + 1],
-                                                 colour_.texels[3 * at + 2], height_[at]};
-            }
+            for (std::size_t x = 0; x < padded; ++x) map.levels[0][y * padded + x] = texel(std::min(size - 1, x), std::min(size - 1, y));
     });
     for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
         const std::size_t side = padded >> level;

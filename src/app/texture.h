@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,10 @@ class Texture {
     /// Whether the fourth channel is the liquid that is in and on the surface, in the same unit;
     /// changes it everywhere.
     void show_wetness(bool on, const stroke::Painting& painting);
+    /// Veils what the mask leaves out; null: nothing.
+    void show_veil(const stroke::MaskTexels* mask, const stroke::Painting& painting);
+    /// Everything anew, for another look of the painting as a whole.
+    void refresh_all(const stroke::Painting& painting);
     /// Brings slots up to date and returns every tile that changed by it.
     std::vector<render::TilePixels> refresh(std::span<const std::uint32_t> slots, const stroke::Painting& painting);
     /// Side of `pixels()`: the atlas's, rounded up to whole tiles.
@@ -28,11 +33,14 @@ class Texture {
   private:
     void refresh_heights(std::span<const std::uint32_t> slots, const stroke::Painting& painting);
     render::TilePixels tile(std::uint32_t index) const;
+    void continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot, const stroke::Painting& painting) const;
+    std::array<std::uint8_t, 4> texel(std::size_t x, std::size_t y) const;
 
     std::uint32_t padded_ = 0;
     bool wetness_ = false;
     ink::AtlasMap<std::uint8_t> colour_;
     std::vector<std::uint8_t> height_;  ///< [size²]
+    std::vector<std::uint8_t> veil_;    ///< [size²], 0–255; empty: none
 };
 
 }  // namespace tuft::app

@@ -74,6 +74,14 @@ void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     }
 }
 
+void lasso_marks(const Session& s, ImDrawList* draw) {
+    if (s.lasso.empty()) return;
+    std::vector<ImVec2> line;
+    for (const Vec2& p : s.lasso) line.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
+    draw->AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(20, 20, 24, 200), ImDrawFlags_Closed, s.ui.px(3.5f));
+    draw->AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(255, 196, 64, 255), ImDrawFlags_Closed, s.ui.px(1.5f));
+}
+
 // A bar of a round length for the scale at the model's middle.
 void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const double pixel = render::metres_per_pixel(c, s.view.orbit.target);
@@ -82,11 +90,18 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const double length = want / power >= 5 ? 5 * power : want / power >= 2 ? 2 * power : power;
     const auto width = static_cast<float>(length * 1e-3 / pixel);
     const float right = static_cast<float>(s.area.x + s.area.width) - s.ui.px(20), y = static_cast<float>(s.area.y + s.area.height) - s.ui.px(20);
-    draw->AddLine(ImVec2(right - width, y), ImVec2(right, y), IM_COL32(235, 235, 235, 230), s.ui.px(2));
-    for (const float x : {right - width, right}) draw->AddLine(ImVec2(x, y - s.ui.px(4)), ImVec2(x, y + s.ui.px(4)), IM_COL32(235, 235, 235, 230), s.ui.px(2));
+    // Light with a dark rim: to be read on any ground.
+    constexpr unsigned rim = IM_COL32(24, 24, 26, 210), light = IM_COL32(245, 245, 245, 255);
+    for (const auto& [colour, more] : {std::pair{rim, 1.0f}, std::pair{light, 0.0f}}) {
+        const float w = s.ui.px(2 + 2 * more), end = s.ui.px(4 + more);
+        draw->AddLine(ImVec2(right - width - s.ui.px(more), y), ImVec2(right + s.ui.px(more), y), colour, w);
+        for (const float x : {right - width, right}) draw->AddLine(ImVec2(x, y - end), ImVec2(x, y + end), colour, w);
+    }
     char text[32];
     std::snprintf(text, sizeof text, length >= 1000 ? "%.0f m" : "%g mm", length >= 1000 ? length / 1000 : length);
-    draw->AddText(ImVec2(right - width, y - s.ui.px(24)), IM_COL32(235, 235, 235, 230), text);
+    const ImVec2 at(right - width, y - s.ui.px(25)), size = ImGui::CalcTextSize(text);
+    draw->AddRectFilled(ImVec2(at.x - s.ui.px(5), at.y - s.ui.px(1)), ImVec2(at.x + size.x + s.ui.px(5), at.y + size.y + s.ui.px(1)), IM_COL32(24, 24, 26, 190), s.ui.px(4));
+    draw->AddText(at, light, text);
 }
 
 // Control points and the curve through them, as it lies on the model.
@@ -191,6 +206,7 @@ void view_marks(const Session& s, const render::GlCamera& c) {
     curve_marks(s, c, draw);
     ghost_marks(s, c, draw);
     shift_marks(s, c, draw);
+    lasso_marks(s, draw);
     axis_cross(s, c, draw);
     scale_bar(s, c, draw);
     legends(s, draw);

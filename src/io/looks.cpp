@@ -13,8 +13,8 @@ void show_looks(const Project& project, stroke::Painting& painting) {
 void store_looks(Project& project, const stroke::Painting& painting) {
     for (const auto& [name, ink] : painting.recolours())
         project.put_recolour({name, ink::ink_toml(ink)});
-    if (painting.shown_elsewhere())
-        project.put_shown_substrate(ink::substrate_toml(painting.substrate()));
+    const std::string shown = painting.shown_elsewhere() ? ink::substrate_toml(painting.substrate()) : "";
+    if (shown != project.shown_substrate()) project.put_shown_substrate(shown);
 }
 
 }  // namespace tuft::io

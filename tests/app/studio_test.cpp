@@ -10,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include "ink/pigments.h"
 #include "io/image.h"
 #include "io/project.h"
 #include "io/read_model.h"
@@ -180,6 +181,60 @@ TEST_F(StudioProgram, LayersArePaintedHiddenAndUndoneLikeStrokes) {
     ASSERT_EQ(strokes.size(), 3u);
     EXPECT_EQ(strokes[0].layer, stroke::kFirstLayer);
     EXPECT_NE(strokes[2].layer, stroke::kFirstLayer);
+}
+
+TEST_F(StudioProgram, AMixturePickedUpIsAnInkOfTheProject) {
+    const Ran ran = studio(kBowl + "set ink gamboge\nset tip-ink cinnabar\nset two-inks on\nset pressure 0.8\nstroke 44%,52% 47%,60% 52%,62%\nwait-ready\nexpect strokes 4\n"
+                                   "undo\nwait-ready\nexpect strokes 0\nredo\nwait-ready\nexpect strokes 4\nset tool pick\nmove 47%,60%\npress\nrelease\nwait-ready\nwait 0.1\n"
+                                   "expect message mixture\nset two-inks off\nset wet on\nstroke 55%,57% 60%,58%\nwait-ready\nsave work.tuft\nwait-ready\nexpect kept\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const io::Project project = io::Project::open(path("work.tuft"));
+    const auto strokes = project.strokes();
+    ASSERT_EQ(strokes.size(), 5u);
+    EXPECT_EQ(strokes[1].action, stroke::Action::wipe);
+    EXPECT_EQ(strokes[2].trace.ink, "cinnabar");
+    EXPECT_EQ(strokes[4].trace.ink, "mixture");
+    EXPECT_EQ(strokes[4].settings.film, "wet");
+    for (const auto& [name, toml] : project.inks())
+        if (name == "mixture") {
+            EXPECT_EQ(ink::parse_ink(toml, name).parts.size(), 2u);
+        }
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
+}
+
+TEST_F(StudioProgram, StrokesKeepToAMaskDrawnOnTheModel) {
+    const std::string lasso = "set tool mask\nset mask-kind lasso\nmove 49%,50%\npress\nmove 60%,50%\nmove 60%,66%\nmove 49%,66%\nrelease\nwait-ready\nwait 0.1\nset tool brush\n";
+    const std::string crossing = "stroke 44%,58% 55%,59%\nwait-ready\n";
+    const Ran ran = studio(kBowl + lasso + "expect strokes 1\n" + crossing + "expect strokes 2\nsave masked.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = io::Project::open(path("masked.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 2u);
+    EXPECT_EQ(strokes[0].mask_edit.mask.kind, stroke::MaskKind::lasso);
+    EXPECT_EQ(strokes[1].mask, strokes[0].mask_edit.mask.id);
+    // Ink lies where the lasso is, and none at the stroke's start outside it.
+    const auto& samples = strokes[1].trace.samples;
+    const auto pigments_at = [&](const stroke::TraceSample& s) {
+        const Vec3 p = 1e3 * s.position;
+        char text[120];
+        std::snprintf(text, sizeof text, "inspect '%s' --at %.4f,%.4f,%.4f", path("masked.tuft").c_str(), p.x, p.y, p.z);
+        return tuft(text)["films"].size();
+    };
+    EXPECT_EQ(pigments_at(samples.front()), 0u);
+    EXPECT_GT(pigments_at(samples[samples.size() * 8 / 10]), 0u);
+    EXPECT_EQ(tuft("replay '" + path("masked.tuft") + "'")["canvas_hash"], test::stored_hash(path("masked.tuft")));
+}
+
+TEST_F(StudioProgram, RecolouringKeepsAllAmountsAndIsThereAgainNextTime) {
+    const Ran ran = studio(kBowl + kTwoStrokes + "click Edit\nwait 0.1\nclick \"Recolour...\"\nwait 0.1\nclick \"As cinnabar\"\nwait 0.1\nclick indigo\nwait-ready\n"
+                                                 "click \"Shown on\"\nwait 0.1\nclick bisque\nwait-ready\nexpect kept\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const io::Project project = io::Project::open(path("work.tuft"));
+    ASSERT_EQ(project.recolours().size(), 1u);
+    EXPECT_EQ(project.recolours()[0].first, "cinnabar");
+    EXPECT_EQ(ink::parse_ink(project.recolours()[0].second, "").name, "indigo");
+    EXPECT_EQ(ink::parse_substrate(project.shown_substrate(), "").name, "bisque");
+    EXPECT_EQ(ink::parse_substrate(project.model().substrate, "").name, "porcelain");
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }
 
 TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
