@@ -2,6 +2,7 @@
 // atlas in red. Nobody should be able to tell from the first where they are.
 //   tuft-patterns FOLDER [car | bowl | plate]
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -23,9 +24,9 @@ namespace {
 
 using std::numbers::pi;
 
-stroke::Model load(const char* name) {
+stroke::Model load(const char* name, std::uint32_t size = 4096) {
     stroke::ModelOptions options;
-    options.unwrap.size = 4096;
+    options.unwrap.size = size;
     return stroke::prepare_model(
         io::read_model(data_folder() / "models" / (std::string(name) + ".ply")), options);
 }
@@ -68,7 +69,7 @@ void draw(const stroke::Painting& painting, const render::View& view,
         look.maps.corner_uvs = model.atlas.corner_uvs;
         look.maps.base_colour = {reinterpret_cast<const Vec3f*>(colour.texels.data()),
                                  std::size_t{colour.size} * colour.size};
-        render::PictureOptions options{.width = 1600, .height = 1000, .view = view};
+        render::PictureOptions options{.width = 1280, .height = 800, .view = view};
         const render::Image image =
             render::render_picture(*model.mesh, *model.query, look, options);
         std::filesystem::path file = out;
@@ -78,21 +79,20 @@ void draw(const stroke::Painting& painting, const render::View& view,
     }
 }
 
-/// 20 mm checks, four abreast, over bonnet, shoulder and wheel arch.
+/// 20 mm checks, four abreast, over bonnet, its edge, the shoulder and the wheel arch.
 void car(const std::filesystem::path& folder) {
-    const stroke::Model model = load("car");
+    const stroke::Model model = load("car", 8192);
     stroke::Painting painting(model, {.substrate = "clay"});
     const int pigment = painting.canvas().add_pigment(painting.ink("carbon").parts[0].pigment);
-    constexpr int kRows = 48;  // of a check
-    const double check = 20 * kMillimetre, step = check / kRows;
-    const auto way = straight_way(model, {0.35, 0.04, 0.25}, {0, -1, 0}, step, 12 * kRows);
-    roll(model, painting.canvas(), pigment, 2.5f, way, step, 4 * check, [&](int row, double v) {
-        if (std::abs(v) > 2 * check) return false;
-        return (row / kRows + static_cast<int>(std::floor(v / check))) % 2 == 0;
+    const double check = 20 * kMillimetre, step = check / 48, length = 12 * check;
+    const auto way = straight_way(model, {0.34, -0.02, 0.25}, {0.08, -1, 0}, step, 12 * 48);
+    roll(model, painting.canvas(), pigment, 2.5f, way, step, 4 * check, [&](double x, double v) {
+        if (x < 0 || x > length || std::abs(v) > 2 * check) return false;
+        return static_cast<int>(std::floor(x / check) + std::floor(v / check)) % 2 == 0;
     });
-    render::View view{.azimuth = 30 * kDegree, .elevation = 30 * kDegree};
-    view.target = Vec3{0.35, -0.16, 0.19};
-    view.width_at_target = 0.55;
+    render::View view{.azimuth = 15 * kDegree, .elevation = 28 * kDegree};
+    view.target = Vec3{0.36, -0.18, 0.19};
+    view.width_at_target = 0.42;
     draw(painting, view, folder / "car-checks");
 }
 
@@ -106,12 +106,12 @@ void plate(const std::filesystem::path& folder) {
     const double step = 2 * pi * radius / (kPeriods * kRows), period = kRows * step;
     const auto way = ring(model, radius, 0.1, kPeriods * kRows);
     roll(model, painting.canvas(), pigment, 2.0f, way, step, 18 * kMillimetre,
-         [&](int row, double v) {
-             const double mm = v / kMillimetre, x = 2 * pi * (row % kRows) / kRows;
+         [&](double x, double v) {
+             const double mm = v / kMillimetre;
              if (std::abs(std::abs(mm) - 8) < 0.4) return true;
-             if (std::abs(mm - 3.6 * std::sin(x)) < 0.7) return true;
+             if (std::abs(mm - 3.6 * std::sin(2 * pi * x / period)) < 0.7) return true;
              // Dots in the bends.
-             const double s = (row % kRows) * step;
+             const double s = x - period * std::floor(x / period);
              return std::hypot(s - 0.25 * period, v + 0.5 * kMillimetre) < 1.3 * kMillimetre ||
                     std::hypot(s - 0.75 * period, v - 0.5 * kMillimetre) < 1.3 * kMillimetre;
          });
@@ -128,12 +128,17 @@ void bowl(const std::filesystem::path& folder) {
     s.trace.ink = "cinnabar";
     const double length = painting.brush(s.trace.brush).length, step = 0.25 * kMillimetre;
     const auto way =
-        straight_way(model, {0, -0.045, 0.03}, glm::normalize(Vec3{0.5, -1, 0.6}), step, 330);
+        straight_way(model, {0.035, -0.01, 0.02}, glm::normalize(Vec3{1, -0.3, 0.6}), step, 400);
+    const auto rim = std::max_element(way.begin(), way.end(), [](const Contact& a, const Contact& b) {
+        return a.frame.origin.z < b.frame.origin.z;
+    });
     double time = 0;
     Vec3 before{0};
     for (std::size_t i = 0; i < way.size(); ++i) {
         const double part = double(i) / double(way.size() - 1);
-        const double press = 3.2 * kMillimetre * std::min({1.0, part / 0.15, (1 - part) / 0.15});
+        const double from_rim = (double(i) - double(rim - way.begin())) * step / (5 * kMillimetre);
+        const double over = 1 - 0.5 * std::exp(-from_rim * from_rim);  // lighter on the edge
+        const double press = 4 * kMillimetre * over * std::min({1.0, part / 0.2, (1 - part) / 0.3});
         // The holder turns over the rim gently: its axis is the mean normal of 15 mm of the way.
         Vec3 n{0};
         for (int k = -30; k <= 30; ++k)
@@ -151,8 +156,11 @@ void bowl(const std::filesystem::path& folder) {
         s.trace.samples.push_back(p);
     }
     const stroke::StrokeReport report = painting.paint(s);
-    std::printf("%zu stamps, %.1f mm³ of ink\n", report.stamps, report.ink_given * 1e9);
-    draw(painting, {.azimuth = 15 * kDegree, .elevation = 38 * kDegree}, folder / "bowl-rim");
+    std::printf("%zu stamps, %.1f film units · mm²\n", report.stamps, report.ink_given * 1e6);
+    const render::View outside{.azimuth = 60 * kDegree, .elevation = 25 * kDegree};
+    const render::View inside{.azimuth = -70 * kDegree, .elevation = 45 * kDegree};
+    draw(painting, outside, folder / "bowl-outside");
+    draw(painting, inside, folder / "bowl-inside");
 }
 
 }  // namespace

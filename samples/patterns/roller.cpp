@@ -5,21 +5,32 @@
 #include <numbers>
 
 namespace tuft::samples {
+namespace {
+
+constexpr double kWheel = 2.5e-3;  // metres, radius: too wide for the shut lines of the car
+
+}  // namespace
 
 std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, const Vec3& heading,
                                   double step, int n) {
-    std::vector<Contact> way;
-    auto at = model.query->closest_point(from);
-    Frame frame = make_frame(at->position, at->normal, heading);
+    const auto start = model.query->closest_point(from);
+    Frame frame = make_frame(start->position, start->normal, heading);
+    std::vector<Contact> way{{frame, start->triangle}};
+    double gone = 0;  // since the last place
     while (static_cast<int>(way.size()) < n) {
-        way.push_back({frame, at->triangle});
-        // Over an edge the nearest point lags behind: go on until the step is done.
-        const Vec3 start = frame.origin;
-        for (int k = 0; k < 8 && glm::length(frame.origin - start) < 0.99 * step; ++k) {
-            const double rest = step - glm::length(frame.origin - start);
-            at = model.query->closest_point(frame.origin + rest * frame.t);
-            const Vec3 t = parallel_transport(frame.t, frame.n, at->normal);
-            frame = make_frame(at->position, at->normal, t);
+        const Vec3 centre = frame.origin + kWheel * frame.n + 0.25 * step * frame.t;
+        const auto at = model.query->closest_point(centre);
+        const Vec3 normal = glm::normalize(centre - at->position);
+        const Vec3 leap = at->position - frame.origin;
+        const double length = glm::length(leap);
+        gone += length;
+        frame = make_frame(at->position, normal, parallel_transport(frame.t, frame.n, normal));
+        for (; gone >= step; gone -= step) {
+            // A hollow that the wheel is too wide for is printed, a gap is not.
+            const auto on = model.query->closest_point(at->position - (gone - step) / length * leap);
+            Contact place{frame, length < 0.5 * kWheel ? on->triangle : kNone};
+            place.frame.origin = on->position;
+            way.push_back(place);
         }
     }
     return way;
@@ -32,9 +43,7 @@ std::vector<Contact> ring(const stroke::Model& model, double radius, double heig
         const Vec3 above{radius * std::cos(a), radius * std::sin(a), height};
         const auto at = model.query->ray(above, {0, 0, -1});
         const Vec3 along{-std::sin(a), std::cos(a), 0};
-        // The circle turns in the plane; in the surface by the part that lies in it.
-        way.push_back({make_frame(at->position, at->normal, along), at->triangle,
-                       2 * std::numbers::pi / n * at->normal.z});
+        way.push_back({make_frame(at->position, at->normal, along), at->triangle});
     }
     return way;
 }
@@ -42,39 +51,45 @@ std::vector<Contact> ring(const stroke::Model& model, double radius, double heig
 void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film,
           const std::vector<Contact>& way, double step, double width, const Pattern& pattern) {
     const double cell = 0.5 * model.texels.texel_size;
-    constexpr int kBar = 2;  // cells of the printing row along the way
+    // The wheel flattens over four steps, so that rows that fan out where the surface bends like a
+    // saddle leave nothing blank between them.
+    const int flat = std::max(2, static_cast<int>(std::ceil(4 * step / cell)));
     footprint::Footprint f;
     f.cell = cell;
-    f.width = kBar + 4;
+    f.width = flat + 4;
     f.height = static_cast<int>(std::ceil(width / cell)) + 4;
     f.lo = Vec2(-0.5 * f.width * cell, -0.5 * f.height * cell);
     f.radius = 0.5 * cell * std::hypot(f.width, f.height);
+    // On rows of a few texels the change from one frame for all to one for each piece would show.
+    const footprint::StampOptions options{.enter = 0, .leave = 0};
     footprint::PlanScratch scratch;
     footprint::Unpacked unpacked;
     footprint::StampJobs jobs;
-    bool piecewise = false;
     std::array<float, atlas::kTileTexels> exposure;
     for (std::size_t i = 0; i < way.size(); ++i) {
+        if (way[i].triangle == kNone) continue;
         f.frame = way[i].frame;
         f.triangle = way[i].triangle;
         f.coverage.assign(std::size_t(f.width) * f.height, 0);
-        for (int j = 2; j < f.height - 2; ++j) {
-            int sum = 0;  // of four points over the cell
-            for (int k = 0; k < 4; ++k)
-                sum += pattern(static_cast<int>(i), f.lo.y + (j + (k + 0.5) / 4) * cell);
-            for (int k = 0; k < kBar; ++k)
-                f.coverage[std::size_t(j) * f.width + 2 + k] =
-                    static_cast<std::uint8_t>(255 * sum / 4);
-        }
-        jobs = footprint::plan_stamp(model.surface(), f, {{step, 0}, way[i].turn}, {}, scratch,
-                                     std::move(jobs));
-        piecewise = footprint::choose_mode(jobs, piecewise, {});
+        for (int j = 2; j < f.height - 2; ++j)
+            for (int k = 2; k < f.width - 2; ++k) {
+                constexpr int kPoints = 4;  // along the side of a cell
+                int sum = 0;
+                for (int p = 0; p < kPoints * kPoints; ++p) {
+                    const double u = f.lo.x + (k + (p % kPoints + 0.5) / kPoints) * cell;
+                    const double v = f.lo.y + (j + (p / kPoints + 0.5) / kPoints) * cell;
+                    sum += pattern(double(i) * step + u, v);
+                }
+                f.coverage[std::size_t(j) * f.width + k] =
+                    static_cast<std::uint8_t>(255 * sum / (kPoints * kPoints));
+            }
+        jobs = footprint::plan_stamp(model.surface(), f, {}, options, scratch, std::move(jobs));
+        footprint::choose_mode(jobs, true, options);
         for (const footprint::TileJob& job : jobs.tiles) {
             if (!footprint::evaluate_tile(model.texels, jobs, job, unpacked, exposure)) continue;
             ink::Plane& plane = canvas.touch(job.slot, pigment);
-            const auto part = static_cast<float>(film * step / (kBar * cell));
             for (int t = 0; t < atlas::kTileTexels; ++t)
-                plane[t] = std::min(plane[t] + part * exposure[t], film);
+                plane[t] = std::max(plane[t], film * exposure[t]);
         }
     }
 }

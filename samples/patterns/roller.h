@@ -10,22 +10,22 @@
 /// the surface by the log map, so that nothing in it knows of charts.
 namespace tuft::samples {
 
-/// Where the wheel touches, and the turn of its way in the surface since the place before.
+/// Where the wheel touches.
 struct Contact {
-    Frame frame;  ///< t: the way it goes
-    std::uint32_t triangle = kNone;
-    double turn = 0;  ///< radians, to the left
+    Frame frame;                     ///< t: the way it goes
+    std::uint32_t triangle = kNone;  ///< kNone: the wheel spans a gap, nothing is printed
 };
 
-/// Straight on from the surface near `from` towards `heading`, `n` places `step` metres apart.
+/// Straight on from the surface near `from` towards `heading`, `n` places `step` metres apart: where
+/// a wheel of 2.5 mm touches that rolls without turning. It goes round edges and over shut lines.
 std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, const Vec3& heading,
                                   double step, int n);
 
 /// Round the z axis at `radius` metres on the surface that lies under `height`, closed.
 std::vector<Contact> ring(const stroke::Model& model, double radius, double height, int n);
 
-/// Black or white at `row` of the way and v metres to the left of it.
-using Pattern = std::function<bool(int row, double v)>;
+/// Black or white after `x` metres of the way and `v` metres to the left of it.
+using Pattern = std::function<bool(double x, double v)>;
 
 /// Prints `film` film units of the canvas's pigment along the way, `width` metres wide.
 void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film,
