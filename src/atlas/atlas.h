@@ -21,6 +21,7 @@ namespace tuft::atlas {
 struct Atlas {
     std::uint32_t size = 0;                ///< texels per side, of all pages together
     std::uint32_t pages = 1;               ///< that are used
+    std::vector<std::uint32_t> udims;      ///< [pages] numbers that a file's pages have; empty: by place
     std::uint32_t gutter = 4;              ///< texels kept free between charts
     double texel_size = 0;                 ///< metres per texel, area-weighted mean
     std::vector<Vec2f> corner_uvs;         ///< [3 n_triangles]
@@ -37,7 +38,7 @@ struct Atlas {
 /// UV of a point on a page of its own, [0, 1]².
 Vec2 page_uv(const Atlas& atlas, std::uint32_t page, const Vec2f& uv);
 /// Number of a page by the UDIM convention, 1001 + column + 10 row: the UV of a point with
-/// respect to all pages is `page_uv` + (column, row).
+/// respect to all pages is `page_uv` + (column, row). Pages kept from a file keep its numbers.
 std::uint32_t udim_of(const Atlas& atlas, std::uint32_t page);
 
 enum class UvPolicy { automatic, keep, renew };
@@ -57,7 +58,9 @@ struct UnwrapOptions {
     /// are made as it needs; without, all of them are filled as well as can be.
     std::uint32_t pages = 1;
     std::uint32_t gutter = 4;      ///< texels
-    UvPolicy uvs = UvPolicy::automatic;  ///< automatic: the file's UVs if they are valid
+    /// automatic: the file's UVs if they are valid and lie on one page; keep: or on several
+    /// (UDIM), of `size` texels each
+    UvPolicy uvs = UvPolicy::automatic;
     AskedSeams seams;              ///< these, and pages, make new UVs unless `keep` is asked
     std::uint32_t max_size = 16384;  ///< of all pages together
     bool tight = false;  ///< cut large charts where one page of `size` is covered better then
@@ -90,7 +93,17 @@ struct Unwrapped {
 /// follow face groups that the mesh does not have.
 Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& options = {});
 
-/// Measures any atlas; `seconds` stays empty.
+/// Measures any atlas; the only phase is "measure".
 AtlasReport measure(const mesh::TriangleMesh& mesh, const Atlas& atlas);
+
+/// The UVs a model came with.
+struct UvCheck {
+    Atlas atlas;        ///< with `size` texels per page, as they are: mirrored charts not turned
+    std::string fault;  ///< why `UvPolicy::keep` would refuse them; empty when it would not
+};
+
+/// Looks at UVs without changing them, to be measured; `mesh` must have some. UVs on no page
+/// stay where they are, on one page.
+UvCheck check_file_uvs(const mesh::TriangleMesh& mesh, std::uint32_t size);
 
 }  // namespace tuft::atlas

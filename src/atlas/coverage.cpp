@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "atlas/half_edges.h"
 #include "atlas/raster.h"
@@ -139,7 +140,9 @@ int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corn
     for (std::uint32_t h = 0; h < seam.size(); ++h) {
         if (!seam[h]) continue;
         const Vec2f a = corner_uvs[h], b = corner_uvs[next_half(h)];
-        if (!is_finite(a) || !is_finite(b)) continue;
+        if (!is_finite(a) || !is_finite(b) || a == b) continue;
+        const Vec2f lo = glm::min(a, b), hi = glm::max(a, b);
+        if (std::max(lo.x, lo.y) > 1 || std::min(hi.x, hi.y) < 0) continue;
         segments.push_back(
             {Vec2(a) * double(size), Vec2(b) * double(size), triangle_chart[h / 3]});
     }
@@ -157,6 +160,23 @@ int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corn
         if (nearest <= reach) return static_cast<int>(nearest + 1e-6 * size);
     }
     return static_cast<int>(kMost);
+}
+
+int smallest_gap(std::span<const std::uint8_t> seam, const Atlas& atlas) {
+    if (atlas.pages == 1)
+        return smallest_gap(seam, atlas.corner_uvs, atlas.triangle_chart, atlas.size);
+    std::vector<std::vector<std::uint32_t>> halves(atlas.pages);
+    for (std::uint32_t h = 0; h < seam.size(); ++h)
+        if (seam[h]) halves[std::min(atlas.page_of(h / 3), atlas.pages - 1)].push_back(h);
+    std::vector<std::uint8_t> of_page(seam.size(), 0);
+    int least = std::numeric_limits<int>::max();
+    for (const std::vector<std::uint32_t>& page : halves) {
+        for (const std::uint32_t h : page) of_page[h] = 1;
+        least = std::min(
+            least, smallest_gap(of_page, atlas.corner_uvs, atlas.triangle_chart, atlas.size));
+        for (const std::uint32_t h : page) of_page[h] = 0;
+    }
+    return least;
 }
 
 }  // namespace tuft::atlas

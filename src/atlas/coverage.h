@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/types.h"
+#include "atlas/atlas.h"
 
 /// What a set of UVs covers: texels, and the room between charts.
 namespace tuft::atlas {
@@ -26,8 +26,11 @@ Coverage cover(std::span<const Vec2f> corner_uvs, std::span<const std::uint32_t>
 
 /// Texels between the two nearest charts, rounded down, 64 at most; from the exact
 /// distance of their borders, the half-edges marked in `seam`. UVs that are not finite are
-/// left out.
+/// and edges outside the page are left out.
 int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corner_uvs,
                  std::span<const std::uint32_t> triangle_chart, std::uint32_t size);
+
+/// The same for charts on the same page of an atlas.
+int smallest_gap(std::span<const std::uint8_t> seam, const Atlas& atlas);
 
 }  // namespace tuft::atlas

@@ -2,13 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "atlas/chart_mesh.h"
 #include "atlas/coverage.h"
 #include "atlas/half_edges.h"
+#include "atlas/raster.h"
+#include "atlas/snap.h"
 
 namespace tuft::atlas {
 namespace {
+
+using Charts = std::vector<std::vector<std::uint32_t>>;
+
+constexpr double kBeyond = 1e-6;  // what writers with six digits round past an edge, over |uv|
+constexpr std::uint32_t kMostPages = 100;
+constexpr double kColumns = 10, kRows = 100;  // of UDIM pages, 1001 to 2000
+
+/// A page of the UDIM convention.
+struct Tile {
+    std::uint32_t column = 0, row = 0;
+    std::uint32_t number() const { return 1001 + column + 10 * row; }
+};
 
 double signed_area(const Atlas& atlas, std::size_t t) {
     const Vec2 a = Vec2(atlas.corner_uvs[3 * t + 1]) - Vec2(atlas.corner_uvs[3 * t]);
@@ -16,25 +31,148 @@ double signed_area(const Atlas& atlas, std::size_t t) {
     return 0.5 * (a.x * b.y - a.y * b.x);
 }
 
-/// Turns over charts whose triangles are all mirrored; false when some are and some are not.
-bool turn_mirrored(Atlas& atlas, const std::vector<std::vector<std::uint32_t>>& charts) {
+template <class Visit>
+void for_corners(const std::vector<std::uint32_t>& chart, Visit&& visit) {
+    for (const std::uint32_t t : chart)
+        for (std::size_t c = 3 * std::size_t{t}; c < 3 * std::size_t{t} + 3; ++c) visit(c);
+}
+
+struct Bounds {
+    Vec2 lo{1e30}, hi{-1e30};
+};
+
+Bounds bounds_of(const Atlas& atlas, const std::vector<std::uint32_t>& chart) {
+    Bounds b;
+    for_corners(chart, [&](std::size_t c) {
+        b.lo = glm::min(b.lo, Vec2(atlas.corner_uvs[c]));
+        b.hi = glm::max(b.hi, Vec2(atlas.corner_uvs[c]));
+    });
+    return b;
+}
+
+/// Turns over charts that lie mirrored.
+void turn_mirrored(Atlas& atlas, const Charts& charts) {
     for (const auto& chart : charts) {
-        std::size_t mirrored = 0;
-        Vec2f lo(1e30f), hi(-1e30f);
-        for (const std::uint32_t t : chart) {
-            mirrored += signed_area(atlas, t) < 0;
-            for (std::size_t c = 3 * std::size_t{t}; c < 3 * std::size_t{t} + 3; ++c) {
-                lo = glm::min(lo, atlas.corner_uvs[c]);
-                hi = glm::max(hi, atlas.corner_uvs[c]);
-            }
-        }
-        if (mirrored == 0) continue;
-        if (mirrored < chart.size()) return false;
-        for (const std::uint32_t t : chart)
-            for (std::size_t c = 3 * std::size_t{t}; c < 3 * std::size_t{t} + 3; ++c)
-                atlas.corner_uvs[c].x = std::clamp(lo.x + hi.x - atlas.corner_uvs[c].x, 0.f, 1.f);
+        double area = 0;
+        for (const std::uint32_t t : chart) area += signed_area(atlas, t);
+        if (area >= 0) continue;
+        const Bounds b = bounds_of(atlas, chart);
+        const auto lo = static_cast<float>(b.lo.x), hi = static_cast<float>(b.hi.x);
+        for_corners(chart, [&](std::size_t c) {
+            atlas.corner_uvs[c].x = std::clamp(lo + hi - atlas.corner_uvs[c].x, lo, hi);
+        });
     }
-    return true;
+}
+
+/// Finds the charts that the UVs make and numbers them in the atlas.
+Charts find_charts(const mesh::TriangleMesh& mesh, Atlas& atlas) {
+    std::vector<std::uint32_t> glued = twin_half_edges(mesh);
+    const std::vector<std::uint8_t> seam = uv_seams(glued, atlas.corner_uvs);
+    for (std::size_t h = 0; h < glued.size(); ++h)
+        if (seam[h]) glued[h] = kNone;
+    Charts charts = connected_charts(glued);
+    atlas.triangle_chart.resize(mesh.n_triangles());
+    atlas.n_charts = static_cast<std::uint32_t>(charts.size());
+    for (std::uint32_t c = 0; c < charts.size(); ++c)
+        for (const std::uint32_t t : charts[c]) atlas.triangle_chart[t] = c;
+    return charts;
+}
+
+/// The page that holds a whole chart; nothing where the chart crosses pages or lies on none.
+std::optional<Tile> tile_of(const Bounds& b) {
+    const Vec2 tile = glm::floor(0.5 * (b.lo + b.hi));
+    const Vec2 beyond = kBeyond * glm::max(Vec2(1), glm::abs(b.hi));
+    if (!(tile.x >= 0 && tile.x < kColumns && tile.y >= 0 && tile.y < kRows)) return std::nullopt;
+    if (b.lo.x < tile.x - beyond.x || b.lo.y < tile.y - beyond.y) return std::nullopt;
+    if (b.hi.x > tile.x + 1 + beyond.x || b.hi.y > tile.y + 1 + beyond.y) return std::nullopt;
+    return Tile{static_cast<std::uint32_t>(tile.x), static_cast<std::uint32_t>(tile.y)};
+}
+
+/// Moves the pages together into the square of an atlas, in the order of their numbers.
+std::string lay_pages(Atlas& atlas, const Charts& charts) {
+    std::vector<Tile> tiles;
+    std::vector<std::uint32_t> numbers;
+    for (const auto& chart : charts) {
+        const Bounds b = bounds_of(atlas, chart);
+        const std::optional<Tile> tile = tile_of(b);
+        if (!tile) {
+            const bool on_pages = std::min(b.lo.x, b.lo.y) >= -kBeyond && b.hi.x <= kColumns + kBeyond &&
+                                  b.hi.y <= kRows + kBeyond;
+            return on_pages ? "a chart lies on more than one page"
+                            : "some lie outside [0, 1] and the UDIM pages 1001 to 2000";
+        }
+        tiles.push_back(*tile);
+        numbers.push_back(tile->number());
+    }
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    if (numbers.size() > kMostPages)
+        return "they lie on " + std::to_string(numbers.size()) + " UDIM pages, more than the " +
+               std::to_string(kMostPages) + " allowed";
+    atlas.pages = static_cast<std::uint32_t>(numbers.size());
+    const std::uint32_t k = atlas.pages_per_side();
+    for (std::uint32_t p = 0; p < atlas.pages; ++p)
+        if (numbers[p] != udim_of(atlas, p)) {
+            atlas.udims = numbers;
+            break;
+        }
+    for (std::size_t i = 0; i < charts.size(); ++i) {
+        const auto page = static_cast<std::uint32_t>(
+            std::lower_bound(numbers.begin(), numbers.end(), tiles[i].number()) - numbers.begin());
+        const Vec2 from(tiles[i].column, tiles[i].row), to(page % k, page / k);
+        for_corners(charts[i], [&](std::size_t c) {
+            const Vec2 uv = glm::clamp(Vec2(atlas.corner_uvs[c]) - from, 0.0, 1.0);
+            atlas.corner_uvs[c] = Vec2f((uv + to) / double(k));
+        });
+    }
+    return "";
+}
+
+/// Gives slivers that rounding took the room of some back.
+void snap_charts(const mesh::TriangleMesh& mesh, Atlas& atlas, const Charts& charts) {
+    std::vector<std::uint32_t> glued = twin_half_edges(mesh);
+    const std::vector<std::uint8_t> seam = uv_seams(glued, atlas.corner_uvs);
+    for (std::size_t h = 0; h < glued.size(); ++h)
+        if (seam[h]) glued[h] = kNone;
+    for (const auto& chart : charts) {
+        if (std::all_of(chart.begin(), chart.end(),
+                        [&](std::uint32_t t) { return signed_area(atlas, t) > 0; }))
+            continue;
+        const ChartMesh m = make_chart(mesh, glued, chart, 1);
+        std::vector<Vec2> uv(m.n_vertices());
+        const auto corner = [&](std::size_t f, std::size_t k) -> Vec2f& {
+            return atlas.corner_uvs[3 * std::size_t{chart[f]} + k];
+        };
+        for (std::size_t f = 0; f < m.faces.size(); ++f)
+            for (std::size_t k = 0; k < 3; ++k) uv[m.faces[f][k]] = Vec2(corner(f, k));
+        snap_to_floats(m.faces, uv, atlas.size);
+        for (std::size_t f = 0; f < m.faces.size(); ++f)
+            for (std::size_t k = 0; k < 3; ++k) corner(f, k) = Vec2f(uv[m.faces[f][k]]);
+    }
+}
+
+/// Sets the texels of a page and their size; returns what is wrong with that.
+std::string give_size(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, Atlas& atlas) {
+    double area_uv = 0;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) area_uv += std::abs(signed_area(atlas, t));
+    const std::uint32_t k = atlas.pages_per_side();
+    if (!(area_uv > 0)) return "no triangle has room in them";
+    const double side = std::sqrt(mesh::surface_area(mesh) / area_uv) / k;  // metres along a page
+    double size = options.size;
+    if (options.size == 0) size = std::max(1.0, std::ceil(side / options.texel_size));
+    if (size * k > options.max_size) {
+        const std::string all = std::to_string(static_cast<long long>(std::min(size, 1e15)));
+        const std::string most = ", more than the " + std::to_string(options.max_size) + " allowed";
+        if (options.size > 0)
+            return std::to_string(atlas.pages) + " pages of " + all +
+                   " texels are together more than fit a square of " +
+                   std::to_string(options.max_size) + " texels; use smaller pages";
+        return "a texel of " + std::to_string(options.texel_size * 1e3) +
+               " mm needs an atlas of " + all + " texels with them" + most;
+    }
+    atlas.size = static_cast<std::uint32_t>(size) * k;
+    atlas.texel_size = side / size;
+    return "";
 }
 
 }  // namespace
@@ -49,60 +187,69 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
         return found;
     };
     if (mesh.corner_uvs.size() != 3 * n) return fault("there are none");
-    constexpr float kBeyond = 1e-6f;  // what writers with six digits round past the edge
     atlas.corner_uvs = mesh.corner_uvs;
-    for (Vec2f& uv : atlas.corner_uvs) {
-        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fault("some are not finite");
-        if (std::min(uv.x, uv.y) < -kBeyond || std::max(uv.x, uv.y) > 1 + kBeyond)
-            return fault("some lie outside [0, 1]");
-        uv = glm::clamp(uv, Vec2f(0), Vec2f(1));
+    Vec2f lo(0), hi(1);
+    for (const Vec2f& uv : atlas.corner_uvs) {
+        if (!is_finite(uv)) return fault("some are not finite");
+        lo = glm::min(lo, uv);
+        hi = glm::max(hi, uv);
     }
-    double area_uv = 0;
-    std::size_t roomless = 0;
+    const bool on_one = std::min(lo.x, lo.y) >= -kBeyond && std::max(hi.x, hi.y) <= 1 + kBeyond;
+    if (!on_one && options.uvs != UvPolicy::keep) return fault("some lie outside [0, 1]");
+    if (on_one)
+        for (Vec2f& uv : atlas.corner_uvs) uv = glm::clamp(uv, Vec2f(0), Vec2f(1));
+
+    const Charts charts = find_charts(mesh, atlas);
+    if (!on_one)
+        if (std::string what = lay_pages(atlas, charts); !what.empty()) return fault(std::move(what));
+    atlas.gutter = options.gutter;
+    atlas.from_file = true;
+    if (std::string what = give_size(mesh, options, atlas); !what.empty())
+        return fault(std::move(what));
+    turn_mirrored(atlas, charts);
+    if (atlas.pages > 1) snap_charts(mesh, atlas, charts);
+    std::size_t roomless = 0, flipped = 0;
     for (std::size_t t = 0; t < n; ++t) {
         const double area = signed_area(atlas, t);
         roomless += area == 0;
-        area_uv += std::abs(area);
+        flipped += area < 0;
     }
     if (roomless > 0) return fault(std::to_string(roomless) + " triangles have no room in them");
-
-    std::vector<std::uint32_t> glued = twin_half_edges(mesh);
-    const std::vector<std::uint8_t> seam = uv_seams(glued, atlas.corner_uvs);
-    for (std::size_t h = 0; h < glued.size(); ++h)
-        if (seam[h]) glued[h] = kNone;
-    const auto charts = connected_charts(glued);
-    atlas.triangle_chart.resize(n);
-    atlas.n_charts = static_cast<std::uint32_t>(charts.size());
-    for (std::uint32_t c = 0; c < charts.size(); ++c)
-        for (const std::uint32_t t : charts[c]) atlas.triangle_chart[t] = c;
-    if (!turn_mirrored(atlas, charts)) return fault("some triangles are flipped");
-
-    const double side = std::sqrt(mesh::surface_area(mesh) / area_uv);  // metres along the page
-    if (options.size > 0) {
-        atlas.size = options.size;
-    } else {
-        const double size = std::ceil(side / options.texel_size);
-        if (size > options.max_size)
-            return fault("a texel of " + std::to_string(options.texel_size * 1e3) +
-                         " mm needs an atlas of " +
-                         std::to_string(static_cast<long long>(std::min(size, 1e15))) +
-                         " texels with them, more than the " + std::to_string(options.max_size) +
-                         " allowed");
-        atlas.size = std::max(1u, static_cast<std::uint32_t>(size));
-    }
-    atlas.texel_size = side / atlas.size;
-    atlas.gutter = options.gutter;
-    atlas.from_file = true;
+    if (flipped > 0) return fault(std::to_string(flipped) + " triangles are flipped");
 
     const Coverage coverage = cover(atlas.corner_uvs, {}, atlas.size);
     if (coverage.twice > 0)
         return fault("they overlap in " + std::to_string(coverage.twice) + " texels");
-    const int gap = smallest_gap(seam, atlas.corner_uvs, atlas.triangle_chart, atlas.size);
+    const std::vector<std::uint8_t> seam = uv_seams(twin_half_edges(mesh), atlas.corner_uvs);
+    const int gap = smallest_gap(seam, atlas);
     const int least = std::min<int>(options.uvs == UvPolicy::keep ? 1 : 2, int(options.gutter));
     if (gap < least)
         return fault("charts are less than " + std::to_string(least) +
-                     " texels apart at a size of " + std::to_string(atlas.size));
+                     " texels apart at a size of " + std::to_string(atlas.page_size()));
     return found;
+}
+
+UvCheck check_file_uvs(const mesh::TriangleMesh& mesh, std::uint32_t size) {
+    UvCheck check;
+    UnwrapOptions options;
+    options.size = size;
+    options.uvs = UvPolicy::keep;
+    check.fault = read_file_uvs(mesh, options).fault;
+    Atlas& atlas = check.atlas;
+    atlas.corner_uvs = mesh.corner_uvs;
+    const Charts charts = find_charts(mesh, atlas);
+    if (std::all_of(atlas.corner_uvs.begin(), atlas.corner_uvs.end(), is_finite)) {
+        Atlas paged = atlas;
+        if (lay_pages(paged, charts).empty()) atlas = std::move(paged);
+    }
+    atlas.size = size * atlas.pages_per_side();
+    atlas.gutter = options.gutter;
+    atlas.from_file = true;
+    double area_uv = 0;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) area_uv += std::abs(signed_area(atlas, t));
+    if (area_uv > 0 && std::isfinite(area_uv))
+        atlas.texel_size = std::sqrt(mesh::surface_area(mesh) / area_uv) / atlas.size;
+    return check;
 }
 
 }  // namespace tuft::atlas

@@ -248,6 +248,7 @@ Vec2 page_uv(const Atlas& atlas, std::uint32_t page, const Vec2f& uv) {
 }
 
 std::uint32_t udim_of(const Atlas& atlas, std::uint32_t page) {
+    if (!atlas.udims.empty()) return atlas.udims[page];
     const std::uint32_t k = atlas.pages_per_side();
     return 1001 + page % k + 10 * (page / k);
 }
@@ -259,7 +260,7 @@ Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& given) {
     check_options(mesh, options);
     if (options.uvs == UvPolicy::keep ||
         (options.uvs == UvPolicy::automatic && !options.seams.any() && options.pages == 1)) {
-        UnwrapOptions file = options;  // lies on one page
+        UnwrapOptions file = options;  // says itself how many pages it has
         if (options.pages > 1 && options.texel_size > 0) file.size = 0;
         const FileUvs found = read_file_uvs(mesh, file);
         if (found.fault.empty()) return {found.atlas, measure(mesh, found.atlas)};
@@ -270,7 +271,7 @@ Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& given) {
     Unwrapped out = make_atlas(mesh, options);
     auto seconds = std::move(out.report.seconds);
     out.report = measure(mesh, out.atlas);
-    out.report.seconds = std::move(seconds);
+    out.report.seconds.insert(out.report.seconds.begin(), seconds.begin(), seconds.end());
     return out;
 }
 

@@ -148,14 +148,12 @@ int run(const Inspect& a) {
     }
     console.clear();
     const mesh::MeshSummary s = mesh::summarise(surface, options.metres_per_unit);
-    atlas::AtlasReport uvs;
-    atlas::Atlas in_file;
+    constexpr std::uint32_t kPage = 2048;  // texels that the file's UVs are measured on
+    atlas::UvCheck uvs;
+    atlas::AtlasReport quality;
     if (s.has_uvs) {
-        in_file.size = 2048;
-        in_file.corner_uvs = surface.mesh.corner_uvs;
-        in_file.triangle_chart.assign(surface.mesh.n_triangles(), 0);
-        in_file.from_file = true;
-        uvs = atlas::measure(surface.mesh, in_file);
+        uvs = atlas::check_file_uvs(surface.mesh, kPage);
+        quality = atlas::measure(surface.mesh, uvs.atlas);
     }
     if (a.common.json) {
         nlohmann::json j{{"file", a.file.string()},
@@ -167,24 +165,30 @@ int run(const Inspect& a) {
                          {"median_edge_mm", s.median_edge / kMillimetre},
                          {"unit_guess", s.unit.unit},
                          {"unit_note", s.unit.sentence},
-                         {"has_uvs", s.has_uvs},
                          {"has_colours", s.has_colours},
                          {"groups", s.group_names},
                          {"defects", mesh::describe_defects(s.report)},
                          {"mesh", to_json(s.report)}};
-        if (s.has_uvs)
-            j["uvs"] = {{"flips", uvs.flips},
-                        {"overlapping_texels", uvs.overlapping_texels},
-                        {"l2_stretch", uvs.l2_stretch},
-                        {"utilisation", uvs.utilisation}};
+        j["has_uvs"] = s.has_uvs;
+        j["uv_fault"] = s.has_uvs && !uvs.fault.empty() ? nlohmann::json(uvs.fault) : nlohmann::json();
+        j["atlas"] = s.has_uvs ? to_json(uvs.atlas, quality) : nlohmann::json();
         std::cout << j.dump(2) << '\n';
         return 0;
     }
     fmt::print("{}\n", a.file.string());
     for (const std::string& line : mesh::describe(s)) fmt::print("{}\n", line);
-    if (s.has_uvs)
-        fmt::print("UVs: {} flipped triangles, {} texels of 2048 x 2048 covered twice, L2 stretch {:.3f}\n",
-                   uvs.flips, uvs.overlapping_texels, uvs.l2_stretch);
+    if (!s.has_uvs) {
+        fmt::print("UVs: none; painting makes them\n");
+        return 0;
+    }
+    const atlas::Atlas& in_file = uvs.atlas;
+    fmt::print("UVs: {} charts on {}, seams {:.1f} x the diagonal; stretch L2 {:.4f}, Linf {:.2f}; {:.0f} % used\n",
+               quality.charts, in_file.pages > 1 ? fmt::format("{} UDIM pages", in_file.pages) : "one page",
+               quality.seam_length, quality.l2_stretch, quality.linf_stretch, 100 * quality.utilisation);
+    fmt::print("     {} flipped triangles, {} without room; at {} x {} texels {} overlap, gap {}\n", quality.flips,
+               quality.roomless_triangles, kPage, kPage, quality.overlapping_texels, quality.smallest_gap);
+    if (uvs.fault.empty()) fmt::print("     --keep-uv keeps them\n");
+    else fmt::print("     they cannot be kept: {}\n", uvs.fault);
     return 0;
 }
 

@@ -35,6 +35,9 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
     if (surface.atlas_size == 0 && surface.texel_size_mm == 0 && !surface.new_uv &&
         surface.seams == "free")
         return std::move(project.model);
+    const atlas::Atlas& atlas = project.model.atlas;  // pages of the file stay
+    surface.keep_uv |= atlas.from_file && (atlas.pages > 1 || !atlas.udims.empty()) &&
+                       !surface.new_uv && surface.seams == "free";
     stroke::ModelOptions options = model_options(surface, console);
     return stroke::rescale_model(std::move(project.model), options);
 }

@@ -360,6 +360,7 @@ nlohmann::json to_json(const atlas::Atlas& a, const atlas::AtlasReport& r) {
                      {"utilisation", r.utilisation},
                      {"seam_length", r.seam_length},
                      {"smallest_gap", r.smallest_gap}};
+    for (std::uint32_t page = 0; page < a.pages; ++page) j["udims"].push_back(atlas::udim_of(a, page));
     for (const auto& [phase, seconds] : r.seconds) j["seconds"][phase] = seconds;
     return j;
 }

@@ -36,9 +36,10 @@ std::vector<MapFile> map_files(const ModelMaps& maps, const ExportOptions& optio
             {"normal", has_height(maps, options)}};
 }
 
-/// Fills in the pages of the scene and their UVs, which are returned; nothing with one page.
+/// Fills in the pages of the scene and their UVs, which are returned; no UVs with one page.
 std::vector<Vec2f> split_pages(const atlas::Atlas& atlas, ExportScene& scene) {
     std::vector<Vec2f> uvs;
+    scene.udims = {atlas::udim_of(atlas, 0)};
     if (atlas.pages == 1) return uvs;
     scene.udims.clear();
     for (std::uint32_t page = 0; page < atlas.pages; ++page)
@@ -181,7 +182,7 @@ fs::path page_path(const fs::path& path, const atlas::Atlas& atlas, std::uint32_
 }
 
 std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps,
-                                     const ExportOptions& options, std::uint32_t pages) {
+                                     const ExportOptions& options, const atlas::Atlas& atlas) {
     std::vector<fs::path> files{path};
     const std::string extension = path.extension().string();
     if (extension == ".glb") return files;
@@ -190,11 +191,8 @@ std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps
     };
     files.push_back(beside(extension == ".obj" ? ".mtl" : ".bin"));
     for (const MapFile& map : map_files(maps, options))
-        for (std::uint32_t page = 0; map.present && page < pages; ++page) {
-            atlas::Atlas atlas;
-            atlas.pages = pages;
+        for (std::uint32_t page = 0; map.present && page < atlas.pages; ++page)
             files.push_back(page_path(beside("_" + std::string(map.suffix) + ".png"), atlas, page));
-        }
     return files;
 }
 

@@ -73,7 +73,7 @@ void export_model(const std::filesystem::path& path, const mesh::TriangleMesh& m
 std::vector<std::filesystem::path> exported_files(const std::filesystem::path& path,
                                                   const ModelMaps& maps,
                                                   const ExportOptions& options = {},
-                                                  std::uint32_t pages = 1);
+                                                  const atlas::Atlas& atlas = {});
 
 /// One page of a picture of the whole atlas; no copy.
 PixelView page_view(const PixelView& whole, const atlas::Atlas& atlas, std::uint32_t page);

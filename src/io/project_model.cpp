@@ -50,6 +50,8 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
     if (model.atlas.pages < 1 || model.atlas.pages > 100 ||
         model.atlas.size % model.atlas.pages_per_side() != 0)
         damaged(path, "the atlas has no valid pages");
+    for (const std::uint32_t udim : model.atlas.udims)
+        if (udim < 1001 || udim > 2000) damaged(path, "a page of the atlas has no valid number");
     if (!metres_per(model.frame.unit)) damaged(path, "the model's unit is unknown");
 }
 
@@ -130,6 +132,7 @@ void store_model(SQLite::Database& db, const ProjectModel& model) {
     put_array(db, "atlas", "triangle_chart", a.triangle_chart, kSingle);
     if (model.frame.y_up) put_array(db, "mesh", "y_up", std::vector<std::uint32_t>{1}, kSingle);
     if (a.pages > 1) put_array(db, "atlas", "pages", std::vector<std::uint32_t>{a.pages}, kSingle);
+    put_array(db, "atlas", "udims", a.udims, kSingle);
 }
 
 ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path) {
@@ -176,6 +179,8 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
     a.triangle_chart = get_array<std::uint32_t>(db, path, "atlas", "triangle_chart", kSingle, n_t);
     const auto pages = get_array<std::uint32_t>(db, path, "atlas", "pages", kSingle, 1);
     if (!pages.empty()) a.pages = pages[0];
+    if (a.pages >= 1 && a.pages <= 100)
+        a.udims = get_array<std::uint32_t>(db, path, "atlas", "udims", kSingle, a.pages);
     model.frame.y_up = !get_array<std::uint32_t>(db, path, "mesh", "y_up", kSingle, 1).empty();
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
     check(model, path);

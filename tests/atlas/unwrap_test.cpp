@@ -415,53 +415,6 @@ TEST(Unwrap, CanBeCancelled) {
     EXPECT_THROW(unwrap(torus(), options), Cancelled);
 }
 
-TEST(Unwrap, KeepsItsOwnUvsWhenTheyComeFromAFile) {
-    TriangleMesh m = torus();
-    UnwrapOptions options;
-    options.size = 512;
-    const Unwrapped first = unwrap(m, options);
-    m.corner_uvs = first.atlas.corner_uvs;
-    const Unwrapped again = unwrap(m, options);
-    EXPECT_TRUE(again.atlas.from_file);
-    EXPECT_EQ(again.atlas.corner_uvs, first.atlas.corner_uvs);
-    EXPECT_EQ(again.report.charts, first.report.charts);
-    EXPECT_NEAR(again.atlas.texel_size, first.atlas.texel_size, 1e-9);
-    options.uvs = UvPolicy::renew;
-    EXPECT_FALSE(unwrap(m, options).atlas.from_file);
-}
-
-TEST(Unwrap, TurnsMirroredFileUvsOver) {
-    TriangleMesh m = sheet();
-    for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
-        const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];
-        m.corner_uvs.push_back({0.9f - 4 * p.x, 4 * p.y});
-    }
-    const Unwrapped u = unwrap(m, {});
-    EXPECT_TRUE(u.atlas.from_file);
-    EXPECT_EQ(u.report.flips, 0u);
-    EXPECT_EQ(u.report.overlapping_texels, 0u);
-}
-
-TEST(Unwrap, RenewsFileUvsThatCannotServe) {
-    TriangleMesh m = cylinder();
-    const std::function<Vec2f(const Vec3f&)> bad[] = {
-        [](const Vec3f& p) { return Vec2f(5 * p.x + 0.5f, 4 * p.z); },    // front over back
-        [](const Vec3f& p) { return Vec2f(20 * p.x + 0.5f, 40 * p.z); },  // outside
-        [](const Vec3f&) { return Vec2f(0.5f); },                         // no room
-        [](const Vec3f& p) { return Vec2f(p.x, NAN); }};
-    for (const auto& uv : bad) {
-        m.corner_uvs.clear();
-        for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c)
-            m.corner_uvs.push_back(uv(m.positions[m.triangles[c / 3][c % 3]]));
-        const Unwrapped u = unwrap(m, {});
-        EXPECT_FALSE(u.atlas.from_file);
-        EXPECT_EQ(u.report.flips, 0u);
-        UnwrapOptions options;
-        options.uvs = UvPolicy::keep;
-        EXPECT_THROW(unwrap(m, options), Error);
-    }
-}
-
 TEST(AtlasPicture, ShowsChartsAndTheirStretch) {
     const TriangleMesh m = torus();
     UnwrapOptions options;

@@ -168,7 +168,7 @@ TEST(Export, PagesOfAnObjFollowTheUdimConvention) {
     const atlas::Atlas atlas = two_pages(mesh);
     const ModelMaps maps = pattern_maps(128);
     export_model(folder / "m.obj", mesh, atlas, maps);
-    for (const auto& file : exported_files(folder / "m.obj", maps, {}, 2))
+    for (const auto& file : exported_files(folder / "m.obj", maps, {}, atlas))
         EXPECT_TRUE(std::filesystem::exists(file)) << file;
     EXPECT_EQ(folder.n_files(), 2u + 3 * 2);
     const std::vector<char> mtl = read_file(folder / "m.mtl");

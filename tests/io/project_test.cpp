@@ -138,6 +138,14 @@ TEST(Project, PagesOfTheAtlasComeBack) {
     model.atlas.size = 2 * 64;
     Project::create(folder / "a.tuft", model);
     EXPECT_EQ(Project::open(folder / "a.tuft").model().atlas.pages, 3u);
+    EXPECT_TRUE(Project::open(folder / "a.tuft").model().atlas.udims.empty());
+    model.atlas.udims = {1001, 1010, 1033};
+    Project::create(folder / "c.tuft", model);
+    EXPECT_EQ(Project::open(folder / "c.tuft").model().atlas.udims, model.atlas.udims);
+    model.atlas.udims = {1001, 1010, 2001};
+    Project::create(folder / "d.tuft", model);
+    EXPECT_THROW(Project::open(folder / "d.tuft").model(), Error);
+    model.atlas.udims.clear();
     model.atlas.size = 2 * 64 + 1;  // no whole page
     Project::create(folder / "b.tuft", model);
     EXPECT_THROW(Project::open(folder / "b.tuft").model(), Error);

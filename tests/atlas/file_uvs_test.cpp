@@ -1,0 +1,229 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "atlas/atlas.h"
+#include "core/error.h"
+#include "test_mesh.h"
+
+namespace tuft::atlas {
+namespace {
+
+using mesh::TriangleMesh;
+constexpr double kPi = std::numbers::pi;
+
+TriangleMesh sheet() {
+    return test::grid_mesh(40, 30, false, false,
+                           [](double u, double v) { return Vec3(0.2 * u, 0.15 * v, 0); });
+}
+
+TriangleMesh cylinder() {
+    return test::grid_mesh(96, 40, true, false, [](double u, double v) {
+        return Vec3(0.05 * std::cos(2 * kPi * u), 0.05 * std::sin(2 * kPi * u), 0.2 * v);
+    });
+}
+
+TriangleMesh torus() {
+    return test::grid_mesh(96, 48, true, true, [](double u, double v) {
+        const double r = 0.05 + 0.02 * std::cos(2 * kPi * v);
+        return Vec3(r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u),
+                    0.02 * std::sin(2 * kPi * v));
+    });
+}
+
+TEST(FileUvs, AreKeptWhenTheyAreOurOwn) {
+    TriangleMesh m = torus();
+    UnwrapOptions options;
+    options.size = 512;
+    const Unwrapped first = unwrap(m, options);
+    m.corner_uvs = first.atlas.corner_uvs;
+    const Unwrapped again = unwrap(m, options);
+    EXPECT_TRUE(again.atlas.from_file);
+    EXPECT_EQ(again.atlas.corner_uvs, first.atlas.corner_uvs);
+    EXPECT_EQ(again.report.charts, first.report.charts);
+    EXPECT_NEAR(again.atlas.texel_size, first.atlas.texel_size, 1e-9);
+    options.uvs = UvPolicy::renew;
+    EXPECT_FALSE(unwrap(m, options).atlas.from_file);
+}
+
+TEST(FileUvs, ThatAreMirroredAreTurnedOver) {
+    TriangleMesh m = sheet();
+    for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
+        const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];
+        m.corner_uvs.push_back({0.9f - 4 * p.x, 4 * p.y});
+    }
+    const Unwrapped u = unwrap(m, {});
+    EXPECT_TRUE(u.atlas.from_file);
+    EXPECT_EQ(u.report.flips, 0u);
+    EXPECT_EQ(u.report.overlapping_texels, 0u);
+}
+
+TEST(FileUvs, ThatCannotServeAreRenewed) {
+    TriangleMesh m = cylinder();
+    const std::function<Vec2f(const Vec3f&)> bad[] = {
+        [](const Vec3f& p) { return Vec2f(5 * p.x + 0.5f, 4 * p.z); },    // front over back
+        [](const Vec3f& p) { return Vec2f(20 * p.x + 0.5f, 40 * p.z); },  // outside
+        [](const Vec3f&) { return Vec2f(0.5f); },                         // no room
+        [](const Vec3f& p) { return Vec2f(p.x, NAN); }};
+    for (const auto& uv : bad) {
+        m.corner_uvs.clear();
+        for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c)
+            m.corner_uvs.push_back(uv(m.positions[m.triangles[c / 3][c % 3]]));
+        const Unwrapped u = unwrap(m, {});
+        EXPECT_FALSE(u.atlas.from_file);
+        EXPECT_EQ(u.report.flips, 0u);
+        UnwrapOptions options;
+        options.uvs = UvPolicy::keep;
+        EXPECT_THROW(unwrap(m, options), Error);
+    }
+}
+
+/// UVs as an OBJ file of the atlas holds them: floats, pages by their UDIM numbers.
+std::vector<Vec2f> written_uvs(const Atlas& atlas) {
+    std::vector<Vec2f> uvs;
+    for (std::size_t c = 0; c < atlas.corner_uvs.size(); ++c) {
+        const std::uint32_t page = atlas.page_of(c / 3), tile = udim_of(atlas, page) - 1001;
+        uvs.push_back(Vec2f(page_uv(atlas, page, atlas.corner_uvs[c]) + Vec2(tile % 10, tile / 10)));
+    }
+    return uvs;
+}
+
+Unwrapped kept(const TriangleMesh& m, std::uint32_t size) {
+    UnwrapOptions options;
+    options.size = size;
+    options.uvs = UvPolicy::keep;
+    return unwrap(m, options);
+}
+
+std::string refusal(const TriangleMesh& m, std::uint32_t size = 256) {
+    try {
+        kept(m, size);
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+void expect_sound(const Unwrapped& u) {
+    EXPECT_EQ(u.report.flips, 0u);
+    EXPECT_EQ(u.report.overlapping_texels, 0u);
+    EXPECT_EQ(u.report.roomless_triangles, 0u);
+}
+
+// 2 to 7 pages: squares of 2 x 2 pages, which floats divide exactly, and of 3 x 3, which they
+// do not. Rounding moves a UV by 2^-24 of the whole, 2e-4 of a texel.
+TEST(FileUvs, OnSeveralPagesComeBackOnTheSame) {
+    TriangleMesh m = torus();
+    for (const std::uint32_t pages : {2u, 4u, 5u, 7u}) {
+        SCOPED_TRACE(pages);
+        UnwrapOptions options;
+        options.size = 128;
+        options.pages = pages;
+        const Unwrapped first = unwrap(m, options);
+        ASSERT_GE(first.atlas.pages, 2u);
+        m.corner_uvs = written_uvs(first.atlas);
+        const Unwrapped again = kept(m, 128);
+        expect_sound(again);
+        EXPECT_TRUE(again.atlas.from_file);
+        EXPECT_EQ(again.atlas.pages, first.atlas.pages);
+        EXPECT_EQ(again.atlas.size, first.atlas.size);
+        EXPECT_EQ(again.report.charts, first.report.charts);
+        EXPECT_EQ(again.report.smallest_gap, first.report.smallest_gap);
+        EXPECT_NEAR(again.report.utilisation, first.report.utilisation, 1e-3);
+        EXPECT_NEAR(again.atlas.texel_size / first.atlas.texel_size, 1, 1e-5);
+        for (std::size_t c = 0; c < m.corner_uvs.size(); ++c) {
+            ASSERT_EQ(udim_of(again.atlas, again.atlas.page_of(c / 3)),
+                      udim_of(first.atlas, first.atlas.page_of(c / 3)));
+            ASSERT_NEAR(again.atlas.corner_uvs[c].x, first.atlas.corner_uvs[c].x, 2e-7);
+            ASSERT_NEAR(again.atlas.corner_uvs[c].y, first.atlas.corner_uvs[c].y, 2e-7);
+        }
+    }
+}
+
+TEST(FileUvs, KeepTheNumbersOfTheirPages) {
+    TriangleMesh m = sheet();  // in four stripes, on pages as another program may number them
+    const std::array<Vec2f, 4> tiles{Vec2f(0, 0), Vec2f(9, 0), Vec2f(2, 7), Vec2f(9, 99)};
+    const auto stripe_of = [&](std::size_t t) {
+        return static_cast<std::size_t>(
+            std::min({m.position(t, 0).x, m.position(t, 1).x, m.position(t, 2).x}) * 20 + 1e-3);
+    };
+    for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
+        const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];
+        const std::size_t s = stripe_of(c / 3);
+        const Vec2f uv(20 * p.x - float(s), 5 * p.y);  // from edge to edge of each page
+        m.corner_uvs.push_back(glm::clamp(uv, Vec2f(0), Vec2f(1)) + tiles[s]);
+    }
+    const Unwrapped u = kept(m, 128);
+    expect_sound(u);
+    EXPECT_EQ(u.atlas.pages, 4u);
+    EXPECT_EQ(u.atlas.page_size(), 128u);
+    EXPECT_EQ(u.atlas.udims, (std::vector<std::uint32_t>{1001, 1010, 1073, 2000}));
+    EXPECT_EQ(u.report.charts, 4u);
+    const std::vector<Vec2f> back = written_uvs(u.atlas);
+    for (std::size_t c = 0; c < back.size(); ++c) {
+        // Floats below 128 are 2^-17 apart.
+        ASSERT_NEAR(back[c].x, m.corner_uvs[c].x, 8e-6);
+        ASSERT_NEAR(back[c].y, m.corner_uvs[c].y, 8e-6);
+    }
+    const UvCheck check = check_file_uvs(m, 64);
+    EXPECT_EQ(check.fault, "");
+    EXPECT_EQ(check.atlas.udims, u.atlas.udims);
+    EXPECT_EQ(check.atlas.page_size(), 64u);
+    UnwrapOptions options;  // without being asked they are not kept
+    EXPECT_FALSE(unwrap(m, options).atlas.from_file);
+}
+
+TEST(FileUvs, OnNoPageAreRefused) {
+    TriangleMesh m = sheet();
+    for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
+        const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];
+        m.corner_uvs.push_back({0.05f + 4 * p.x, 0.05f + 4 * p.y});
+    }
+    const std::vector<Vec2f> good = m.corner_uvs;
+    EXPECT_EQ(refusal(m), "");
+    const auto moved = [&](const Vec2f& by) {
+        for (std::size_t c = 0; c < good.size(); ++c) m.corner_uvs[c] = good[c] + by;
+        return refusal(m);
+    };
+    EXPECT_EQ(moved({9, 99}), "");
+    EXPECT_NE(moved({9, 399}).find("UDIM"), std::string::npos);  // page 5000
+    EXPECT_NE(moved({10, 0}).find("UDIM"), std::string::npos);
+    EXPECT_NE(moved({-1, 0}).find("UDIM"), std::string::npos);
+    EXPECT_NE(moved({0.5f, 0}).find("more than one page"), std::string::npos);
+    for (const float hostile : {1e30f, -1e30f, 3e9f}) {
+        m.corner_uvs = good;
+        m.corner_uvs[5].y = hostile;
+        EXPECT_NE(refusal(m).find("UDIM"), std::string::npos) << hostile;
+        EXPECT_NE(check_file_uvs(m, 64).fault, "");
+    }
+    m.corner_uvs = good;
+    m.corner_uvs[7].x = NAN;
+    EXPECT_NE(refusal(m).find("not finite"), std::string::npos);
+    EXPECT_NE(check_file_uvs(m, 64).fault, "");
+}
+
+TEST(FileUvs, OnTooManyPagesAreRefused) {
+    TriangleMesh m = sheet();  // 2400 triangles, each pair on a page of its own
+    const auto on_pages = [&](std::size_t pages) {
+        m.corner_uvs.clear();
+        for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
+            const std::size_t page = std::min(c / 6, pages - 1), square = c / 6 - page;
+            const Vec3f q = m.positions[m.triangles[c / 6 * 2][0]];
+            const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];
+            const Vec2f at = square == 0 ? Vec2f(p.x - q.x, p.y - q.y) : Vec2f(p.x, p.y);
+            m.corner_uvs.push_back(Vec2f(0.1f) + 4.f * at + Vec2f(page % 10, page / 10));
+        }
+    };
+    on_pages(60);
+    EXPECT_EQ(refusal(m, 128), "");
+    EXPECT_NE(refusal(m, 4096).find("smaller pages"), std::string::npos);  // 8 x 8 of them
+    on_pages(101);
+    EXPECT_NE(refusal(m, 64).find("more than the 100"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tuft::atlas
