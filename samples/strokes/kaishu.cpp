@@ -25,15 +25,14 @@ void append(Stroke& s, std::initializer_list<Key> keys) {
     s.keys.insert(s.keys.end(), keys);
 }
 
-/// Ends a stroke that runs out to a point: the finest line up to the last key, then the
-/// tip is taken back over it while it lifts, so that it draws no drop beyond the end.
+/// Ends a stroke that runs out to a point: the finest line up to the last key, then the hand goes
+/// on as it lifts, for the tip trails behind it.
 void run_out(Stroke& s, double w) {
     Key& end = s.keys.back();
     const Key before = s.keys[s.keys.size() - 2];
-    const Vec2 back = 0.45 * w * glm::normalize(Vec2(before.x - end.x, before.y - end.y));
+    const Vec2 on = 0.15 * w * glm::normalize(Vec2(end.x - before.x, end.y - before.y));
     end.width = std::max(0.08 * w, 8.0);
-    end.rest = 0;
-    s.keys.push_back({end.x + back.x, end.y + back.y, 0, 1});
+    s.keys.push_back({end.x + on.x, end.y + on.y, 0, 1.2});
 }
 
 }  // namespace
@@ -162,7 +161,7 @@ Stroke na(Vec2 from, Vec2 foot, Vec2 to, double w) {
     const double n = l.length;
     const Vec2 t = to - foot;
     Stroke s{"na", {}};
-    append(s, {l.at(0, 0, 0, 0.6), l.at(0.08 * n, 0.02 * n, 0.26 * w, 0.8),
+    append(s, {l.at(0, 0, 0, 0.6), l.at(0.02 * n, 0.005 * n, 0.15 * w, 0.6), l.at(0.08 * n, 0.02 * n, 0.26 * w, 0.8),
                l.at(0.38 * n, 0.07 * n, 0.48 * w, 1), l.at(0.72 * n, 0.055 * n, 0.80 * w, 0.9),
                l.at(0.97 * n, 0, 1.06 * w, 0.45, 0.04)});
     append(s, {{foot.x + 0.34 * t.x, foot.y + 0.30 * t.y, 0.80 * w, 0.6},
@@ -177,7 +176,7 @@ Stroke dian(Vec2 from, Vec2 to, double w) {
     const double n = l.length;
     Stroke s{"dian", {}};
     append(s,
-           {l.at(0, 0, 0, 0.6), l.at(0.45 * n, -0.05 * n, 0.72 * w, 0.7),
+           {l.at(0, 0, 0, 0.6), l.at(0.04 * n, 0, 0.2 * w, 0.5), l.at(0.45 * n, -0.05 * n, 0.72 * w, 0.7),
             l.at(n - 0.5 * w, 0.0, 1.12 * w, 0.45, 0.03), l.at(n - 0.62 * w, 0.06 * w, 0.0, 0.5)});
     return s;
 }

@@ -109,7 +109,7 @@ Point blend(const Point& a, const Point& b, double t) {
 
 namespace {
 
-/// Least squares by Gauss and Newton with Levenberg's damping, in steps measured by `first`: far
+/// Least squares by Gauss and Newton with Marquardt's damping, in steps measured by `first`: far
 /// quicker than the simplex where the valley is smooth. From the second step on the worse columns
 /// weigh more, as they do in the cost. `fit_at` gives the Fit of a point.
 template <class FitAt>
@@ -151,7 +151,7 @@ Vertex least_squares(const Point& begin, int budget, const FitAt& fit_at) {
         for (int attempt = 0; attempt < 4 && !better && budget > 0; ++attempt, --budget) {
             Eigen::Matrix<double, kN, kN> damped = normal;
             const double scale = normal.trace() / static_cast<double>(kN);
-            for (std::size_t i = 0; i < kN; ++i) damped(i, i) += damping * scale;
+            for (std::size_t i = 0; i < kN; ++i) damped(i, i) += damping * std::max(normal(i, i), 0.02 * scale);
             const Eigen::Matrix<double, kN, 1> step = -damped.llt().solve(slope);
             Point next = x;
             for (std::size_t i = 0; i < kN; ++i) next[i] += std::clamp(step[i], -3.0, 3.0) * kFree[i].first;

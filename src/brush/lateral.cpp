@@ -32,6 +32,19 @@ double tributary(const std::vector<double>& at, std::size_t i) {
     return 0.5 * (at[std::min(i + 1, n)] - at[i > 0 ? i - 1 : 0]);
 }
 
+/// Taper of a node over that at the root.
+double taper(const LateralSprings& s, std::size_t i) { return s.taper.empty() ? 1 : s.taper[i] / s.taper[0]; }
+
+/// λ at a node.
+double reach(const LateralSprings& s, std::size_t i) { return s.reach * std::sqrt(taper(s, i)); }
+
+/// 2 κ0 λ² r² / h of the slope spring between nodes i - 1 and i.
+double slope_spring(const std::vector<double>& at, const LateralSprings& s, std::size_t i) {
+    const double a = taper(s, i - 1), b = taper(s, i);
+    const double from = a * reach(s, i - 1), to = b * reach(s, i);
+    return s.bend * (from * from + to * to) / (at[i] - at[i - 1]);
+}
+
 /// Lower band of a symmetric matrix: [i][d] is the element (i, i - d).
 using Band = std::vector<std::array<double, 3>>;
 
@@ -56,14 +69,20 @@ void solve_band(Band& m, std::vector<double>& x) {
     }
 }
 
-/// Stretch and bend springs; the root's row holds it at 0.
+/// Stretch and bend springs of v = u over the taper; the root's row holds it at 0.
 Band spring_band(const std::vector<double>& at, const LateralSprings& s) {
     Band m(at.size(), {0, 0, 0});
     const std::vector<Curvature> c = curvatures(at);
-    const double bend = s.bend * std::pow(s.reach, 4);
     for (std::size_t i = 0; i < at.size(); ++i) {
-        m[i][0] += s.stretch * tributary(at, i);
-        const double k = bend * c[i].weight;
+        const double r = taper(s, i);
+        m[i][0] += s.stretch * tributary(at, i) * r * r;
+        if (i > 0) {
+            const double slope = slope_spring(at, s, i);
+            m[i - 1][0] += slope;
+            m[i][0] += slope;
+            m[i][1] -= slope;
+        }
+        const double k = s.bend * std::pow(reach(s, i), 4) * c[i].weight * r * r;
         m[i][0] += k * c[i].own * c[i].own;
         if (i + 1 == at.size()) continue;
         m[i + 1][0] += k * c[i].out * c[i].out;
@@ -91,15 +110,16 @@ std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSp
         Band m = free;
         u[0] = 0;
         for (std::size_t i = 1; i < count; ++i) {
-            const double w = tributary(at, i);
-            u[i] = w * side.push[i];
+            const double w = tributary(at, i), r = taper(s, i);
+            u[i] = w * side.push[i] * r;
             if (!held[i]) continue;
-            m[i][0] += s.wall * s.stretch * w;
-            u[i] += s.wall * s.stretch * w * side.clear[i];
+            m[i][0] += s.wall * s.stretch * w * r * r;
+            u[i] += s.wall * s.stretch * w * side.clear[i] * r;
         }
         solve_band(m, u);
         bool same = true;
         for (std::size_t i = 1; i < count; ++i) {
+            u[i] *= taper(s, i);
             const char now = u[i] > side.clear[i];
             same = same && now == held[i];
             held[i] = now;
@@ -114,19 +134,25 @@ LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings
     LateralEnergy out;
     out.gradient.assign(at.size(), 0);
     const std::vector<Curvature> c = curvatures(at);
-    const double bend = s.bend * std::pow(s.reach, 4);
+    const auto v = [&](std::size_t i) { return u[i] / taper(s, i); };
     for (std::size_t i = 0; i < at.size(); ++i) {
         const double w = tributary(at, i), over = std::max(0.0, u[i] - side.clear[i]);
         out.value += w * (0.5 * s.stretch * (u[i] * u[i] + s.wall * over * over) - side.push[i] * u[i]);
         out.gradient[i] += w * (s.stretch * (u[i] + s.wall * over) - side.push[i]);
+        const double inner = i > 0 ? v(i - 1) : 0, r = taper(s, i);
+        if (i > 0) {
+            const double pull = slope_spring(at, s, i) * (v(i) - inner);
+            out.value += 0.5 * pull * (v(i) - inner);
+            out.gradient[i - 1] -= pull / taper(s, i - 1);
+            out.gradient[i] += pull / r;
+        }
         if (i + 1 == at.size()) continue;
-        const double inner = i > 0 ? u[i - 1] : 0;
-        const double turn = c[i].in * inner + c[i].own * u[i] + c[i].out * u[i + 1];
-        const double force = bend * c[i].weight * turn;
+        const double turn = c[i].in * inner + c[i].own * v(i) + c[i].out * v(i + 1);
+        const double force = s.bend * std::pow(reach(s, i), 4) * c[i].weight * r * r * turn;
         out.value += 0.5 * force * turn;
-        if (i > 0) out.gradient[i - 1] += force * c[i].in;
-        out.gradient[i] += force * c[i].own;
-        out.gradient[i + 1] += force * c[i].out;
+        if (i > 0) out.gradient[i - 1] += force * c[i].in / taper(s, i - 1);
+        out.gradient[i] += force * c[i].own / r;
+        out.gradient[i + 1] += force * c[i].out / taper(s, i + 1);
     }
     out.gradient[0] = 0;
     return out;

@@ -8,11 +8,15 @@
 /// together), bend springs run along each row of them (the hairs' own stiffness), and what
 /// presses, bends or drags the tuft pushes them out. Their displacements u minimise
 ///
-///   E = Σ w_i [½ κ u_i² - q_i u_i + ½ κ_w ⟨u_i - c_i⟩²] + ½ κ0 λ⁴ Σ w_i (u''_i)²
+///   E = Σ w_i [½ κ u_i² - q_i u_i + ½ κ_w ⟨u_i - c_i⟩² + ½ κ0 r_i² (2 λ_i² v'² + λ_i⁴ v''²)_i],  v = u/r
 ///
-/// for each side on its own, u = u' = 0 at the ferrule, both free at the tip; a side node that
-/// meets a wall (c_i away) is pushed back by κ_w. Closed solve: banded Cholesky, repeated while
-/// the set of nodes at walls changes (at most kWallPasses).
+/// for each side on its own. Slope and bend springs along the rows are at rest where the rows
+/// keep the tuft's own taper r, so that a thin end goes on as flat as the hair before it and
+/// closes to its point; λ_i = λ √(r_i/r_0), for water draws a thin end together over a shorter
+/// way. In this proportion, with κ = κ0, their operator is κ (1 - λ² d²/dx²)² where r is even: a
+/// push at one node is felt over some λ and nowhere drawn in. u = u' = 0 at the ferrule, both free
+/// at the tip; a side node that meets a wall (c_i away) is pushed back by κ_w. Closed solve:
+/// banded Cholesky, repeated while the set of nodes at walls changes (at most kWallPasses).
 /// Source: Chu and Tai 2002, 4.1.1 and 4.2.2 (lateral nodes, stretch and bend springs).
 namespace tuft::brush {
 
@@ -21,8 +25,9 @@ inline constexpr int kWallPasses = 6;
 struct LateralSprings {
     double stretch = 1e4;     ///< κ, N/m²: force per length of tuft per displacement
     double bend = 1e4;        ///< κ0 of the bend springs
-    double reach = 2e-3;      ///< λ, m: how far along the tuft a push is felt where κ = κ0
+    double reach = 2e-3;      ///< λ at the ferrule, m: how far along the tuft a push is felt where κ = κ0
     double wall = 100;        ///< κ_w over κ
+    std::vector<double> taper;///< r > 0, [n+1], root first, any unit; or none: the same everywhere
 };
 
 /// One side's nodes, root first. [n+1] each.

@@ -25,9 +25,11 @@ struct Patch {
 
 constexpr int kFineSections = 12;  ///< between two nodes: 0.1 mm along the tuft
 
+/// How far the section reaches into the sheet; not positive where it does not touch.
+double overlap(const Section& s) { return std::hypot(s.a * s.e.z, s.b * s.m.z) - std::abs(s.centre.z); }
+
 void add_section(const Section& s, Patch& patch) {
     const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = std::hypot(ne, nm), z = s.centre.z;
-    // A section whose plane hardly cuts the sheet would smear its cut along the stroke.
     if (reach <= 0 || std::abs(z) > reach) return;
     const double middle = std::atan2(nm, ne), half = std::acos(-z / reach);
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
@@ -41,10 +43,32 @@ void add_section(const Section& s, Patch& patch) {
     patch.width = std::max(patch.width, hi - lo);
 }
 
+/// Where the skin between two sections leaves the sheet, so that the patch's ends move evenly
+/// with whatever moves the tuft, not from section to section.
+void add_meeting(const Section& in, const Section& out, double inside, double outside, Patch& patch) {
+    const double f = inside / (inside - outside);
+    const auto point = [](const Section& s) {
+        const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = std::hypot(ne, nm);
+        const double side = s.centre.z < 0 ? 1 : -1;
+        return reach > 0 ? s.centre + side * (s.a * ne / reach * s.e + s.b * nm / reach * s.m) : s.centre;
+    };
+    const Vec3 q = glm::mix(point(in), point(out), f);
+    patch.front = std::min(patch.front, q.x);
+    patch.back = std::max(patch.back, q.x);
+}
+
 Patch patch_of(const TuftState& state) {
     Patch patch;
     for (const Branch& branch : state.branches) {
-        for (const Section& s : refine_sections(branch.sections, kFineSections)) add_section(s, patch);
+        const std::vector<Section> fine = refine_sections(branch.sections, kFineSections);
+        double before = 0;
+        for (std::size_t i = 0; i < fine.size(); ++i) {
+            const double now = overlap(fine[i]);
+            add_section(fine[i], patch);
+            if (i > 0 && now > 0 && before <= 0) add_meeting(fine[i], fine[i - 1], now, before, patch);
+            if (i > 0 && now <= 0 && before > 0) add_meeting(fine[i - 1], fine[i], before, now, patch);
+            before = now;
+        }
     }
     return patch;
 }

@@ -80,7 +80,8 @@ std::vector<double> squash(const SectionInput& in) {
 }
 
 constexpr double kDry = 0.7;   ///< stretch springs of dry hair over those of wet hair
-constexpr double kReach = 0.05;  ///< of the length, λ of the side nodes' bend springs
+constexpr double kReach = 0.045; ///< of the length, λ of the side nodes
+constexpr double kFinest = 1e-5; ///< m, radius of a tuft's point at least
 constexpr double kSideDrag = 0.5;  ///< share of the friction across a section that its side nodes take
 constexpr double kLying = 0.6;  ///< height over b at which wet hair lies by its own weight
 
@@ -100,14 +101,18 @@ std::vector<double> lowering(const SectionInput& in, const std::vector<Section>&
         const rod::Obstacle& o = in.obstacles[i];
         const double z = glm::dot(s.centre - o.origin * in.preset.length, o.normal);
         const double r = in.spine.rest_radius[i], upright = std::abs(glm::dot(s.m, o.normal));
-        if (tail >= 0 && z >= r) {
+        double height = std::numeric_limits<double>::infinity();
+        if (tail >= 0) {
             // Comes to lie without a kink, so that the patch's end moves evenly with depth.
             const double lying = kLying * s.b * upright, h = z - tail - lying;
-            down[i] = std::max(0.0, z - lying - 0.5 * (h + std::hypot(h, s.b)));
-            continue;
+            height = std::min(z, lying + 0.5 * (h + std::hypot(h, s.b)));
         }
-        const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;
-        down[i] = z - std::max(0.0, z - near * (r - s.b) * upright);
+        if (z < r || tail < 0) {
+            const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;
+            height = std::max(0.0, std::min(height, z - near * (r - s.b) * upright));
+        }
+        down[i] = z - height;
+        if (z >= r && tail >= 0) continue;
         tail = z < r ? down[i] + film : -1;
     }
     return down;
@@ -142,9 +147,10 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
     const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * newton / p.force_limit);
     const std::vector<double> squashed = squash(in);
     const double wet = p.transverse_stiffness;
-    const LateralSprings springs{.stretch = wet * (kDry + (1 - kDry) * in.wetness),
-                                 .bend = wet,
-                                 .reach = kReach * p.length};
+    LateralSprings springs{.stretch = wet * (kDry + (1 - kDry) * in.wetness),
+                           .bend = wet,
+                           .reach = kReach * p.length};
+    for (const double r : in.spine.rest_radius) springs.taper.push_back(std::max(r, kFinest));
     std::vector<double> at(count, 0);
     LateralSide plus{std::vector<double>(count, 0),
                      std::vector<double>(count, std::numeric_limits<double>::infinity())};

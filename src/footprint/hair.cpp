@@ -11,11 +11,13 @@ namespace {
 
 constexpr double kClosing = 0.4;       // s_c
 constexpr double kFastHair = 0.7;      // v_c, m/s
-constexpr double kRolling = 6e-3;      // m of travel over which bristles roll off and on
+constexpr double kRolling = 12e-3;     // m of travel over which bristles roll off and on, longer than they touch
+constexpr double kOwnPhase = 64;       // of rolling: neighbours in readiness do not roll together
 constexpr double kRollingPart = 0.25;  // of the wetness at which they stop
 constexpr double kThinning = 0.1;      // wetness over which a bristle thins before it stops
 constexpr double kReach = 3;           // spacings that ink reaches at half wetness
 constexpr double kSameEnd = 0.01;      // of the length
+constexpr double kBeyond = 0.5;        // widest half width that the outermost hair's ink may reach further
 
 /// Height of a place over its section's centre.
 double rise(const Cut& cut, const Vec2& place) {
@@ -132,7 +134,7 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
         const brush::Bristle& b = *lower[i].bristle;
         const double wet = b.bundle < ink.wet.size() ? ink.wet[b.bundle] : 1;
         const double turn = roll(hash_bits(bundles.seed, 1000 + b.bundle),
-                                 ink.travel / kRolling + 4 * static_cast<double>(b.readiness));
+                                 ink.travel / kRolling + kOwnPhase * static_cast<double>(b.readiness));
         const double stops = (1 - kThinning) * ((1 - kRollingPart) * (1 - static_cast<double>(b.readiness)) + kRollingPart * (0.5 + 0.5 * turn));
         const double active = std::clamp((wet - stops) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;
@@ -177,16 +179,20 @@ void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::s
         widest = std::max(widest, trail.cuts[at[k]].a);
     }
     for (const Strand& strand : strands) {
-        const double lo = std::clamp(strand.lo, -1.5, 1.5), hi = std::clamp(strand.hi, -1.5, 1.5);
+        const double lo = std::clamp(strand.lo, -1.0, 1.0), hi = std::clamp(strand.hi, -1.0, 1.0);
         const double x = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
+        // What reaches beyond the section's sides does so by a length of its own, so that the sides
+        // close where sections end in a point.
+        const double beyond_lo = std::clamp(-1 - strand.lo, 0.0, kBeyond) * widest / cell;
+        const double beyond_hi = std::clamp(strand.hi - 1, 0.0, kBeyond) * widest / cell;
         Vec2 before{0}, step{0};
         double half_before = 0;
         bool had = false, first = true;
         for (std::size_t k = 0; k < at.size(); ++k) {
             const Cut& cut = trail.cuts[at[k]];
             if (trail.along[at[k]] > strand.end) continue;
-            const Vec2 here = (on_surface(cut, x) - zero) / cell;
-            const double h = half * cut.a / cell;
+            const Vec2 here = (on_surface(cut, x) - zero) / cell + 0.5 * (beyond_hi - beyond_lo) * across[k];
+            const double h = half * cut.a / cell + 0.5 * (beyond_hi + beyond_lo);
             if (had) {
                 step = here - before;
                 const Vec2 direction = glm::length(step) > 1e-9 ? glm::normalize(step) : Vec2{0};
@@ -261,9 +267,10 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
     std::vector<Lower> lower;
     const auto draw = [&](const Trail& trail, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
-        std::size_t widest = begin;
-        for (std::size_t i = begin; i < end; ++i)
-            if (trail.cuts[i].a > trail.cuts[widest].a) widest = i;
+        // The one nearest to the root of those as wide: splayed tips are as wide, but without height.
+        std::size_t widest = end - 1;
+        for (std::size_t i = end - 1; i-- > begin;)
+            if (trail.cuts[i].a > (1 + 1e-6) * trail.cuts[widest].a) widest = i;
         lower.clear();
         for (std::size_t k = 0; k < places.size(); ++k) {
             const Vec2* at = places[k].at(trail, widest);

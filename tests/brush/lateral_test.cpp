@@ -28,11 +28,19 @@ LateralSide pushed(const std::vector<double>& at, double force) {
     return side;
 }
 
+/// Radii of a tuft that ends in a point.
+std::vector<double> pointed(const std::vector<double>& at) {
+    std::vector<double> r;
+    for (const double x : at) r.push_back(3.5e-3 * std::max(0.02, 1 - x / at.back()));
+    return r;
+}
+
 TEST(Lateral, SolutionIsTheMinimumOfTheSpringsEnergy) {
     Random random(5);
     const std::vector<double> at = nodes(16);
-    const LateralSprings springs{2e4, 1.5e4, 2.5e-3, 100};
+    LateralSprings springs{2e4, 1.5e4, 2.5e-3, 100, {}};
     for (int trial = 0; trial < 20; ++trial) {
+        if (trial == 10) springs.taper = pointed(at);
         LateralSide side = pushed(at, 0);
         for (double& q : side.push) q = random.uniform(-30, 60);
         if (trial % 2 == 1) {
@@ -53,7 +61,7 @@ TEST(Lateral, SolutionIsTheMinimumOfTheSpringsEnergy) {
 TEST(Lateral, GradientMatchesFiniteDifferences) {
     Random random(7);
     const std::vector<double> at = nodes(12);
-    const LateralSprings springs{2e4, 1.5e4, 2.5e-3, 100};
+    const LateralSprings springs{2e4, 1.5e4, 2.5e-3, 100, pointed(at)};
     LateralSide side = pushed(at, 20);
     side.clear[6] = 1e-4;
     std::vector<double> u(at.size(), 0);
@@ -71,34 +79,62 @@ TEST(Lateral, GradientMatchesFiniteDifferences) {
     }
 }
 
-TEST(Lateral, AnEvenPushFollowsTheBeamOnAnElasticFoundation) {
-    // κ u + κ λ⁴ u'''' = q with u = u' = 0 at one end of a long beam:
-    // u = q/κ (1 - e^{-s} (cos s + sin s)), s = x / (√2 λ).
+TEST(Lateral, AnEvenPushFollowsTheClosedForm) {
+    // κ (1 - λ² d²/dx²)² u = q with u = u' = 0 at one end of a long row: u = q/κ (1 - (1 + s) e^{-s}), s = x / λ.
     const std::vector<double> at = nodes(64);
-    const LateralSprings springs{1e4, 1e4, 2e-3, 100};
+    const LateralSprings springs{1e4, 1e4, 2e-3, 100, {}};
     const std::vector<double> u = solve_lateral(at, springs, pushed(at, 10));
     for (std::size_t i = 1; i < u.size(); ++i) {
-        const double s = at[i] / (std::sqrt(2.0) * springs.reach);
-        const double exact = 1e-3 * (1 - std::exp(-s) * (std::cos(s) + std::sin(s)));
-        EXPECT_NEAR(u[i], exact, 0.015e-3) << i;  // second order in steps of a third of λ
+        const double s = at[i] / springs.reach;
+        EXPECT_NEAR(u[i], 1e-3 * (1 - (1 + s) * std::exp(-s)), 0.015e-3) << i;  // second order in steps of a third of λ
+    }
+}
+
+TEST(Lateral, APushOutwardsDrawsNothingIn) {
+    const std::vector<double> at = nodes(24);
+    LateralSprings springs{1e4, 1e4, 2e-3, 100, {}};
+    for (const bool taper : {false, true}) {
+        if (taper) springs.taper = pointed(at);
+        for (std::size_t node = 1; node < at.size(); ++node) {
+            LateralSide side = pushed(at, 0);
+            side.push[node] = 50;
+            const std::vector<double> u = solve_lateral(at, springs, side);
+            // Up to the error of second differences where nodes lie a third of λ apart.
+            for (std::size_t i = 1; i < u.size(); ++i) EXPECT_GT(u[i], -1e-3 * u[node]) << taper << " " << node << " " << i;
+        }
     }
 }
 
 TEST(Lateral, NeighboursSmoothAPushAtOneNode) {
     const std::vector<double> at = nodes(16);
-    const LateralSprings springs{2e4, 2e4, 3e-3, 100};
+    const LateralSprings springs{2e4, 2e4, 3e-3, 100, {}};
     LateralSide side = pushed(at, 0);
     side.push[8] = 100;
     const std::vector<double> u = solve_lateral(at, springs, side);
     EXPECT_GT(u[7], 0.4 * u[8]);
     EXPECT_GT(u[9], 0.4 * u[8]);
     EXPECT_LT(u[8], 100 / springs.stretch);
-    EXPECT_LT(std::abs(u[15]), 0.1 * u[8]);
+    // (1 + s) e^{-s} at s = 4.2, and twice that at a free end.
+    EXPECT_NEAR(u[15], 0.15 * u[8], 0.06 * u[8]);
+}
+
+TEST(Lateral, AnEndBeyondThePushIsNoThickerThanTheHairBeforeIt) {
+    // Its height is r²/a with a = r + u, for a tuft pressed up to 5 mm from its point.
+    const std::vector<double> at = nodes(32);
+    const std::vector<double> r = pointed(at);
+    LateralSide side = pushed(at, 0);
+    for (std::size_t i = 8; at[i] < 0.027; ++i) side.push[i] = 1e4 * 1.8 * r[i];
+    const LateralSprings springs{1e4, 1e4, 2.1e-3, 100, r};
+    const std::vector<double> u = solve_lateral(at, springs, side);
+    for (std::size_t i = 20; i < u.size(); ++i) {
+        EXPECT_GT(u[i], -0.05 * r[i]) << i;
+        EXPECT_LT(r[i] * r[i] / (r[i] + u[i]), r[i - 1] * r[i - 1] / (r[i - 1] + u[i - 1]) + 1e-5) << i;
+    }
 }
 
 TEST(Lateral, AWallHoldsTheSideThatMeetsIt) {
     const std::vector<double> at = nodes(16);
-    const LateralSprings springs{2e4, 2e4, 2e-3, 100};
+    const LateralSprings springs{2e4, 2e4, 2e-3, 100, {}};
     LateralSide open = pushed(at, 40), walled = open;
     for (std::size_t i = 6; i < 10; ++i) walled.clear[i] = 5e-4;
     const std::vector<double> u = solve_lateral(at, springs, open), v = solve_lateral(at, springs, walled);

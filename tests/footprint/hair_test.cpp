@@ -77,6 +77,27 @@ TEST(Hair, LessInkCoversLess) {
     EXPECT_EQ(area_of(marks(pressed().tuft.bundles, 0)), 0);
 }
 
+TEST(Hair, SplayedHairGivesInkFromItsWholeLowerHalf) {
+    // A splayed tip is as wide as the belly, but for round-off, and has no height: which bristles are
+    // the lower ones must not hang on which of them is taken, or on a touch of lean.
+    const Pressed& p = pressed();
+    const std::vector<double> wet(p.tuft.bundles.place.size(), 0.5);
+    const auto area = [&](double lean, double more) {
+        std::vector<Trail> leaning = p.trails;
+        splay(leaning, 1);
+        for (std::size_t i = 0; i < leaning[0].cuts.size(); ++i) {
+            Cut& cut = leaning[0].cuts[i];
+            cut.e.z += lean;
+            if (i < 4) cut.a *= 1 + more;
+        }
+        std::vector<Outline> outlines{outline_of(leaning[0], 20)};
+        return area_of(hair_marks(leaning, outlines, p.tuft.bundles, 1, {wet, 0}, kFlat, 0, kCell).footprint);
+    };
+    const double straight = area(0, 0);
+    for (const double lean : {-1e-4, 1e-4})
+        for (const double more : {-1e-12, 1e-12}) EXPECT_NEAR(area(lean, more), straight, 0.02 * straight) << lean << " " << more;
+}
+
 TEST(Hair, AnotherSeedDrawsOtherStreaksOfTheSameSum) {
     const brush::Preset& preset = pressed().tuft.preset;
     const Footprint a = marks(brush::make_bundles(preset, 1), 0.5), b = marks(brush::make_bundles(preset, 2), 0.5);
@@ -120,10 +141,14 @@ TEST(Hair, MirroredHairDrawsTheMirroredPicture) {
 }
 
 TEST(Hair, PartedBundlesLeaveGapsBetweenThem) {
-    brush::Bundles together = pressed().tuft.bundles, parted = together;
-    std::fill(parted.apart.begin(), parted.apart.end(), 1.0);
-    for (const double wet : {0.5, 0.8}) EXPECT_LT(area_of(marks(parted, wet)), area_of(marks(together, wet))) << wet;
-    EXPECT_EQ(marks(parted, 1).coverage, marks(together, 1).coverage) << "ink closes them";
+    for (const std::uint64_t seed : {11, 12, 13}) {
+        brush::Bundles together = brush::make_bundles(pressed().tuft.preset, seed), parted = together;
+        std::fill(parted.apart.begin(), parted.apart.end(), 1.0);
+        // From about 0.7 on the ink of a bundle reaches the next one.
+        for (const double wet : {0.3, 0.5})
+            EXPECT_LT(area_of(marks(parted, wet)), area_of(marks(together, wet))) << seed << " " << wet;
+        EXPECT_EQ(marks(parted, 1).coverage, marks(together, 1).coverage) << "ink closes them";
+    }
 }
 
 TEST(Hair, BristlesRollOffAndOnAsTheyAreDrawn) {

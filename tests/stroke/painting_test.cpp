@@ -148,7 +148,8 @@ TEST(Painting, TurningSheetAndHandTogetherKeepsTheWidth) {
     const Model model = sheet(turned);
     Painting there(model);
     there.paint(line("wolf-small", 4e-3, turned));
-    EXPECT_NEAR(middle_width(there, turned) / width, 1, 0.01);
+    // An edge that runs along a row of texels may count the row or not, by round-off.
+    EXPECT_NEAR(middle_width(there, turned), width, 0.75 * model.atlas.texel_size);
 }
 
 TEST(Painting, TheStrokeIsTheSameAtAnySamplingRate) {
