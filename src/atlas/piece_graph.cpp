@@ -305,6 +305,30 @@ TexelRef texel_near(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
     return best;
 }
 
+/// Tells pieces on which sides the surface ends.
+void find_open_borders(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                       std::vector<Piece>& pieces) {
+    constexpr double kSpacing = 4;  // texels: a quarter of a tile
+    constexpr double kMostSamples = 1e4;
+    for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            if (mesh.neighbours[3 * std::size_t{t} + k] != kNone) continue;
+            const Vec3 a = mesh.position(t, k), along = mesh.position(t, (k + 1) % 3) - a;
+            const Vec3 normal = glm::cross(along, mesh.position(t, (k + 2) % 3) - a);
+            const Vec3 out = glm::cross(along, normal);
+            const double length = glm::length(along), size = glm::length(out);
+            if (!(size > 0)) continue;
+            const double n = std::clamp(std::ceil(length / (kSpacing * map.texel_size)), 1.0, kMostSamples);
+            for (int i = 0; i < static_cast<int>(n); ++i) {
+                const TexelRef ref = texel_at(mesh, atlas, map, t, a + (i + 0.5) / n * along);
+                if (!ref.valid()) continue;
+                Piece& piece = pieces[map.piece_start[ref.slot] + map.tiles[ref.slot].piece[ref.texel]];
+                piece.outward += Vec3f(length / (n * size) * out);
+            }
+        }
+    }
+}
+
 }  // namespace
 
 TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
@@ -382,6 +406,7 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         }
     }
     store_edges(map, all, graph);
+    find_open_borders(mesh, atlas, map, graph.pieces);
     report(progress, "piece graph", 1);
     return graph;
 }

@@ -16,6 +16,8 @@ struct Piece {
     Vec3f normal{0, 0, 1};       ///< unit, of that texel
     Vec3f tangent{1, 0, 0};      ///< unit; the frame's b is normal × tangent
     float radius = 0;            ///< metres: no texel centre of the piece is further from `centre`
+    Vec3f outward{0};            ///< metres: unit vectors out over the open borders of the mesh
+                                 ///< that the piece lies on, times their lengths, summed
     float cone_cos = 1;          ///< smallest dot product of a texel's normal with `normal`
     std::uint32_t slot = kNone;  ///< tile, in the order of `TexelMap::tiles`
     std::uint32_t chart = 0;

@@ -19,6 +19,8 @@ constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // pieces that surely face
 constexpr float kUpwind = 0.2f;       // cosine to the source of neighbours that lead on
 constexpr float kNearSource = 0.5f;   // squared distance over hop below which hops are added up
 constexpr float kLeastStretch = 0.6f; // and its inverse: beyond, the ways to both differ
+constexpr float kOverBorder = 0.3f;  // cosine of an open border's outward direction to the source
+constexpr double kShadow = 0.1;  // of its distance: what a piece behind an opening may be off by
 constexpr float kDetour = 2;  // piece radii round the picture in which ways to it are looked for
 
 enum : std::uint8_t { kOpen, kFinal, kOutside };
@@ -110,6 +112,29 @@ struct Walk {
         n.c = c / turn;
         n.s = s / turn;
         if (longer == 1) swing_in(std::span(hints.data(), count), piece, n);
+        n.lit = is_lit(std::span(hints.data(), count), piece, n);
+    }
+
+    /// Whether straight ways lead from the source to the piece, and no opening of the mesh lies
+    /// between: its own open border does not face the source, and the neighbour next to the way is lit.
+    bool is_lit(std::span<const Hint> hints, const atlas::Piece& piece, const PlanScratch::Node& n) const {
+        bool lit = true;
+        for (const Hint& h : hints) lit = lit && scratch.nodes[h.edge->to].lit;
+        if (lit && piece.outward == Vec3f{0}) return true;
+        const float d = std::sqrt(n.u * n.u + n.v * n.v);
+        const float sx = -(n.c * n.u + n.s * n.v), sy = -(n.c * n.v - n.s * n.u);
+        const Vec3f b = glm::cross(piece.normal, piece.tangent);
+        const Vec3f to_source = sx * piece.tangent + sy * b;
+        if (glm::dot(piece.outward, to_source) > kOverBorder * d * glm::length(piece.outward)) return false;
+        const Hint* nearest = nullptr;
+        float most = -2;
+        for (const Hint& h : hints) {
+            const float cos = (h.edge->hop_u * sx + h.edge->hop_v * sy) / (d * std::sqrt(h.hop2));
+            if (!(cos > most)) continue;
+            most = cos;
+            nearest = &h;
+        }
+        return !nearest || scratch.nodes[nearest->edge->to].lit;
     }
 
     /// Carries distance and angle on from two settled neighbours with the source between them
@@ -342,7 +367,9 @@ void list_pieces(const atlas::PieceGraph& graph, const Footprint& footprint, con
             f.full = piece.cone_cos > kSureCos && glm::dot(piece.normal, normal) > kSureNormal &&
                      cover == Cover::full;
         }
-        jobs.discrepancy = std::max(jobs.discrepancy, apart);
+        // Behind an opening the walk itself is in doubt: it went round.
+        if (at.lit || apart > kShadow * static_cast<double>(glm::length(Vec2f{at.u, at.v})))
+            jobs.discrepancy = std::max(jobs.discrepancy, apart);
         if (jobs.tiles.empty() || jobs.tiles.back().slot != piece.slot)
             jobs.tiles.push_back({piece.slot, static_cast<std::uint32_t>(jobs.frames.size()), 0});
         ++jobs.tiles.back().count;

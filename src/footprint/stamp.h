@@ -102,6 +102,7 @@ struct PlanScratch {
         std::uint8_t state = 0;
         float u = 0, v = 0, c = 1, s = 0, key = 0;
         float stretch = 1;  ///< of the map across the radial direction
+        bool lit = true;    ///< straight ways lead here from the origin
     };
     std::uint32_t epoch = 0;
     std::vector<Node> nodes;

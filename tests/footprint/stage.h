@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "../atlas/analytic_surfaces.h"
 #include "atlas/log_map.h"
 #include "footprint/stamp.h"
 
@@ -31,6 +34,96 @@ inline Vec2 place_of(const atlas::TexelMap& map, const StampJobs& jobs, const Fo
         }
     }
     return Vec2{NAN};
+}
+
+/// A surface with its maps, and stamps on it.
+struct Stage {
+    testing::Unwrapped u;
+    atlas::TexelMap map;
+    atlas::PieceGraph graph;
+    PlanScratch scratch;
+
+    explicit Stage(testing::Unwrapped unwrapped, atlas::TexelStore store = atlas::TexelStore::floats)
+        : u(std::move(unwrapped)) {
+        map = atlas::build_texel_map(u.mesh, u.atlas, {}, store);
+        graph = atlas::build_piece_graph(u.mesh, u.atlas, map);
+    }
+    Surface surface() const { return {u.mesh, u.atlas, map, graph}; }
+
+    /// Triangle whose middle is nearest to p, among those that do not face away from `n`.
+    std::uint32_t triangle_at(const Vec3& p, const Vec3& n = Vec3{0}) const {
+        std::uint32_t best = 0;
+        double distance = 1e9;
+        for (std::uint32_t t = 0; t < u.mesh.n_triangles(); ++t) {
+            const Vec3 c =
+                (u.mesh.position(t, 0) + u.mesh.position(t, 1) + u.mesh.position(t, 2)) / 3.0;
+            if (glm::dot(Vec3(u.mesh.corner_normals[3 * t]), n) < 0) continue;
+            if (glm::length(c - p) < distance) {
+                distance = glm::length(c - p);
+                best = t;
+            }
+        }
+        return best;
+    }
+
+    StampJobs plan(const Footprint& f, const Motion& motion = {},
+                   const StampOptions& options = {}) {
+        StampJobs jobs = plan_stamp(surface(), f, motion, options, scratch);
+        choose_mode(jobs, false, options);
+        return jobs;
+    }
+};
+
+/// Calls visit(slot, texel, exposure) for all texels with any.
+template <class Visit>
+void for_exposed(const Stage& stage, const StampJobs& jobs, Visit&& visit) {
+    std::array<float, atlas::kTileTexels> exposure;
+    for (const TileJob& job : jobs.tiles) {
+        evaluate(stage.map, jobs, job, exposure);
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            if (exposure[t] > 0) visit(job.slot, t, exposure[t]);
+        }
+    }
+}
+
+inline double deposit_area(const Stage& stage, const StampJobs& jobs) {
+    double sum = 0;
+    for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
+        sum += double(e) * stage.map.tiles[slot].area[t];
+    });
+    return sum;
+}
+
+inline Vec2 place_of(const Stage& stage, const StampJobs& jobs, const Footprint& f, std::uint32_t slot,
+              int t) {
+    return place_of(stage.map, jobs, f, slot, t);
+}
+
+inline double disc_area(const Footprint& f) {
+    double sum = 0;
+    for (const std::uint8_t c : f.coverage) sum += c / 255.0;
+    return sum * f.cell * f.cell;
+}
+
+struct Errors {
+    double mean = 0, max = 0;
+    std::size_t n = 0;
+};
+
+/// Error of (u, v) over the radius against the exact log map, over all exposed texels.
+template <class Exact>
+Errors errors(const Stage& stage, const StampJobs& jobs, const Footprint& f, double r,
+              Exact&& exact) {
+    Errors e;
+    for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float) {
+        const Vec2 truth = exact(Vec3(stage.map.position(slot, t)));
+        const double error = glm::length(place_of(stage, jobs, f, slot, t) - truth) / r;
+        e.mean += error;
+        e.max = std::max(e.max, error);
+        ++e.n;
+    });
+    e.mean /= std::max<double>(e.n, 1);
+    return e;
 }
 
 }  // namespace tuft::footprint
