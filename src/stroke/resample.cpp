@@ -39,16 +39,66 @@ Vec3 catmull_rom(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3,
     return (t2 - t) / (t2 - t1) * b1 + (t - t1) / (t2 - t1) * b2;
 }
 
-Pose between(const Pose& a, const Pose& b, const Vec3& before, const Vec3& after, double s) {
-    if (s <= 0) return a;
-    if (s >= 1) return b;
+/// Half the rotation vector that turns a into b.
+Vec3 half_turn(const Quat& a, const Quat& b) {
+    Quat d = glm::conjugate(a) * b;
+    if (d.w < 0) d = -d;
+    const Vec3 v{d.x, d.y, d.z};
+    const double sin = glm::length(v);
+    return sin > 0 ? std::atan2(sin, d.w) / sin * v : Vec3{0};
+}
+
+Quat turned(const Quat& q, const Vec3& half) {
+    const double angle = glm::length(half);
+    const Vec3 v = angle > 0 ? std::sin(angle) / angle * half : Vec3{0};
+    return q * Quat(std::cos(angle), v.x, v.y, v.z);
+}
+
+/// Half the turn in unit time at b on the way a, b, c with h0 and h1 between: that of the parabola.
+/// Within the span `h` it turns by no more than twice what both do: samples that follow each other
+/// at once with a jump between must not throw the rest about.
+Vec3 rate_at(const Quat& a, const Quat& b, const Quat& c, double h0, double h1, double h) {
+    const Vec3 first = half_turn(a, b), second = half_turn(b, c);
+    const Vec3 rate = (h1 / h0 * first + h0 / h1 * second) / (h0 + h1);
+    const double most = 2 * (glm::length(first) + glm::length(second)), turn = h * glm::length(rate);
+    return turn > most ? most / turn * rate : rate;
+}
+
+/// Cubic way from b to c in time, with the parabolas' rates at its ends: cumulative Bézier form.
+Quat rotation_between(const Pose& a, const Pose& b, const Pose& c, const Pose& d, double s) {
+    constexpr double kSame = 1e-15;  // of 1 − |cos| between rotations
+    const double h = c.time - b.time;
+    const bool turns = 1 - std::abs(glm::dot(b.rotation, c.rotation)) > kSame ||
+                       1 - std::abs(glm::dot(a.rotation, b.rotation)) > kSame ||
+                       1 - std::abs(glm::dot(c.rotation, d.rotation)) > kSame;
+    if (!(h > 0) || !turns) return glm::normalize(glm::slerp(b.rotation, c.rotation, s));
+    const double h0 = b.time - a.time, h1 = d.time - c.time;
+    const Vec3 straight = half_turn(b.rotation, c.rotation) / h;
+    const Vec3 from = h0 > 0 ? rate_at(a.rotation, b.rotation, c.rotation, h0, h, h) : straight;
+    const Vec3 to = h1 > 0 ? rate_at(b.rotation, c.rotation, d.rotation, h, h1, h) : straight;
+    const Quat p = turned(b.rotation, h / 3 * from), q = turned(c.rotation, -h / 3 * to);
+    const double r = 1 - s, w1 = 1 - r * r * r, w2 = s * s * (3 - 2 * s), w3 = s * s * s;
+    const Quat first = turned(b.rotation, w1 * (h / 3 * from));
+    return glm::normalize(turned(turned(first, w2 * half_turn(p, q)), w3 * (h / 3 * to)));
+}
+
+/// A pose between b and c, whose neighbours are a and d.
+Pose between(const Pose& a, const Pose& b, const Pose& c, const Pose& d, double s) {
+    if (s <= 0) return b;
+    if (s >= 1) return c;
     Pose p;
-    p.position = glm::distance(a.position, b.position) > 1e-9
-                     ? catmull_rom(before, a.position, b.position, after, s)
-                     : glm::mix(a.position, b.position, s);
-    p.rotation = glm::normalize(glm::slerp(a.rotation, b.rotation, s));
-    p.time = a.time + s * (b.time - a.time);
+    p.position = glm::distance(b.position, c.position) > 1e-9
+                     ? catmull_rom(a.position, b.position, c.position, d.position, s)
+                     : glm::mix(b.position, c.position, s);
+    p.rotation = rotation_between(a, b, c, d, s);
+    p.time = b.time + s * (c.time - b.time);
     return p;
+}
+
+/// The path beyond its end at b, where it came from a: straight on, at the same pace.
+Pose beyond(const Pose& a, const Pose& b) {
+    return {2.0 * b.position - a.position, turned(b.rotation, half_turn(a.rotation, b.rotation)),
+            2 * b.time - a.time};
 }
 
 }  // namespace
@@ -62,21 +112,21 @@ void Resampler::emit(const Pose& pose, std::vector<Pose>& out) {
     out.push_back(pose);
 }
 
-// The segment from window_[0] to window_[1], with its neighbours' positions.
-void Resampler::emit_segment(const Vec3& before, const Vec3& after, std::vector<Pose>& out) {
+// The segment from window_[0] to window_[1], with its neighbours.
+void Resampler::emit_segment(const Pose& before, const Pose& after, std::vector<Pose>& out) {
     const Pose& a = window_[0];
     const Pose& b = window_[1];
     Pose last = a;
     for (int k = 1; k <= kPieces; ++k) {
         const double s0 = static_cast<double>(k - 1) / kPieces;
         const double s1 = static_cast<double>(k) / kPieces;
-        const Pose next = between(a, b, before, after, s1);
+        const Pose next = between(before, a, b, after, s1);
         const double piece = pose_distance(last, next, options_);
         double used = 0;
         while (since_last_ + (piece - used) >= options_.step) {
             used += options_.step - since_last_;
             since_last_ = 0;
-            emit(between(a, b, before, after, s0 + (s1 - s0) * std::min(1.0, used / piece)), out);
+            emit(between(before, a, b, after, s0 + (s1 - s0) * std::min(1.0, used / piece)), out);
         }
         since_last_ += piece - used;
         last = next;
@@ -97,27 +147,27 @@ void Resampler::push(Pose sample, std::vector<Pose>& out) {
     // window_: [before] a b after; work on a–b once its follower is here.
     if (has_before_) {
         if (window_.size() < 4) return;
-        const Vec3 before = window_.front().position;
+        const Pose before = window_.front();
         window_.pop_front();
-        emit_segment(before, window_[2].position, out);
+        emit_segment(before, window_[2], out);
     } else {
         if (window_.size() < 3) return;
         // A path that starts or ends goes on straight beyond its end.
-        emit_segment(2.0 * window_[0].position - window_[1].position, window_[2].position, out);
+        emit_segment(beyond(window_[1], window_[0]), window_[2], out);
         has_before_ = true;
     }
 }
 
 void Resampler::finish(std::vector<Pose>& out) {
     if (window_.size() >= 2) {
-        Vec3 before;
+        Pose before;
         if (has_before_) {
-            before = window_.front().position;
+            before = window_.front();
             window_.pop_front();
         } else {
-            before = 2.0 * window_[0].position - window_[1].position;
+            before = beyond(window_[1], window_[0]);
         }
-        emit_segment(before, 2.0 * window_[1].position - window_[0].position, out);
+        emit_segment(before, beyond(window_[0], window_[1]), out);
         // The end itself, unless a step fell on it.
         if (since_last_ > 1e-9 * options_.step) emit(window_.back(), out);
     }

@@ -20,7 +20,8 @@ struct ResampleOptions {
 ///
 /// Between samples the position follows a centripetal Catmull–Rom spline (Catmull and
 /// Rom 1974; Yuksel et al. 2011: no cusps, no self-crossings within a segment) and the
-/// rotation the shortest arc. Length is measured in the space of poses,
+/// rotation a cumulative cubic in time (Kim, Kim and Shin 1995) with the rates of the parabolas
+/// through three samples, so that both are third-order exact. Length is measured in the space of poses,
 /// ds² = |dx|² + (lever dφ)² + (drift dt)², so the result is the same for any rate at
 /// which the device sampled the same motion, and the same whether the samples came one by
 /// one or all at once. The spline looks one sample ahead. Samples whose time falls are
@@ -35,7 +36,7 @@ class Resampler {
     void finish(std::vector<brush::Pose>& out);
 
   private:
-    void emit_segment(const Vec3& before, const Vec3& after, std::vector<brush::Pose>& out);
+    void emit_segment(const brush::Pose& before, const brush::Pose& after, std::vector<brush::Pose>& out);
     void emit(const brush::Pose& pose, std::vector<brush::Pose>& out);
 
     ResampleOptions options_;

@@ -51,6 +51,62 @@ TEST(Resample, SplineConvergesToTheMotionWithTheThirdPowerOfTheSampling) {
     EXPECT_GT(error(20) / error(40), 6.0);  // third order or better: 8, with room for the end effects
 }
 
+TEST(Resample, RotationsConvergeToTheMotionWithTheThirdPowerOfTheSampling) {
+    // Turns about two axes at once, as a hand tilts and twists.
+    const auto motion = [](double t) {
+        Pose p;
+        p.time = t;
+        p.position = {0.05 * t, 0, 0};
+        p.rotation = glm::angleAxis(0.4 * std::sin(7 * t), Vec3{0, 1, 0}) *
+                     glm::angleAxis(0.8 * std::cos(5 * t), Vec3{0, 0, 1});
+        return p;
+    };
+    const auto error = [&](int samples) {
+        std::vector<Pose> raw;
+        for (int i = 0; i < samples; ++i) raw.push_back(motion(double(i) / (samples - 1)));
+        double worst = 0;
+        for (const Pose& p : resample(raw, {.step = 1e-4, .drift = 0})) {
+            if (p.time < 0.2 || p.time > 0.8) continue;  // the ends go on at an even pace
+            const Quat d = glm::conjugate(p.rotation) * motion(p.time).rotation;
+            worst = std::max(worst, 2 * glm::length(Vec3{d.x, d.y, d.z}));
+        }
+        return worst;
+    };
+    EXPECT_GT(error(20) / error(40), 6.0);  // third order or better: 8
+    EXPECT_LT(error(40), 2e-4);
+}
+
+TEST(Resample, ATurnAtAnEvenPaceIsKept) {
+    std::vector<Pose> raw(5);
+    const Vec3 axis = glm::normalize(Vec3{1, 2, 3});
+    const double times[] = {0, 0.1, 0.15, 0.4, 0.5};
+    for (int i = 0; i < 5; ++i) {
+        raw[i].time = times[i];
+        raw[i].rotation = glm::angleAxis(3 * times[i], axis);
+        if (i == 2) raw[i].rotation = -raw[i].rotation;  // the same rotation
+    }
+    for (const Pose& p : resample(raw, {.step = 1e-3, .lever = 0.02, .drift = 0})) {
+        const Quat d = glm::conjugate(p.rotation) * glm::angleAxis(3 * p.time, axis);
+        EXPECT_LT(glm::length(Vec3{d.x, d.y, d.z}), 1e-12);
+    }
+}
+
+TEST(Resample, ASuddenTurnDoesNotThrowTheRestAbout) {
+    // A device that reports a jump within a microsecond, and holds still before and after.
+    std::vector<Pose> raw(4);
+    const double times[] = {0, 0.1, 0.100001, 0.2};
+    for (int i = 0; i < 4; ++i) {
+        raw[i].time = times[i];
+        raw[i].position = {0.01 * i, 0, 0};
+        raw[i].rotation = glm::angleAxis(i < 2 ? 0.0 : 0.3, Vec3{0, 1, 0});
+    }
+    for (const Pose& p : resample(raw, {.step = 1e-4})) {
+        const double angle = 2 * std::atan2(p.rotation.y, p.rotation.w);
+        EXPECT_GT(angle, -0.1);  // a third of the jump: a cubic with end rates of up to twice it
+        EXPECT_LT(angle, 0.4);
+    }
+}
+
 TEST(Resample, DoesNotDependOnHowSamplesArrive) {
     const std::vector<Pose> raw = circle(33);
     const ResampleOptions o{.step = 7e-5};
