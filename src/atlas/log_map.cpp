@@ -8,14 +8,10 @@ Vec2 log_map(const Frame& frame, const Vec3& p, const Vec3& m) {
     const Vec3 d = p - frame.origin;
     const double c = glm::dot(m, frame.n);
     const double md = glm::dot(m, d), nd = glm::dot(frame.n, d);
-    const double x = 1 - c, inverse = 1 / (1 + c);
+    const double x = 1 - c;
     double series = kLogMapSeries.back();
     for (std::size_t i = kLogMapSeries.size() - 1; i-- > 0;) series = series * x + kLogMapSeries[i];
-    const double k = series * inverse;
-    const double a = k * (md - c * nd);
-    const double far = nd - c * md;
-    const double g = far * inverse + md + k * far;
-    const double h = 0.5 * (a - g);
+    const double h = 0.5 * (series * (md - nd) - (md + nd) / (1 + c));
     return {glm::dot(d, frame.t) + h * glm::dot(m, frame.t),
             glm::dot(d, frame.b) + h * glm::dot(m, frame.b)};
 }

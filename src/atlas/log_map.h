@@ -21,7 +21,7 @@ inline constexpr double kLogMapMinCos = -0.35;
 /// frame.t and frame.b as walked along the surface from frame.origin:
 ///   d = p − p0, c = m·n, a = K (m·d − c n·d),
 ///   g = (n·d − c m·d)/(1 + c) + m·d + K (n·d − c m·d),
-///   (u, v) = (d·t, d·b) + ½ (a − g) (m·t, m·b).
+///   (u, v) = (d·t, d·b) + ½ (a − g) (m·t, m·b), a − g = (1 + c) K (m·d − n·d) − (m·d + n·d)/(1 + c).
 /// The mean of the curvature-corrected tangent projections from both ends. Exact
 /// (to the series) on planes, spheres and circular cylinders, third-order exact on
 /// any smooth surface; wrong across creases. Precondition: c > kLogMapMinCos.

@@ -33,37 +33,39 @@ struct Rows {
     int begin, end;  ///< texels
 };
 
-/// Texel → picture, in cells, for the texels that are `mine`.
+/// Texel → picture, in cells, for the texels that are `mine`; see `atlas::log_map` for the formula.
+template <bool plane>
 [[gnu::always_inline]] inline void map_texels(const TexelShape& shape, const PieceFrame& f, Rows rows,
-                                              bool plane, const std::int32_t* __restrict mine,
+                                              const std::int32_t* __restrict mine,
                                               float* __restrict fu, float* __restrict fv) {
     const float ox = f.origin[0], oy = f.origin[1], oz = f.origin[2];
     const float nx = f.normal[0], ny = f.normal[1], nz = f.normal[2];
     const float ux = f.tu[0], uy = f.tu[1], uz = f.tu[2], u0 = f.u0;
     const float vx = f.tv[0], vy = f.tv[1], vz = f.tv[2], v0 = f.v0;
     constexpr auto& q = atlas::kLogMapSeries;
-    constexpr float q0 = float(q[0]), q1 = float(q[1]), q2 = float(q[2]), q3 = float(q[3]);
-    constexpr float q4 = float(q[4]), q5 = float(q[5]), q6 = float(q[6]), q7 = float(q[7]);
+    constexpr float q0 = float(0.5 * q[0]), q1 = float(0.5 * q[1]), q2 = float(0.5 * q[2]);
+    constexpr float q3 = float(0.5 * q[3]), q4 = float(0.5 * q[4]), q5 = float(0.5 * q[5]);
+    constexpr float q6 = float(0.5 * q[6]), q7 = float(0.5 * q[7]);
     constexpr float least_cos = float(atlas::kLogMapMinCos);
-    const float on_plane = plane ? 1.0f : 0.0f;
     const float *px = shape.px.data(), *py = shape.py.data(), *pz = shape.pz.data();
     const float *mx = shape.nx.data(), *my = shape.ny.data(), *mz = shape.nz.data();
 #pragma omp simd
     for (int t = rows.begin; t < rows.end; ++t) {
         const float dx = px[t] - ox, dy = py[t] - oy, dz = pz[t] - oz;
         const float c = mx[t] * nx + my[t] * ny + mz[t] * nz;
-        const float md = mx[t] * dx + my[t] * dy + mz[t] * dz;
         const float nd = nx * dx + ny * dy + nz * dz;
         const float inside = c > least_cos ? c : 0.0f;
-        const float x = 1 - inside, inverse = 1 / (1 + inside);
-        const float k =
-            (((((((q7 * x + q6) * x + q5) * x + q4) * x + q3) * x + q2) * x + q1) * x + q0) *
-            inverse;
-        const float far = nd - inside * md;
-        const float a = k * (md - inside * nd);
-        const float g = far * inverse + md + k * far;
-        const float slope = inside > 0.05f ? inside : 0.05f;
-        const float h = on_plane != 0.0f ? -nd / slope : 0.5f * (a - g);
+        float h;
+        if constexpr (plane) {
+            const float slope = inside > 0.05f ? inside : 0.05f;
+            h = -nd / slope;
+        } else {
+            const float md = mx[t] * dx + my[t] * dy + mz[t] * dz;
+            const float x = 1 - inside;
+            const float half_series =
+                ((((((q7 * x + q6) * x + q5) * x + q4) * x + q3) * x + q2) * x + q1) * x + q0;
+            h = half_series * (md - nd) - (md + nd) / (2 + 2 * inside);
+        }
         const float u =
             u0 + (dx * ux + dy * uy + dz * uz) + h * (mx[t] * ux + my[t] * uy + mz[t] * uz);
         const float v =
@@ -72,6 +74,13 @@ struct Rows {
         fu[t] = seen ? u : fu[t];
         fv[t] = seen ? v : fv[t];
     }
+}
+
+[[gnu::always_inline]] inline void map_texels(const TexelShape& shape, const PieceFrame& f, Rows rows,
+                                              bool plane, const std::int32_t* __restrict mine,
+                                              float* __restrict fu, float* __restrict fv) {
+    if (plane) map_texels<true>(shape, f, rows, mine, fu, fv);
+    else map_texels<false>(shape, f, rows, mine, fu, fv);
 }
 
 /// Adds one to `mine` at the texels of a piece.
