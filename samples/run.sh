@@ -32,6 +32,9 @@ say "stroke sheet"
 mkdir -p "$out/stroke-sheet"
 "$tuft" export "$out/stroke-sheet.tuft" -o "$out/stroke-sheet/base-colour.png"
 
+say "brush"
+"$tuft" brush goat-medium --picture "$out/brush.png" > "$out/brush.txt"
+
 say "colour chart"
 build/release/samples/chart/tuft-chart "$out/colour-chart.png"
 

@@ -115,6 +115,31 @@ struct Stroke {
     std::vector<Vec2> points;
 };
 
+/// Small letters: two digits to a point, x and y + 2, a space between strokes.
+std::vector<Stroke> letter(char c) {
+    static constexpr const char* kLetters[26] = {
+        "361605031232 3632", "0802 0516263533221203", "3526160503122233", "3832 3526160503122233",
+        "043435261605031232", "38281712 0636", "36312000 3526160503122233", "0802 0516263532",
+        "1612 1818", "262110 2828", "0802 3604 1532", "181322", "0602 0516263532",
+        "0602 0516263532", "160503122233352616", "0600 0516263533221203", "3630 3526160503122233",
+        "0602 051626", "3616051424332202", "18132232 0636", "0603122233 3632", "062246", "0612263246",
+        "0632 3602", "0622 4610", "06360232"};
+    std::vector<Stroke> out;
+    if (c == ',') return {{{{1.8, 0.3}, {1.2, -1.2}}}};
+    if (c < 'a' || c > 'z') return out;
+    out.emplace_back();
+    for (const char* at = kLetters[c - 'a']; *at != 0;) {
+        if (*at == ' ') {
+            out.emplace_back();
+            ++at;
+            continue;
+        }
+        out.back().points.push_back({at[0] - '0', at[1] - '0' - 2});
+        at += 2;
+    }
+    return out;
+}
+
 /// Strokes of a character on a grid 4 wide and 6 high, from the lower left corner.
 std::vector<Stroke> strokes_of(char c) {
     using P = std::vector<Vec2>;
@@ -133,11 +158,21 @@ std::vector<Stroke> strokes_of(char c) {
         case '-': return {{P{{0.6, 3}, {3.4, 3}}}};
         case 'm': return {{P{{0, 0}, {0, 4}}}, {P{{0, 3}, {0.9, 4}, {2, 3.4}, {2, 0}}}, {P{{2, 3}, {2.9, 4}, {4, 3.4}, {4, 0}}}};
         case 'N': return {{P{{0, 0}, {0, 6}, {4, 0}, {4, 6}}}};
-        default: return {};
+        default: return letter(c);
     }
 }
 
-constexpr double kAdvance = 5.8 / 6;  ///< of the size
+/// Of the size.
+double advance(char c) {
+    if (c == ' ' || c == '.' || c == ',') return 3.5 / 6;
+    double right = 4;
+    if (c >= 'a' && c <= 'z' && c != 'm') {
+        right = 0;
+        for (const Stroke& s : letter(c))
+            for (const Vec2& p : s.points) right = std::max(right, p.x);
+    }
+    return (right + 1.8) / 6;
+}
 
 }  // namespace
 
@@ -149,13 +184,13 @@ void write_text(Canvas& canvas, std::string_view text, const Vec2& at, double si
             for (Vec2& p : s.points) p = {x + p.x * unit, at.y - p.y * unit};
             stroke_line(canvas, s.points, {&line, 1}, colour);
         }
-        x += (c == ' ' || c == '.' ? 0.6 : 1) * kAdvance * size;
+        x += advance(c) * size;
     }
 }
 
 double text_width(std::string_view text, double size) {
     double x = 0;
-    for (const char c : text) x += (c == ' ' || c == '.' ? 0.6 : 1) * kAdvance * size;
+    for (const char c : text) x += advance(c) * size;
     return x;
 }
 

@@ -28,7 +28,7 @@ void fill_polygon(Canvas& canvas, std::span<const Vec2> points, const Vec3& colo
 void stroke_line(Canvas& canvas, std::span<const Vec2> points, std::span<const double> widths,
                  const Vec3& colour, double alpha = 1);
 
-/// Digits, '.', '-', space and the letters m, N in strokes; `at` is the lower left corner.
+/// Digits, '.', '-', ',', space, small letters and N in strokes; `at` is the left end of the base line.
 void write_text(Canvas& canvas, std::string_view text, const Vec2& at, double size,
                 const Vec3& colour);
 double text_width(std::string_view text, double size);

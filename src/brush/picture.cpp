@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
+#include <string>
 
-#include "brush/canvas.h"
-#include "brush/skin.h"
-#include "brush/tuft.h"
-#include "core/random.h"
+#include "brush/picture_tuft.h"
 #include "core/units.h"
 
 namespace tuft::brush {
@@ -16,194 +13,203 @@ namespace tuft::brush {
 namespace {
 
 constexpr double kPressings[] = {0.02, 0.1, 0.2, 0.32, 0.45};  ///< depths over length
-constexpr int kHairs = 420;
-constexpr int kBetween = 5;   ///< sections drawn between two nodes
+constexpr int kColumns = 6;
+constexpr double kLean = 0.45;     ///< radians
+constexpr double kStride = 0.02;   ///< lengths between two samples
+constexpr double kSample = 0.01;   ///< s
 
-struct Pressed {
+struct Posed {
+    Tuft tuft;
     Pose pose;
     TuftState state;
     double depth = 0;
 };
 
-/// Pressed to `depth` while the hand moves to the left, then dragged until steady.
-Pressed press(const Preset& p, double depth, double tilt) {
-    Pressed out;
-    out.depth = depth;
-    Tuft tuft = make_tuft(p);
-    const ContactPlane sheet;
-    const double stride = 0.02 * p.length, tip = p.length * std::cos(tilt);
-    const int pressing = 20 + static_cast<int>(std::ceil(depth / stride));
-    out.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0});
-    for (int i = 0; i <= pressing + 150; ++i) {
-        const double part = std::min(1.0, static_cast<double>(i) / pressing);
-        out.pose.position = {-stride * i, 0, tip - depth * part};
-        out.state = step(tuft, out.pose, {&sheet, 1}, 0.01);
-    }
-    return out;
-}
+/// A hand over the sheet z = 0. `tilt` about y leans the holder ahead of a motion to the left,
+/// `slant` about x leans it across.
+struct Hand {
+    Posed now;
+    double lowest = 0;  ///< of the root, where the straight tip touches
 
-/// From metres beside the foot of the holder's axis to pixels of one column.
-struct View {
-    Vec2 foot{0};        ///< pixel of the axis' foot on the ground
-    double scale = 1;    ///< pixels per metre
-    double root_x = 0;   ///< metres
-    Vec2 operator()(const Vec3& p) const { return foot + scale * Vec2{p.x - root_x, -p.z}; }
-    Vec2 plan(const Vec3& p, double y0) const {
-        return {foot.x + scale * (p.x - root_x), y0 + scale * p.y};
+    Hand(const Preset& p, double tilt, double slant) {
+        now.tuft = make_tuft(p, 3);
+        now.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
+        lowest = p.length * -now.pose.axis().z;
+        now.pose.position = {0, 0, lowest};
+    }
+
+    void move(double dx, double height) {
+        const ContactPlane sheet;
+        now.pose.position += Vec3{dx, 0, 0};
+        now.pose.position.z = height;
+        now.state = step(now.tuft, now.pose, {&sheet, 1}, kSample);
+    }
+
+    /// Pressed to `depth` while the hand moves to the left, then dragged until steady.
+    void press(double depth) {
+        now.depth = depth;
+        const double stride = kStride * now.tuft.preset.length;
+        const int pressing = 20 + static_cast<int>(std::ceil(depth / stride));
+        for (int i = 0; i <= pressing + 150; ++i)
+            move(-stride, lowest - depth * std::min(1.0, static_cast<double>(i) / pressing));
+    }
+
+    void lift(double height) {
+        const double from = now.pose.position.z;
+        for (int i = 1; i <= 60; ++i) move(-0.2 * kStride * now.tuft.preset.length, from + (lowest + height - from) * i / 60);
     }
 };
 
-/// Half width of a section seen from the side, along the picture's normal to the spine.
-Vec2 half_side(const Section& s) {
-    const Vec2 t{s.tangent.x, s.tangent.z};
-    const double length = glm::length(t);
-    if (length < 1e-6) return {s.a, 0};
-    const Vec2 across = Vec2{-t.y, t.x} / length;
-    const double pe = s.a * (s.e.x * across.x + s.e.z * across.y);
-    const double pm = s.b * (s.m.x * across.x + s.m.z * across.y);
-    return std::hypot(pe, pm) * across;
-}
-
-void draw_hair(Canvas& canvas, const std::vector<Section>& fine, const View& view, std::uint64_t seed) {
-    Random random(seed);
-    std::vector<Vec2> line(fine.size());
-    std::vector<double> width(fine.size());
-    for (int hair = 0; hair < kHairs; ++hair) {
-        const double angle = random.uniform(0, 2 * std::numbers::pi), reach = std::sqrt(random.uniform());
-        const double end = random.uniform();
-        // Hairs of unequal length: the outer ones end before the tip.
-        const auto stop = static_cast<std::size_t>(end * end * 0.35 * reach * static_cast<double>(fine.size()));
-        line.clear();
-        width.clear();
-        double lit = 0;
-        for (std::size_t i = stop; i < fine.size(); ++i) {
-            const Section& s = fine[i];
-            const Vec3 p = s.centre + 0.97 * reach * (s.a * std::cos(angle) * s.e + s.b * std::sin(angle) * s.m);
-            line.push_back(view(p));
-            const double part = static_cast<double>(i - stop) / static_cast<double>(fine.size());
-            width.push_back(0.5 + 1.1 * std::min(1.0, 4 * part));
-            lit += s.m.z * std::sin(angle) - 0.35 * (s.m.x * std::sin(angle) + s.e.x * std::cos(angle));
-        }
-        if (line.size() < 2) continue;
-        lit /= static_cast<double>(line.size());
-        const double tone = std::clamp(0.45 + 0.4 * lit * reach + random.uniform(-0.22, 0.22), 0.0, 1.0);
-        const Vec3 colour = glm::mix(srgb(52, 36, 26), srgb(196, 158, 112), tone);
-        stroke_line(canvas, line, width, colour, 0.75);
-    }
-}
-
-void draw_tuft_side(Canvas& canvas, const Pressed& pressed, const View& view, std::uint64_t seed) {
-    for (const Branch& branch : pressed.state.branches) {
-        const std::vector<Section> fine = refine_sections(branch.sections, kBetween);
-        std::vector<Vec2> outline;
-        for (const Section& s : fine) {
-            const Vec2 h = half_side(s);
-            outline.push_back(view(s.centre + Vec3{h.x, 0, h.y}));
-        }
-        for (std::size_t i = fine.size(); i-- > 0;) {
-            const Vec2 h = half_side(fine[i]);
-            outline.push_back(view(fine[i].centre - Vec3{h.x, 0, h.y}));
-        }
-        fill_polygon(canvas, outline, srgb(88, 62, 44));
-        draw_hair(canvas, fine, view, seed);
-    }
-}
-
-void draw_holder(Canvas& canvas, const Pose& pose, const Preset& p, const View& view) {
-    const Vec3 up = -pose.axis(), side = pose.rotation * Vec3{1, 0, 0};
-    const double r = 1.12 * rest_radius(p, 0);
-    const auto bar = [&](double from, double to, double w0, double w1, const Vec3& dark, const Vec3& light) {
-        constexpr int kShades = 24;
-        for (int k = 0; k < kShades; ++k) {
-            const double a = -1 + 2.0 * k / kShades, b = -1 + 2.0 * (k + 1) / kShades, mid = 0.5 * (a + b);
-            const double shade = std::max(0.0, std::sqrt(1 - mid * mid) * 0.8 - 0.25 * mid);
-            const Vec2 quad[] = {view(pose.position + from * up + a * w0 * side),
-                                 view(pose.position + from * up + b * w0 * side),
-                                 view(pose.position + to * up + b * w1 * side),
-                                 view(pose.position + to * up + a * w1 * side)};
-            fill_polygon(canvas, quad, glm::mix(dark, light, shade));
-        }
-    };
-    bar(0.22 * p.length, 2.5 * p.length, 0.92 * r, 0.88 * r, srgb(96, 66, 34), srgb(222, 184, 120));
-    bar(0, 0.24 * p.length, r, 1.04 * r, srgb(28, 28, 32), srgb(150, 150, 158));
-}
-
-/// The contact patch seen from above, as ink.
-void draw_patch(Canvas& canvas, const Pressed& pressed, const View& view, double y0) {
-    for (const Branch& branch : pressed.state.branches) {
-        std::vector<Vec2> left, right;
-        for (const Section& s : refine_sections(branch.sections, kBetween)) {
-            const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = std::hypot(ne, nm);
-            if (reach <= 0 || std::abs(s.centre.z) > reach) continue;
-            const double middle = std::atan2(nm, ne), half = std::acos(-s.centre.z / reach);
-            Vec3 q[2];
-            for (int k = 0; k < 2; ++k) {
-                const double w = middle + (k == 0 ? -half : half);
-                q[k] = s.centre + s.a * std::cos(w) * s.e + s.b * std::sin(w) * s.m;
-            }
-            if (q[0].y > q[1].y) std::swap(q[0], q[1]);
-            left.push_back(view.plan(q[0], y0));
-            right.push_back(view.plan(q[1], y0));
-        }
-        left.insert(left.end(), right.rbegin(), right.rend());
-        fill_polygon(canvas, left, srgb(24, 22, 24));
-    }
-}
-
-void draw_scale(Canvas& canvas, const View& view, double x0, double x1, double y) {
-    const Vec3 ink = srgb(90, 86, 80);
-    const double thin = 1.2;
-    const double mm = view.scale * kMillimetre;
-    const int from = static_cast<int>(std::ceil((x0 - view.foot.x) / mm));
-    const int to = static_cast<int>(std::floor((x1 - view.foot.x) / mm));
-    for (int k = from; k <= to; ++k) {
-        const double x = view.foot.x + k * mm, tall = k % 10 == 0 ? 12 : k % 5 == 0 ? 8 : 4;
-        const Vec2 tick[] = {{x, y}, {x, y + tall}};
-        stroke_line(canvas, tick, {&thin, 1}, ink);
-        if (k % 10 == 0) {
-            const std::string text = std::to_string(std::abs(k));
-            write_text(canvas, text, {x - 0.5 * text_width(text, 9) + 1, y + 26}, 9, ink);
-        }
-    }
-}
-
 std::string label(const char* format, double value) {
-    char text[32];
+    char text[48];
     std::snprintf(text, sizeof text, format, value);
     return text;
 }
 
+/// Everything in pixels of a picture 2000 wide times `unit`.
+struct Sheet {
+    Canvas& canvas;
+    const Preset& preset;
+    double unit, width, column, scale;
+    Vec3 ink = srgb(50, 46, 42), faint = srgb(120, 114, 106);
+
+    void text(const std::string& words, Vec2 at, double size, const Vec3& colour) const {
+        write_text(canvas, words, at, size * unit, colour);
+    }
+    void centred(const std::string& words, double x, double y, double size, const Vec3& colour) const {
+        text(words, {x - 0.5 * text_width(words, size * unit), y}, size, colour);
+    }
+    void rule(double y) const {
+        const double thick = 2 * unit;
+        const Vec2 line[] = {{0, y}, {width, y}};
+        stroke_line(canvas, line, {&thick, 1}, srgb(70, 66, 60));
+    }
+};
+
+void draw_scale(const Sheet& sheet, const View& view, double x0, double x1) {
+    const Vec3 ink = srgb(90, 86, 80);
+    const double thin = 1.1 * sheet.unit, y = view.foot.y;
+    const double mm = view.scale * kMillimetre;
+    for (int k = static_cast<int>(std::ceil((x0 - view.foot.x) / mm)); k <= static_cast<int>(std::floor((x1 - view.foot.x) / mm)); ++k) {
+        const double x = view.foot.x + k * mm, tall = (k % 10 == 0 ? 11 : k % 5 == 0 ? 8 : 4) * sheet.unit;
+        const Vec2 tick[] = {{x, y}, {x, y + tall}};
+        stroke_line(sheet.canvas, tick, {&thin, 1}, ink);
+        if (k % 10 == 0) sheet.centred(std::to_string(std::abs(k)), x + sheet.unit, y + 24 * sheet.unit, 8.5, ink);
+    }
+}
+
+/// Paper and, from `ground` on, the sheet; what the row below drew into this one goes.
+void fill_ground(const Sheet& sheet, double top, double ground, double bottom) {
+    const Vec2 over[] = {{0, top}, {sheet.width, top}, {sheet.width, ground}, {0, ground}};
+    fill_polygon(sheet.canvas, over, srgb(246, 243, 236));
+    top = ground;
+    const Vec2 under[] = {{0, top}, {sheet.width, top}, {sheet.width, bottom}, {0, bottom}};
+    fill_polygon(sheet.canvas, under, srgb(233, 228, 216));
+}
+
+/// One row from the side; `top` to `top` + 535 units.
+void draw_row(const Sheet& sheet, double top, double tilt, const char* name) {
+    const double u = sheet.unit, ground = top + 370 * u, plan = ground + 84 * u;
+    fill_ground(sheet, top, ground, top + 535 * u);
+    const double length = sheet.preset.length;
+    for (int k = 0; k < kColumns; ++k) {
+        const bool lifted = k + 1 == kColumns;
+        Hand hand(sheet.preset, tilt, 0);
+        hand.press(kPressings[std::min(k, kColumns - 2)] * length);
+        if (lifted) hand.lift(0.12 * length);
+        const Posed& at = hand.now;
+        // The scale begins under the tuft's root; where the holder leans, it begins at its axis' foot.
+        const double foot = std::tan(tilt) * at.pose.position.z;
+        View view;
+        view.scale = sheet.scale;
+        view.origin = {at.pose.position.x + foot, 0, 0};
+        view.foot = {(k + 0.33) * sheet.column + 0.35 * sheet.scale * foot, ground};
+        draw_holder(sheet.canvas, at.pose, sheet.preset, view, 2.5 * length);
+        draw_tuft_hair(sheet.canvas, at.tuft, at.state, view);
+        draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
+        if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, view, plan);
+        const double x = (k + 0.5) * sheet.column, y = ground + 152 * u;
+        sheet.centred(lifted ? "lifted" : label("%.1f mm", at.depth / kMillimetre) + label("   %.2f N", at.state.normal_force), x, y, 12, sheet.ink);
+    }
+    sheet.rule(ground);
+    // Over the handles' bands, so that it can be read.
+    const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
+    fill_polygon(sheet.canvas, band, srgb(246, 243, 236));
+    sheet.text(name, {24 * u, top + 27 * u}, 14, sheet.ink);
+}
+
+/// The tips of a writer's craft, seen from behind and above.
+void draw_tips(const Sheet& sheet, double top) {
+    constexpr double kDown = 0.5;  // radians the viewer looks down
+    const double u = sheet.unit, length = sheet.preset.length, column = sheet.width / 4;
+    const double ground = top + 330 * u;
+    fill_ground(sheet, top, top + 200 * u, top + 540 * u);
+    for (int k = 0; k < 4; ++k) {
+        TuftLook look;
+        Hand hand(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0);
+        std::string name = "slanted tip, along one side";
+        if (k == 2) {
+            hand.now.tuft.ink_left = 0.05;
+            hand.now.tuft.wetness = 0.4;
+            hand.now.tuft.preset.split_factor = 3;  // the paper's: shipped hair parts later, in bundles
+            name = "split tip, short of ink";
+        } else if (k == 3) {
+            look.dry = true;
+            hand.now.tuft.wetness = 0;
+            for (double& apart : hand.now.tuft.bundles.apart) apart = 1;
+            name = "dry tip, in bundles";
+        }
+        hand.press((k == 0 ? 0.25 : k == 1 ? 0.25 : k == 2 ? 0.42 : 0.34) * length);
+        if (k == 1) {
+            for (int i = 0; i < 12; ++i) hand.move(kStride * length, hand.now.pose.position.z);
+            name = "reversed tip, pushed on";
+        }
+        const Posed& at = hand.now;
+        View view;
+        view.scale = 1.1 * sheet.scale;
+        view.origin = {at.pose.position.x, at.pose.position.y, 0};
+        // The hair trails to the right, towards the viewer's side.
+        view.right = glm::normalize(Vec3{0.55, 0.83, 0});
+        const Vec3 back = glm::cross(view.right, Vec3{0, 0, 1});
+        view.up = std::cos(kDown) * Vec3{0, 0, 1} - std::sin(kDown) * back;
+        if (k == 1) {
+            view.right = {1, 0, 0};
+            view.up = {0, std::sin(0.25), std::cos(0.25)};
+        }
+        // A slanted holder stands aside from where its tip is.
+        const double aside = view.scale * glm::dot(at.pose.axis(), view.right) * length;
+        view.foot = {(k + 0.47) * column - 0.5 * aside, ground - 60 * u};
+        draw_holder(sheet.canvas, at.pose, sheet.preset, view, 2.5 * length);
+        draw_tuft_hair(sheet.canvas, at.tuft, at.state, view, look);
+        View plan = view;
+        plan.foot.x = (k + 0.42) * column;
+        const std::vector<Section>& sections = at.state.branches.front().sections;
+        plan.origin.y = sections[sections.size() / 3].centre.y;
+        draw_patch(sheet.canvas, at.tuft, at.state, plan, top + 440 * u, look);
+        sheet.centred(name, (k + 0.5) * column, top + 522 * u, 12, sheet.ink);
+    }
+    const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
+    fill_polygon(sheet.canvas, band, srgb(246, 243, 236));
+    sheet.text("tips", {24 * u, top + 27 * u}, 14, sheet.ink);
+}
+
 }  // namespace
 
-Picture draw_tuft(const Preset& preset, const PictureOptions& options) {
-    const int width = std::clamp(options.width, 320, 8000), height = std::clamp(options.height, 180, 8000);
+Picture draw_tuft(const Preset& preset, int width) {
+    width = std::clamp(width, 320, 8000);
+    const double unit = width / 2000.0, row = 535 * unit, head = 54 * unit;
+    const int height = static_cast<int>(std::ceil(head + 4 * row));
     Canvas canvas(width, height, srgb(246, 243, 236));
-    constexpr int kColumns = std::size(kPressings);
     const double column = static_cast<double>(width) / kColumns;
-    const double ground = 0.72 * height, plan = 0.865 * height;
-    const double scale = std::min(0.56 * height / preset.length, 0.92 * column / (0.95 * preset.length));
-    const Vec2 under[] = {{0, ground}, {width * 1.0, ground}, {width * 1.0, height * 1.0}, {0, height * 1.0}};
-    fill_polygon(canvas, under, srgb(233, 228, 216));
-    for (int k = 0; k < kColumns; ++k) {
-        const Pressed pressed = press(preset, kPressings[k] * preset.length, options.tilt);
-        View view;
-        view.scale = scale;
-        view.foot = {(k + 0.28) * column, ground};
-        // The origin is the foot of the holder's axis; where the holder leans, it moves aside.
-        const double foot = std::tan(options.tilt) * pressed.pose.position.z;
-        view.root_x = pressed.pose.position.x + foot;
-        view.foot.x += 0.7 * scale * foot;
-        draw_holder(canvas, pressed.pose, preset, view);
-        draw_tuft_side(canvas, pressed, view, 7 + k);
-        draw_patch(canvas, pressed, view, plan);
-        draw_scale(canvas, view, (k + 0.02) * column, (k + 0.98) * column, ground);
-        const Vec3 ink = srgb(50, 46, 42);
-        write_text(canvas, label("%.1f mm", pressed.depth / kMillimetre), {(k + 0.12) * column, 0.96 * height}, 13, ink);
-        write_text(canvas, label("%.2f N", pressed.state.normal_force), {(k + 0.60) * column, 0.96 * height}, 13, ink);
-    }
-    const double thick = 2;
-    const Vec2 line[] = {{0, ground}, {width * 1.0, ground}};
-    stroke_line(canvas, line, {&thick, 1}, srgb(70, 66, 60));
+    const Sheet sheet{canvas, preset, unit, static_cast<double>(width), column, 0.92 * column / (1.3 * preset.length)};
+    draw_tips(sheet, head + 3 * row);
+    draw_row(sheet, head + 2 * row, -kLean, "leaning back, pushed");
+    draw_row(sheet, head + row, kLean, "leaning ahead, pulled");
+    draw_row(sheet, head, 0, "upright");
+    const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};
+    fill_polygon(canvas, band, srgb(246, 243, 236));
+    sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) + label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
+               {24 * unit, 36 * unit}, 18, sheet.ink);
     return {width, height, to_srgb(canvas)};
 }
 

@@ -13,13 +13,10 @@ struct Picture {
     std::vector<std::uint8_t> rgb;
 };
 
-struct PictureOptions {
-    int width = 1600, height = 900;
-    double tilt = 0;          ///< radians of the holder from upright, leaning against the drag
-};
-
-/// Side view of the tuft pressed to five depths and dragged to the left on a flat sheet,
-/// with hair, ground line and millimetre scale.
-Picture draw_tuft(const Preset& preset, const PictureOptions& options = {});
+/// The tuft on a flat sheet, hair by hair, with millimetre scale and what it touches. Three rows from
+/// the side: held upright, leaning ahead and leaning back, dragged to the left at five depths and
+/// lifted from the last. A fourth row from behind and above: a slanted tip, a tip turned round, a
+/// split one and a dry one. `width` in pixels, 320 to 8000; the height follows.
+Picture draw_tuft(const Preset& preset, int width = 2000);
 
 }  // namespace tuft::brush

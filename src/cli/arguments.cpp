@@ -339,7 +339,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     Brush brush;
     auto* b = app.add_subcommand("brush", "print a brush's query table, draw it, or fit one to measurements");
     b->add_option("NAME", brush.name, "brush name or .toml file; without it, the names are listed");
-    b->add_option("--picture", brush.picture, "draw the tuft at five loads (.png)");
+    b->add_option("--picture", brush.picture, "draw the tuft at five depths and three tilts, lifted, slanted, reversed, split and dry (.png)");
     b->add_option("--sweep-depth", brush.sweep_depth, "write line width over depth (.csv)");
     auto* fit = b->add_subcommand("calibrate", "fit a brush to a table of depth against line width");
     fit->add_option("MEASURED", brush.calibrate, "measured table (.csv)")->required();

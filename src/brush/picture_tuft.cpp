@@ -1,0 +1,220 @@
+#include "brush/picture_tuft.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "brush/skin.h"
+#include "core/random.h"
+
+namespace tuft::brush {
+
+namespace {
+
+constexpr int kBetween = 5;  ///< sections drawn between two nodes
+
+/// A branch drawn from its tip to the ferrule, also where it shares the trunk.
+struct Strand {
+    std::vector<Section> sections;
+    std::size_t trunk = 0;  ///< from here on the whole tuft
+};
+
+/// Sections of every branch, refined, resting on the sheet.
+std::vector<Strand> strands_of(const TuftState& state, const TuftLook& look) {
+    std::vector<Strand> out;
+    const std::size_t count = state.branches.size(), middle = count / 2;
+    const std::vector<Section>& carrier = state.branches[middle].sections;
+    for (const Branch& branch : state.branches) {
+        Strand strand;
+        std::vector<Section> all = branch.sections;
+        std::size_t trunk = 0;
+        if (count > 1) {
+            // The middle branch carries the trunk behind its own sections.
+            const std::size_t own = state.branches[middle == 0 ? 1 : 0].sections.size();
+            trunk = own - 1;
+            if (&branch != &state.branches[middle]) {
+                all.pop_back();
+                all.insert(all.end(), carrier.begin() + static_cast<long>(trunk), carrier.end());
+            }
+        }
+        strand.trunk = trunk * (kBetween + 1);
+        strand.sections = refine_sections(all, kBetween);
+        double widest = 0;
+        for (std::size_t i = strand.sections.size(); i-- > 0;) {
+            Section& s = strand.sections[i];
+            if (i + 1 == strand.trunk) widest = 0;
+            widest = std::max(widest, s.a);
+            if (look.dry) {
+                const double grow = widest / s.a;
+                s.a *= grow;
+                s.b /= grow;
+            }
+            const double half = std::hypot(s.a * s.e.z, s.b * s.m.z);
+            s.centre.z = std::max(s.centre.z, look.ground + half);
+        }
+        out.push_back(std::move(strand));
+    }
+    return out;
+}
+
+/// A bristle's place in section i of strand k; nullptr where it belongs to another strand.
+struct Placed {
+    Vec2 whole{0};
+    BranchPlace part;
+    const Vec2* at(const Strand& strand, std::size_t k, std::size_t i) const {
+        if (i >= strand.trunk) return &whole;
+        // Between the last section of its own and the trunk's first it goes straight.
+        if (part.branch != static_cast<int>(k) || i + kBetween + 1 > strand.trunk) return nullptr;
+        return &part.place;
+    }
+};
+
+Vec3 point_of(const Section& s, const Vec2& place) {
+    return s.centre + 0.97 * (s.a * place.x * s.e + s.b * place.y * s.m);
+}
+
+void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, const Vec3& colour) {
+    constexpr int kRound = 16;
+    std::vector<Vec2> before, now;
+    for (std::size_t i = 0; i < strand.sections.size(); ++i) {
+        const Section& s = strand.sections[i];
+        const Vec2 centre = view(s.centre);
+        const Vec2 e = s.a * view.scale * Vec2{glm::dot(s.e, view.right), -glm::dot(s.e, view.up)};
+        const Vec2 m = s.b * view.scale * Vec2{glm::dot(s.m, view.right), -glm::dot(s.m, view.up)};
+        std::vector<Vec2> round;
+        for (int k = 0; k < kRound; ++k) {
+            const double w = 2 * std::numbers::pi * k / kRound;
+            round.push_back(centre + std::cos(w) * e + std::sin(w) * m);
+        }
+        fill_polygon(canvas, round, colour);
+        const Vec2 t{glm::dot(s.tangent, view.right), -glm::dot(s.tangent, view.up)};
+        const double size = glm::length(t);
+        const Vec2 across = size > 1e-6 ? Vec2{-t.y, t.x} / size : Vec2{1, 0};
+        const Vec2 half = std::hypot(glm::dot(e, across), glm::dot(m, across)) * across;
+        now = {centre + half, centre - half};
+        if (i > 0) {
+            const Vec2 quad[] = {before[0], now[0], now[1], before[1]};
+            fill_polygon(canvas, quad, colour);
+        }
+        before = now;
+    }
+}
+
+}  // namespace
+
+void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, const TuftLook& look) {
+    const std::vector<Strand> strands = strands_of(state, look);
+    const int count = static_cast<int>(strands.size());
+    if (!look.dry)
+        for (const Strand& strand : strands) fill_silhouette(canvas, strand, view, srgb(78, 55, 40));
+    const std::vector<Bristle>& bristles = tuft.bundles.bristles;
+    std::vector<Placed> placed;
+    std::vector<double> near;
+    const Vec3 viewer = view.toward();
+    for (const Bristle& b : bristles) {
+        const Vec2 place = place_of(tuft.bundles, b);
+        placed.push_back({place, in_branch(place, count)});
+        const Strand& strand = strands[static_cast<std::size_t>(placed.back().part.branch)];
+        const Section& s = strand.sections[strand.sections.size() / 3];
+        near.push_back(glm::dot(point_of(s, strand.sections.size() / 3 < strand.trunk ? placed.back().part.place : place), viewer));
+    }
+    std::vector<std::size_t> order(bristles.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return near[a] < near[b]; });
+    const Vec3 light = glm::normalize(0.75 * view.up - 0.45 * view.right + 0.5 * viewer);
+    Random random(tuft.bundles.seed + 7);
+    std::vector<double> shade(bristles.size());
+    for (double& s : shade) s = random.uniform(-0.2, 0.2);
+    std::vector<Vec2> line;
+    std::vector<double> width;
+    for (const std::size_t h : order) {
+        const Placed& p = placed[h];
+        const auto k = static_cast<std::size_t>(p.part.branch);
+        const std::vector<Section>& fine = strands[k].sections;
+        const double readiness = bristles[h].readiness, n = static_cast<double>(fine.size());
+        // Hairs end at unequal lengths; water draws all of them to the point.
+        const double short_by = look.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
+        const auto stop = static_cast<std::size_t>(short_by * n);
+        line.clear();
+        width.clear();
+        double lit = 0;
+        for (std::size_t i = stop; i < fine.size(); ++i) {
+            const Vec2* at = p.at(strands[k], k, i);
+            if (!at) continue;
+            line.push_back(view(point_of(fine[i], *at)));
+            width.push_back(0.5 + (look.dry ? 0.7 : 1.1) * std::min(1.0, 4 * static_cast<double>(i - stop) / n));
+            lit += glm::dot(at->x * fine[i].e + at->y * fine[i].m, light);
+        }
+        if (line.size() < 2) continue;
+        lit /= static_cast<double>(line.size());
+        const double tone = std::clamp(0.42 + 0.5 * lit + shade[h], 0.0, 1.0);
+        stroke_line(canvas, line, width, glm::mix(srgb(48, 32, 22), srgb(206, 168, 120), tone), 0.8);
+    }
+}
+
+void draw_holder(Canvas& canvas, const Pose& pose, const Preset& p, const View& view, double length) {
+    const Vec3 up = -pose.axis();
+    Vec3 side = glm::cross(up, view.toward());
+    side = glm::length(side) > 1e-6 ? glm::normalize(side) : view.right;
+    const double r = 1.12 * rest_radius(p, 0);
+    const auto bar = [&](double from, double to, double w0, double w1, const Vec3& dark, const Vec3& light) {
+        constexpr int kShades = 32;
+        for (int k = 0; k < kShades; ++k) {
+            const double a = -1 + 2.0 * k / kShades, b = -1 + 2.0 * (k + 1) / kShades + (k + 1 < kShades ? 0.02 : 0), mid = 0.5 * (a + b);
+            const double shade = std::max(0.0, std::sqrt(std::max(0.0, 1 - mid * mid)) * 0.8 - 0.25 * mid * glm::dot(side, view.right));
+            const Vec2 quad[] = {view(pose.position + from * up + a * w0 * side), view(pose.position + from * up + b * w0 * side),
+                                 view(pose.position + to * up + b * w1 * side), view(pose.position + to * up + a * w1 * side)};
+            fill_polygon(canvas, quad, glm::mix(dark, light, shade));
+        }
+    };
+    bar(0.2 * p.length, length, 0.92 * r, 0.9 * r, srgb(96, 66, 34), srgb(222, 184, 120));
+    bar(0, 0.22 * p.length, r, 1.04 * r, srgb(28, 28, 32), srgb(150, 150, 158));
+}
+
+void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, double y, const TuftLook& look) {
+    const Vec3 ink = srgb(24, 22, 24);
+    const auto plan = [&](const Vec3& p) { return Vec2{view.foot.x + view.scale * (p.x - view.origin.x), y + view.scale * (p.y - view.origin.y)}; };
+    if (look.dry) {
+        // The lines of the bristles that lie on the sheet.
+        TuftLook as_pressed = look;
+        as_pressed.ground = -1;
+        const std::vector<Strand> strands = strands_of(state, as_pressed);
+        const double width = 0.6;
+        for (const Bristle& b : tuft.bundles.bristles) {
+            const Vec2 whole = place_of(tuft.bundles, b);
+            const Placed placed{whole, in_branch(whole, static_cast<int>(strands.size()))};
+            const auto k = static_cast<std::size_t>(placed.part.branch);
+            std::vector<Vec2> line;
+            for (std::size_t i = 0; i < strands[k].sections.size(); ++i) {
+                const Section& s = strands[k].sections[i];
+                const Vec2* at = placed.at(strands[k], k, i);
+                if (!at || at->y * s.m.z > 0) continue;
+                const double under = std::sqrt(std::max(0.0, 1 - at->x * at->x)) * s.b * std::abs(s.m.z);
+                if (s.centre.z + s.a * at->x * s.e.z - under <= 1e-4) line.push_back(plan(point_of(s, *at)));
+            }
+            stroke_line(canvas, line, {&width, 1}, ink, 0.85);
+        }
+        return;
+    }
+    for (const Branch& branch : state.branches) {
+        std::vector<Vec2> left, right;
+        for (const Section& s : refine_sections(branch.sections, kBetween)) {
+            const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = std::hypot(ne, nm);
+            if (reach <= 0 || std::abs(s.centre.z) > reach) continue;
+            const double middle = std::atan2(nm, ne), half = std::acos(-s.centre.z / reach);
+            Vec3 q[2];
+            for (int k = 0; k < 2; ++k) {
+                const double w = middle + (k == 0 ? -half : half);
+                q[k] = s.centre + s.a * std::cos(w) * s.e + s.b * std::sin(w) * s.m;
+            }
+            if (q[0].y > q[1].y) std::swap(q[0], q[1]);
+            left.push_back(plan(q[0]));
+            right.push_back(plan(q[1]));
+        }
+        left.insert(left.end(), right.rbegin(), right.rend());
+        fill_polygon(canvas, left, ink);
+    }
+}
+
+}  // namespace tuft::brush
