@@ -40,7 +40,7 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
         for (const auto& preset : inks_) project.put_ink(preset);
         project.append(painting.journal().strokes());
         if (!painting.journal().empty())
-            project.save_canvases(painting.canvases(), painting.journal().strokes().back().id);
+            project.save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
         project_ = std::move(project);
         pending_.clear();
         trouble_.clear();
@@ -120,7 +120,7 @@ void Keeper::set_hidden(std::uint64_t id, bool hidden) {
 
 void Keeper::store_canvas(const stroke::Painting& painting) {
     if (painting.journal().empty()) return;
-    attempt([&] { if (project_ && pending_.empty()) project_->save_canvases(painting.canvases(), painting.journal().strokes().back().id); });
+    attempt([&] { if (project_ && pending_.empty()) project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id); });
 }
 
 }  // namespace tuft::app

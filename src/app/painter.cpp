@@ -41,6 +41,10 @@ Painter::Painter(Work work) : work_(std::move(work)) {
         if (std::find(shipped.begin(), shipped.end(), name) == shipped.end()) own_inks_.push_back(work_.painting->ink(name));
     update_.own_inks = own_inks_;
     publish_looks();
+    if (work_.painting->palette()) {
+        refresh(palette_, *work_.painting);
+        update_.palette = palette_;
+    }
     groups_.assign(work_.painting->journal().strokes().size(), 1);
     publish(true);
     thread_ = std::thread([this] { run(); });
@@ -85,6 +89,9 @@ Update Painter::take() {
     update_.layers = out.layers;
     update_.masks = out.masks;
     update_.own_inks.reset();
+    update_.palette.reset();
+    update_.on_palette = out.on_palette;
+    update_.brush_colour = out.brush_colour;
     update_.looks.reset();
     update_.picked.clear();
     update_.wet = out.wet;
@@ -176,6 +183,9 @@ void Painter::publish(bool strokes_changed) {
         lines_.resize(same);
         for (; same < strokes.size(); ++same) lines_.push_back(stroke_line(strokes[same]));
     }
+    const std::vector<std::uint32_t> wells = painting.take_palette_dirty();
+    if (!wells.empty()) refresh(palette_, painting, wells);
+    if (strokes_changed) look_at_brush();
     const brush::TuftState* tuft = painting.tuft();
     const std::lock_guard lock(mutex_);
     if (update_.tiles.empty()) update_.tiles = std::move(tiles);
@@ -187,6 +197,9 @@ void Painter::publish(bool strokes_changed) {
     }
     if (strokes_changed) update_.strokes = lines_;
     update_.tuft = tuft ? *tuft : brush::TuftState{};
+    update_.on_palette = tuft && current_.layer == stroke::kPaletteLayer;
+    if (!wells.empty()) update_.palette = palette_;
+    update_.brush_colour = brush_colour_;
     update_.done = asked_;
     update_.busy.clear();
     update_.fraction = 0;
@@ -207,12 +220,13 @@ void Painter::publish(bool strokes_changed) {
 
 void Painter::begin(const BeginStroke& command) {
     current_ = command;
+    if (const stroke::BrushInHand* held = work_.painting->held(command.brush); command.as_it_is && held) current_.ink = held->named;
     work_.keeper.prepare(*work_.painting, command.brush, command.ink);
     loads_ = load_tip(command);
     stroke::Stroke stroke;
     stroke.trace.flat = false;
     stroke.trace.brush = command.brush;
-    stroke.trace.ink = command.ink;
+    stroke.trace.ink = current_.ink;
     if (command.carry || loads_ > 0) stroke.settings.dip = "carry";
     if (command.wet) stroke.settings.film = "wet";
     stroke.layer = command.layer;
@@ -227,7 +241,8 @@ void Painter::care(const CareForBrush& command) {
     entry.action = command.action;
     entry.trace.flat = false;
     entry.trace.brush = command.brush;
-    if (command.action == stroke::Action::dip) entry.trace.ink = command.ink;
+    // A brush that is not held yet begins full of the chosen ink.
+    if (command.action == stroke::Action::dip || !work_.painting->held(command.brush)) entry.trace.ink = command.ink;
     entry.seconds = command.seconds;
     entry.extent = command.extent;
     entry.settings.dip = "carry";
@@ -415,12 +430,17 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
     work_.painting = std::move(painting);
     groups_.assign(work_.painting->journal().strokes().size(), 1);
     undone_groups_.clear();
+    if (!palette_.rgb.empty()) {
+        refresh(palette_, *work_.painting);
+        const std::lock_guard lock(mutex_);
+        update_.palette = palette_;
+    }
     publish(true);
 }
 
 StrokeLine stroke_line(const stroke::Stroke& stroke) {
     StrokeLine line{.id = stroke.id, .action = stroke.action, .brush = stroke.trace.brush, .ink = stroke.trace.ink, .label = stroke.trace.label,
-                    .hidden = stroke.hidden, .erases = stroke.trace.erases};
+                    .hidden = stroke.hidden, .erases = stroke.trace.erases, .on_palette = stroke.layer == stroke::kPaletteLayer};
     const auto& samples = stroke.trace.samples;
     if (samples.empty()) return line;
     Vec3 normal(0);
@@ -448,7 +468,7 @@ StrokeLine stroke_line(const stroke::Stroke& stroke) {
         lo_z = std::min(lo_z, points.back().z), hi_z = std::max(hi_z, points.back().z);
     }
     const double span = std::max({hi_x - lo_x, hi_y - lo_y, 1e-4});
-    if (!stroke.trace.flat)
+    if (!stroke.trace.flat && !line.on_palette)
         for (std::size_t i = 0; i < n; ++i) line.places.emplace_back(samples[i * (samples.size() - 1) / std::max<std::size_t>(1, n - 1)].position);
     for (const Vec3& p : points)
         line.way.emplace_back(0.5 + (p.x - 0.5 * (lo_x + hi_x)) / span, 0.5 + (p.y - 0.5 * (lo_y + hi_y)) / span,

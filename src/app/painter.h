@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -25,7 +26,8 @@ struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
     bool carry = false;           ///< goes on with the hair and ink of the stroke before
-    std::uint32_t layer = stroke::kFirstLayer;
+    bool as_it_is = false;        ///< with what is in the brush, whatever ink is chosen; where it is held
+    std::uint32_t layer = stroke::kFirstLayer;  ///< or the palette
     std::uint32_t mask = 0;       ///< kept to; 0: none
     bool erases = false;          ///< takes ink off
     bool wet = false;             ///< ink that flows and mixes
@@ -65,7 +67,8 @@ struct FillModel {
 };
 /// The eyedropper: what lies at a place becomes an ink of its own.
 struct PickInk {
-    Vec3 point{0};                ///< metres, model frame
+    Vec3 point{0};                ///< metres, frame of the model or the palette
+    bool on_palette = false;
 };
 /// Takes an ink in from outside.
 struct TakeInk {
@@ -130,7 +133,7 @@ struct StrokeLine {
     std::uint64_t id = 0;
     stroke::Action action = stroke::Action::stroke;
     std::string brush, ink, label;
-    bool hidden = false, erases = false;
+    bool hidden = false, erases = false, on_palette = false;
     double length = 0;            ///< metres of the hand's way
     std::vector<Vec3f> places;    ///< metres, model frame: where the hand was; empty for flat traces
     std::vector<Vec3f> way;       ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
@@ -156,6 +159,9 @@ struct Update {
     double fraction = 0;          ///< of it
     double undo_seconds = 0;      ///< that the last undo took
     double fullness = 1;          ///< ink in the brush last painted with, of its capacity
+    std::optional<std::array<std::uint8_t, 3>> brush_colour;  ///< sRGB of a full film of it
+    std::optional<stroke::PalettePicture> palette;  ///< what changed on it
+    bool on_palette = false;      ///< `tuft` is there
     bool can_undo = false, can_redo = false;
     stroke::LayerTable layers;
     stroke::MaskTable masks;
@@ -215,6 +221,7 @@ class Painter {
     void show_on(const ShowOn& command);
     void send_pixels();
     void publish_looks();
+    void look_at_brush();
     std::size_t load_tip(const BeginStroke& command);
     void paint_traces(PaintTraces& command);
     void care(const CareForBrush& command);
@@ -233,6 +240,8 @@ class Painter {
     BeginStroke current_;
     std::size_t loads_ = 0;                ///< entries that loaded the brush for the stroke in work
     std::vector<ink::Ink> own_inks_;
+    stroke::PalettePicture palette_;
+    std::optional<std::array<std::uint8_t, 3>> brush_colour_;
     double undo_seconds_ = 0;
     double asked_ = 0, last_publish_ = 0;
     std::vector<std::size_t> groups_, undone_groups_;  ///< strokes that one movement of the hand made

@@ -1,7 +1,9 @@
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 
 #include "app/painter.h"
+#include "ink/composite.h"
+#include "ink/kubelka_munk.h"
 
 /// Inks of the work's own, how it is shown, and masks: on the painter's thread.
 namespace tuft::app {
@@ -44,10 +46,27 @@ void Painter::add_ink(ink::Ink ink) {
 }
 
 void Painter::pick(const PickInk& command) {
-    const stroke::Painting& painting = *work_.painting;
-    std::optional<ink::Ink> ink = painting.ink_of(painting.pick(command.point), "mixture");
+    stroke::Painting& painting = *work_.painting;
+    std::optional<ink::Ink> ink =
+        painting.ink_of(command.on_palette ? painting.pick_palette(command.point) : painting.pick(command.point), "mixture");
     if (!ink) return say("There is no ink here to pick up.");
     add_ink(std::move(*ink));
+}
+
+// The mixture in the brush last painted with, for its picture.
+void Painter::look_at_brush() {
+    brush_colour_.reset();
+    const stroke::BrushInHand* held = work_.painting->held(current_.brush);
+    if (!held) return;
+    const std::vector<ink::Pigment>& pigments = work_.painting->canvas().pigments();
+    const ink::Mix mix = held->reservoir.mix();
+    ink::Ink ink;
+    for (std::size_t p = 0; p < pigments.size(); ++p)
+        if (mix[p] > 0) ink.parts.push_back({pigments[p], static_cast<double>(mix[p])});
+    if (ink.parts.empty()) return;
+    const ink::Rgb linear = ink::colour_of_film(ink, {0.88f, 0.88f, 0.88f});
+    brush_colour_.emplace();
+    for (std::size_t c = 0; c < 3; ++c) (*brush_colour_)[c] = static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(linear[c])));
 }
 
 void Painter::publish_looks() {

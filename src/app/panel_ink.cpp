@@ -73,7 +73,12 @@ void care(Session& s) {
     ImGui::SameLine();
     if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::Action::reshape);
     ui.slider("How deep", s.dip_depth, 0.05, 1, "%.0f %%", "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then", 0.01);
-    ImGui::ProgressBar(static_cast<float>(s.last.fullness), ImVec2(-1, ui.px(6)), "");
+    if (s.last.brush_colour) {
+        const auto& c = *s.last.brush_colour;
+        ImGui::PushStyleColor(ImGuiCol_PlotHistogram, IM_COL32(c[0], c[1], c[2], 255));
+    }
+    ImGui::ProgressBar(static_cast<float>(s.last.fullness), ImVec2(-1, ui.px(14)), "");
+    if (s.last.brush_colour) ImGui::PopStyleColor();
     ui.hint("Ink left in the brush");
 }
 
@@ -102,6 +107,7 @@ void ink_section(Session& s) {
     if (ui.button("Load...", "An ink from a file", half)) s.files.show(FileDialog::Purpose::ink, {});
     ImGui::SameLine();
     if (ui.button("Keep...", "Writes the ink in hand to a file, for other work", half)) s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
+    if (ui.choice("Palette", s.palette.shown, "A plate on which brushes mix inks (P)", part_of_row(s, 1))) show_palette(s, !s.palette.shown);
     ui.toggle("Wet ink", s.wet, "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.wet || s.last.wet) {
         if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", half)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});

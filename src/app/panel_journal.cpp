@@ -35,7 +35,7 @@ void edit_row(Session& s, const StrokeLine& line) {
     if (ui.button("Delete", "Takes the stroke away and paints the others again", half))
         s.painter->post(EditStroke{.id = line.id, .remove = true});
     if (line.action != stroke::Action::stroke) return;
-    if (ui.choice("Move", s.shift_stroke, "Then drag it over the model with the left button", 2 * half + 8)) s.shift_stroke = !s.shift_stroke;
+    if (!line.on_palette && ui.choice("Move", s.shift_stroke, "Then drag it over the model with the left button", 2 * half + 8)) s.shift_stroke = !s.shift_stroke;
     std::string brush = line.brush, ink = line.ink;
     if (ui.combo("Change brush", brush, s.brushes)) s.painter->post(EditStroke{.id = line.id, .brush = brush});
     std::vector<std::string> inks = s.inks;
@@ -55,13 +55,14 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     s.ui.mark("stroke " + std::to_string(number));
     draw_way(s, line, ImVec2(at.x, at.y), size);
     char text[96];
-    static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe"};
+    static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe", "Wash"};
     if (line.action != stroke::Action::stroke) std::snprintf(text, sizeof text, "%zu   %s", number, s.ui.tr(actions[static_cast<int>(line.action)]));
     else std::snprintf(text, sizeof text, "%zu   %.0f mm%s%s", number, line.length * 1e3, line.erases ? "   " : "", line.erases ? s.ui.tr("erased") : "");
+    if (line.on_palette) std::snprintf(text, sizeof text, "%zu   %s", number, s.ui.tr("Palette"));
     const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);
-    const std::string what = stroke::keeps_texels(line.action) ? line.label : std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
+    const std::string what = stroke::keeps_texels(line.action) ? line.label : std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
     draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, what.c_str());
     if (ImGui::IsItemHovered() && !line.label.empty()) ImGui::SetTooltip("%s", line.label.c_str());
     if (chosen) edit_row(s, line);

@@ -50,6 +50,7 @@ void view_menu(Session& s) {
     ImGui::Separator();
     if (s.ui.menu_item("Parallel projection", name_of(s.keys.chord(Act::parallel)).c_str(), o.parallel)) o.parallel = !o.parallel;
     if (s.ui.menu_item("Atlas beside the model", name_of(s.keys.chord(Act::atlas)).c_str(), s.view.atlas)) s.view.atlas = !s.view.atlas;
+    if (s.ui.menu_item("Palette", name_of(s.keys.chord(Act::palette)).c_str(), s.palette.shown, s.painter != nullptr)) show_palette(s, !s.palette.shown);
     if (s.ui.menu_item("See through the brush", name_of(s.keys.chord(Act::see_through)).c_str(), s.view.see_through)) s.view.see_through = !s.view.see_through;
     if (s.ui.menu_item("Side view of the tuft", nullptr, s.view.inset)) s.view.inset = !s.view.inset;
     ImGui::EndMenu();

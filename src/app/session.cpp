@@ -97,6 +97,13 @@ const ink::Ink* find_ink(const Session& s, const std::string& name) {
     return at->second ? &*at->second : nullptr;
 }
 
+void show_palette(Session& s, bool on) {
+    s.palette.shown = on;
+    if (!on) return;
+    s.carry = true;
+    say(s, "Pour inks, rinse the brush, stir; then paint on the model with what is in it.");
+}
+
 void choose_mask(Session& s, std::uint32_t id) {
     s.mask = id;
     if (s.veiled == id || !s.painter) return;
@@ -170,6 +177,9 @@ void close_model(Session& s) {
     s.mask = s.veiled = s.masks_seen = 0;
     s.lasso.clear();
     s.own_inks.clear();
+    s.palette.shown = false;
+    s.palette.picture = {};
+    s.palette.fresh = true;
     s.tuft = {};
     s.curve = {};
     if (empty && is_unnamed(project)) {
@@ -213,6 +223,11 @@ void poll_session(Session& s) {
         Update u = s.painter->take();
         if (u.strokes) s.strokes = std::move(*u.strokes);
         if (u.own_inks) s.own_inks = std::move(*u.own_inks);
+        if (u.palette) {
+            s.palette.picture = std::move(*u.palette);
+            s.palette.fresh = true;
+            u.palette.reset();
+        }
         if (u.looks) s.looks = std::move(*u.looks);
         if (!u.picked.empty()) take_picked(s, u.picked);
         for (std::string& message : u.messages) {

@@ -49,6 +49,20 @@ struct ViewState {
     double atlas_zoom = 1;        ///< 1: all of it is seen
 };
 
+enum class PaletteTool { brush, pour, pick };
+
+/// The palette's panel.
+struct PaletteState {
+    bool shown = false;
+    PaletteTool tool = PaletteTool::brush;
+    double radius = 0.008;        ///< metres, of a pool that is poured
+    stroke::PalettePicture picture;
+    bool fresh = false;           ///< the picture changed
+    unsigned texture = 0;         ///< OpenGL name; 0: none yet
+    double x = 0, y = 0, width = 0, height = 0;  ///< pixels: where its picture is; width 0: nowhere
+    brush::TuftState tuft;        ///< pressed on it
+};
+
 /// The mask that is made next.
 struct MaskChoice {
     stroke::MaskKind kind = stroke::MaskKind::angle;
@@ -112,6 +126,7 @@ struct Session {
     std::string tip_ink = "carbon";
     double tip_depth = 0.3;                ///< part of the tuft's length
     double dip_depth = 1;                  ///< likewise, of Dip and Wipe
+    PaletteState palette;
     std::vector<ink::Ink> own_inks;        ///< of this work
     Looks looks;
     bool show_colours = false;
@@ -164,6 +179,8 @@ void open_ink(Session& s, const std::filesystem::path& path);
 void save_ink(Session& s, const std::filesystem::path& path);
 /// An ink of this work, or a shipped one; nullptr when it cannot be read.
 const ink::Ink* find_ink(const Session& s, const std::string& name);
+/// Shows the palette or puts it away. With it out, the brush keeps what is in it.
+void show_palette(Session& s, bool on);
 /// Keeps strokes to a mask and veils what it leaves out; 0: none.
 void choose_mask(Session& s, std::uint32_t id);
 /// Looks at a model that shall take the place of the one in work, with its strokes.

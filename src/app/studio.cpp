@@ -55,6 +55,8 @@ void Studio::make_graphics() {
     Session& s = session_;
     scene_ = std::make_unique<render::GlScene>();
     view_ = std::make_unique<render::GlView>();
+    s.palette.texture = 0;
+    s.palette.fresh = true;
     colours_shown_ = ModelView::glaze;
     if (s.painter && !s.model_is_new) {
         const stroke::Model& m = s.painter->model();
@@ -109,6 +111,8 @@ void Studio::panels(int height) {
         journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
         status_bar(s, bottom);
         tuft_inset(s);
+        update_palette_picture();
+        palette_panel(s);
         view_marks(s, camera());
         atlas_marks(s, atlas_cursor());
     } else {
@@ -195,7 +199,8 @@ void Studio::update_tuft(double now) {
     Session& s = session_;
     s.tuft = {};
     s.depth = 0;
-    s.pressed = s.last.tuft && !s.last.tuft->branches.empty();
+    s.palette.tuft = s.last.on_palette && s.last.tuft ? *s.last.tuft : brush::TuftState{};
+    s.pressed = s.last.tuft && !s.last.tuft->branches.empty() && !s.last.on_palette;
     if (s.pressed) {
         s.tuft = *s.last.tuft;
     } else if (s.tool != Tool::writing && s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask && !s.shift_stroke && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {

@@ -73,6 +73,10 @@ class Studio {
     bool in_atlas(const Event& event) const;
     void atlas_press(const Event& event);
     void pick_press(const Event& event);
+    bool in_palette(const Event& event) const;
+    Aim palette_aim(const Event& event) const;
+    void palette_press(const Event& event);
+    void update_palette_picture();
     void mask_press(const Event& event);
     void lasso_move(const Event& event);
     void lasso_release();
@@ -88,6 +92,8 @@ class Studio {
     Session session_;
     std::unique_ptr<render::GlScene> scene_;
     std::unique_ptr<render::GlView> view_;
+    std::optional<stroke::Model> plate_;      ///< of the palette, once it was shown
+    bool on_plate_ = false;                   ///< the hand is over it
     std::optional<Hand> hand_;
     std::optional<Event> line_start_;         ///< where a new control point was set
     stroke::Placement ghost_placement_;

@@ -32,7 +32,9 @@ Aim Studio::aim_of(const Event& e) const {
 void Studio::post(std::vector<HandStep> steps, double time) {
     Session& s = session_;
     for (HandStep& step : steps) {
-        if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .layer = s.layer, .mask = s.mask, .erases = s.erasing, .wet = s.wet,
+        if (step.kind == HandStep::Kind::begin && on_plate_)
+            s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .carry = true, .as_it_is = true, .layer = stroke::kPaletteLayer, .wet = true});
+        else if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .as_it_is = s.carry && s.palette.shown, .layer = s.layer, .mask = s.mask, .erases = s.erasing, .wet = s.wet,
                                                                                      .tip_ink = s.two_inks ? s.tip_ink : "", .tip_depth = s.tip_depth});
         else if (step.kind == HandStep::Kind::end) s.painter->post(EndStroke{});
         else s.painter->post(ExtendStroke{std::move(step.poses), time});
@@ -70,6 +72,7 @@ void Studio::handle(const Event& e) {
 
 void Studio::press(const Event& e) {
     Session& s = session_;
+    if (s.painter && !dialog_open() && !hand_ && in_palette(e)) return palette_press(e);
     if (!s.painter || ImGui::GetIO().WantCaptureMouse || dialog_open() || hand_ || s.curve.grabbed >= 0) return;
     if (in_atlas(e)) return atlas_press(e);
     const bool shift = e.modifiers & kShift, control = e.modifiers & kControl, alt = e.modifiers & kAlt;
@@ -98,13 +101,14 @@ void Studio::press(const Event& e) {
         return;
     }
     s.hand_down = true;
+    on_plate_ = false;
     post(hand_->move(aim_of(e)), e.time);
 }
 
 void Studio::move(const Event& e) {
     Session& s = session_;
     if (hand_) {
-        post(hand_->move(aim_of(e)), e.time);
+        post(hand_->move(on_plate_ ? palette_aim(e) : aim_of(e)), e.time);
         return;
     }
     if (s.curve.grabbed >= 0) return curve_drag(e);
@@ -126,7 +130,7 @@ void Studio::move(const Event& e) {
 void Studio::release(const Event& e) {
     Session& s = session_;
     if (hand_ && e.button == 0) {
-        post(hand_->move(aim_of(e)), e.time);
+        post(hand_->move(on_plate_ ? palette_aim(e) : aim_of(e)), e.time);
         post(hand_->lift(), e.time);
         hand_.reset();
         s.hand_down = false;
@@ -208,6 +212,7 @@ void Studio::perform(Act act) {
         case Act::writing: s.tool = Tool::writing; break;
         case Act::eraser: s.tool = Tool::eraser; break;
         case Act::fill: s.tool = Tool::fill; break;
+        case Act::palette: show_palette(s, !s.palette.shown); break;
         case Act::pick: s.tool = Tool::pick; break;
         case Act::mask: s.tool = Tool::mask; break;
         case Act::atlas: s.view.atlas = !s.view.atlas; break;

@@ -43,6 +43,8 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "pressure") s.hand.pressure = std::clamp(number, 0.02, 1.0);
     else if (name == "carry") s.carry = on;
     else if (name == "wet") s.wet = on;
+    else if (name == "palette") show_palette(s, on);
+    else if (name == "palette-tool") s.palette.tool = static_cast<PaletteTool>(one_of({"brush", "pour", "pick"}));
     else if (name == "two-inks") s.two_inks = on;
     else if (name == "tip") s.tip_depth = std::clamp(number, 0.05, 0.9);
     else if (name == "mask-kind") s.mask_choice.kind = stroke::mask_kind_of(value);

@@ -120,6 +120,11 @@ constexpr std::pair<const char*, const char*> kTexts[] = {
     {"Pigment amounts stay as they were painted; only what they look like changes.", "颜料的量不变，只改显示的颜色。"}, {"Nothing is painted yet.", "还没有画。"},
     {"Material", "材质"}, {"painted on", "画于"}, {"Back to the tools", "回到工具"}, {"Add a pigment...", "加颜料…"}, {"Part of the wet ink; the rest is water", "占湿墨的比例，其余为水"},
     {"Changes with it:", "随之改变："}, {"Open an ink", "打开墨"}, {"Save the ink as", "墨另存为"}, {"mixture", "调和墨"},
+    {"Palette", "调色盘"}, {"A plate on which brushes mix inks (P)", "供毛笔调墨的瓷盘 (P)"}, {"Stir", "调和"}, {"Pour", "倒墨"}, {"Wash", "洗盘"},
+    {"With the brush, as on the model: it takes up what lies there and leaves what is in it", "如在模型上运笔：取盘中之墨，也留笔中之墨"},
+    {"Click: a pool of the chosen ink", "单击：倒一滩所选的墨"}, {"Click: the mixture there becomes an ink of its own", "单击：该处的调和墨成为一种新墨"},
+    {"Cleans the palette; Undo brings it back", "洗净调色盘；可撤销"}, {"Pool", "墨滩"}, {"Rinse the brush", "洗笔"},
+    {"Pour inks, rinse the brush, stir; then paint on the model with what is in it.", "倒墨、洗笔、调和，再用笔中之墨在模型上作画。"},
     {"porcelain", "瓷"}, {"bisque", "素坯"}, {"clay", "泥"}, {"primed-metal", "底漆金属"}, {"rice-paper", "宣纸"},
 };
 

@@ -239,6 +239,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_frame(i, inspect.unit, inspect.up, "unit of the model file (default: a guess from its size)");
     auto* spot = add_point(i, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
     i->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
+    i->add_flag("--palette", inspect.palette, "the point is one of the palette, from its middle, z = 0")->needs(spot);
     add_common(i, inspect.common);
 
     Unwrap unwrap;
@@ -269,9 +270,9 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     e->add_option("-o,--output", exported.output,
                   ".glb, .gltf, .obj (model); .png, .exr (one map)")->required();
     e->add_option("--map", exported.map,
-                  "which map a .png or .exr holds: base-colour, normal, height, roughness or pigments (.exr); "
+                  "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr) or palette (.png); "
                   "default: the file's name if it is one of these, else base-colour")
-        ->check(CLI::IsMember({"base-colour", "normal", "height", "roughness", "pigments"}));
+        ->check(CLI::IsMember({"base-colour", "normal", "height", "roughness", "pigments", "palette"}));
     add_look(e, exported.look);
     add_layers(e, exported.layers);
     add_common(e, exported.common);
@@ -304,6 +305,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_point(f, "--chart", fill.chart_mm, "fill only the chart of the atlas here")->excludes(part);
     f->add_option("--mask", fill.mask, "fill only what lies in this mask");
     f->add_option("--layer", fill.layer, "layer to fill; it is made when there is none yet");
+    f->add_flag("--palette", fill.palette, "pour it onto the palette (points in millimetres from its middle, z = 0)");
     add_common(f, fill.common);
 
     MaskWork mask;

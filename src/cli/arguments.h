@@ -74,6 +74,7 @@ struct Inspect {
     std::string unit, up;           ///< empty: guess; z
     std::vector<double> at_mm;      ///< of a project: three numbers, or empty
     std::filesystem::path save_ink; ///< write what lies there as an ink, or empty
+    bool palette = false;           ///< `at_mm` is a place of the palette
     Common common;
 };
 
@@ -120,6 +121,7 @@ struct FillWork {
     double film = -1, to_film = -1;   ///< film units; < 0: what a full brush leaves of the ink
     std::vector<double> from_mm, to_mm, part_mm, chart_mm;  ///< three numbers, or empty
     bool round = false;
+    bool palette = false;             ///< a pool on the palette, not on the model
     Common common;
 };
 

@@ -17,6 +17,8 @@ stroke::Stroke entry_of(const FillWork& a, stroke::Painting& painting) {
     entry.action = stroke::Action::fill;
     entry.trace.flat = false;
     entry.trace.ink = a.ink;
+    if (a.palette) entry.layer = stroke::kPaletteLayer;
+    if (a.palette && !(a.layer.empty() && a.mask.empty())) throw UsageError("the palette has neither layers nor masks");
     stroke::Fill& fill = entry.fill;
     fill.film = a.film >= 0 ? a.film : painting.ink(a.ink).film;
     fill.to_film = fill.film;
@@ -54,7 +56,7 @@ int run(const FillWork& a) {
     }
     put_presets(project->file, painting, entries);
     project->file.append(done);
-    project->file.save_canvases(painting.canvases(), done.back().id);
+    project->file.save_canvases(painting.all_canvases(), done.back().id);
     console.clear();
     const double volume = report.ink_given * ink::kFilmUnit * 1e9;
     if (a.common.json)

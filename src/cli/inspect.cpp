@@ -27,7 +27,8 @@ int inspect_point(const Inspect& a) {
     stroke::Painting painting(project->model);
     restore(*project, painting, console);
     console.clear();
-    const stroke::Pick pick = painting.pick(kMillimetre * Vec3(a.at_mm[0], a.at_mm[1], a.at_mm[2]));
+    const Vec3 at = kMillimetre * Vec3(a.at_mm[0], a.at_mm[1], a.at_mm[2]);
+    const stroke::Pick pick = a.palette ? painting.pick_palette(at) : painting.pick(at);
     const std::string name = a.save_ink.empty() ? "picked" : a.save_ink.stem().string();
     const std::optional<ink::Ink> ink = painting.ink_of(pick, name);
     if (!a.save_ink.empty()) {
@@ -51,7 +52,7 @@ int inspect_point(const Inspect& a) {
                          {"films", nlohmann::json::array()},
                          {"parts", nlohmann::json::object()}};
         for (const stroke::PickedFilm& f : pick.films)
-            j["films"].push_back({{"layer", painting.layers().find(f.layer)->name},
+            j["films"].push_back({{"layer", f.layer == stroke::kPaletteLayer ? "palette" : painting.layers().find(f.layer)->name},
                                   {"film", f.film == ink::kOpenFilm     ? "open"
                                            : f.film == ink::kSoakedFilm ? "soaked"
                                                                         : "dry " + std::to_string(f.film)},
@@ -101,6 +102,7 @@ int inspect_project(const Inspect& a) {
                                     {"amount", s.extent.amount},
                                     {"label", s.trace.label},
                                     {"layer", s.layer},
+                                    {"on", s.layer == stroke::kPaletteLayer ? "palette" : "model"},
                                     {"mask", s.mask},
                                     {"tool", s.trace.erases ? "eraser" : "brush"},
                                     {"brush", s.trace.brush},

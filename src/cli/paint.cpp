@@ -115,7 +115,7 @@ int run(const Paint& a) {
         throw;
     }
     if (project && !strokes.empty())
-        project->save_canvases(painting.canvases(), painting.journal().strokes().back().id);
+        project->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
     const double painted = seconds_since(painting_start);
     console.clear();
     const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal(), n_before);

@@ -33,6 +33,7 @@ void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& mo
     std::vector<stroke::Trace*> drawing;
     Box area;
     for (stroke::Stroke& s : strokes) {
+        if (s.layer == stroke::kPaletteLayer) continue;  // in its own frame
         if (!s.trace.flat || (a.place_mm.empty() && s.trace.placed)) continue;
         drawing.push_back(&s.trace);
         for (const stroke::TraceSample& sample : s.trace.samples) area.add(sample.position);
@@ -78,7 +79,7 @@ void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, con
     Vec3 sum{0};
     double count = 0;
     for (const stroke::Stroke& s : strokes) {
-        if (s.action != stroke::Action::stroke || s.trace.samples.empty()) continue;
+        if (s.action != stroke::Action::stroke || s.trace.samples.empty() || s.layer == stroke::kPaletteLayer) continue;
         const auto weight = static_cast<double>(s.trace.samples.size());
         const Vec3 at = s.trace.flat ? s.trace.placement.origin : s.trace.samples[s.trace.samples.size() / 2].position;
         if (const auto near = model.query->closest_point(at)) sum += weight * near->face_normal;

@@ -49,10 +49,12 @@ std::string map_name(const Export& a) {
     if (!a.map.empty() && !picture)
         throw UsageError("--map: a map is written as .png or .exr, not as '" + extension + "'");
     std::string name = a.map;
-    for (const char* known : {"base-colour", "normal", "height", "roughness", "pigments"})
+    for (const char* known : {"base-colour", "normal", "height", "roughness", "pigments", "palette"})
         if (name.empty() && stem == known) name = known;
     if (name == "pigments" && extension == ".png")
         throw UsageError(a.output.string() + ": pigment amounts need an .exr file");
+    if (name == "palette" && extension != ".png")
+        throw UsageError(a.output.string() + ": a picture of the palette is a .png file");
     return name.empty() ? "base-colour" : name;
 }
 
@@ -67,6 +69,12 @@ void write_map(const std::filesystem::path& path, const std::string& name, const
         for (std::uint32_t page = 0; page < model.atlas.pages; ++page)
             io::write_image(io::page_path(path, model.atlas, page), io::page_view(whole, model.atlas, page), options);
     };
+    if (name == "palette") {
+        if (!painting.palette()) throw Error("there is nothing on the palette");
+        stroke::PalettePicture picture;
+        stroke::refresh(picture, painting);
+        return io::write_image(path, io::view_of(picture.width, picture.height, 3, picture.rgb.data()));
+    }
     if (name == "base-colour" && png) {
         write(io::view_of(ink::compose_srgb8(stack, model.texels, painting.substrate(), compose)));
     } else if (name == "base-colour") {
@@ -123,7 +131,7 @@ int run(const Replay& a) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
                                         outputs.frame, painting, strokes);
         out.append(painting.journal().strokes());
-        if (!strokes.empty()) out.save_canvases(painting.canvases(), strokes.back().id);
+        if (!strokes.empty()) out.save_canvases(painting.all_canvases(), strokes.back().id);
     }
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);

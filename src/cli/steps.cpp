@@ -160,12 +160,14 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
                 entry.trace.layer = trace.layer;
                 entry.trace.mask = trace.mask;
                 entry.fill = care.fill;
+                if (trace.on_palette && care.action == stroke::Action::fill) entry.layer = stroke::kPaletteLayer;
                 strokes.push_back(std::move(entry));
             }
             trace.before.clear();
             stroke::Stroke s{.settings = with};
             if (trace.flat && !trace.pressed) s.settings.pressure = a.pressure;
             trace.erases = trace.erases || a.erases;
+            if (trace.on_palette) s.layer = stroke::kPaletteLayer;
             s.trace = std::move(trace);
             strokes.push_back(std::move(s));
         }

@@ -311,6 +311,7 @@ class Reader : InkmlText {
         d.trace.layer = state.marks.layer;
         d.trace.mask = state.marks.mask;
         d.trace.erases = state.marks.erases;
+        d.trace.on_palette = state.marks.on_palette;
         d.trace.seed = state.marks.seed;
         d.trace.label = state.marks.label;
         d.trace.pressed = d.has_pressure;

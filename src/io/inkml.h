@@ -45,10 +45,11 @@ struct InkmlOptions {
 ///     tuft:label    any text             tuft:laying  wrap | project
 ///     tuft:mask     name of a mask that the project has
 ///     tuft:layer    name of a layer      tuft:tool    brush | eraser
+///     tuft:on       model | palette
 ///
 /// and, on a `trace` only, what is done with the brush before it, in the order written:
 /// tuft:dip (an ink's name, or empty: the trace's own), tuft:wipe, tuft:rinse,
-/// tuft:reshape, tuft:dry (seconds, or empty: until all is dry), tuft:fill (an ink's name, or empty: the trace's own) with the
+/// tuft:reshape, tuft:wash (of the palette), tuft:dry (seconds, or empty: until all is dry), tuft:fill (an ink's name, or empty: the trace's own) with the
 /// attributes film, region (all, part, chart), at, gradient (none, along, round), to_film, to_ink,
 /// from, to: see stroke::Fill, points "x y z" in mm. A dip or wipe may have attributes depth and
 /// amount, 0–1: see stroke::Extent.

@@ -48,7 +48,7 @@ std::string name_of(const InkmlText& file, const xml_node& node, std::string_vie
 
 bool is_care(std::string_view type) {
     return type == "dip" || type == "rinse" || type == "reshape" || type == "dry" ||
-           type == "fill" || type == "wipe";
+           type == "fill" || type == "wipe" || type == "wash";
 }
 
 stroke::Fill fill_of(const InkmlText& file, const xml_node& node) {
@@ -177,6 +177,10 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
             file.fail(node, "tuft:tool is neither brush nor eraser");
         else if (type == "tool")
             marks.erases = text == "eraser";
+        else if (type == "on" && text != "model" && text != "palette")
+            file.fail(node, "tuft:on is neither model nor palette");
+        else if (type == "on")
+            marks.on_palette = text == "palette";
         else if (type == "mask")
             marks.mask = name_of(file, node, text, "mask");
         else if (type == "layer")

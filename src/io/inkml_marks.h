@@ -41,7 +41,7 @@ struct InkmlMarks {
     bool placed = false;
     std::string brush, ink, label, layer, mask;
     std::uint64_t seed = 0;
-    bool erases = false;
+    bool erases = false, on_palette = false;
 };
 
 /// Takes over what the annotations of `parent` say; throws `Error` for what means nothing.

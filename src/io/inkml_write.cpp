@@ -86,7 +86,7 @@ std::string fill_attributes(const stroke::Fill& fill) {
 }
 
 bool same_place(const Trace& a, const Trace& b) {
-    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer && a.mask == b.mask && a.erases == b.erases &&
+    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer && a.mask == b.mask && a.erases == b.erases && a.on_palette == b.on_palette &&
            a.placement.origin == b.placement.origin && a.placement.right == b.placement.right &&
            a.placement.down == b.placement.down && a.placement.laying == b.placement.laying;
 }
@@ -176,6 +176,7 @@ std::string inkml_text(std::span<const Trace> traces, const std::string& title) 
         add_annotation(out, "    ", "layer", first.layer);
         add_annotation(out, "    ", "mask", first.mask);
         if (first.erases) add_annotation(out, "    ", "tool", "eraser");
+        if (first.on_palette) add_annotation(out, "    ", "on", "palette");
         if (first.flat) {
             add_annotation(out, "    ", "origin",
                            vector_text(first.placement.origin / kMillimetre, 7));

@@ -84,7 +84,8 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         insert.reset();
         if (stroke::keeps_texels(stroke.action) || stroke.action == stroke::Action::fill || stroke.mask != 0 ||
             stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
-            raise_format(db, kProjectFormat);
+            raise_format(db, kLayersFormat);
+        if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash) raise_format(db, kProjectFormat);
     }
 }
 

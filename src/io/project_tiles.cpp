@@ -5,6 +5,7 @@
 
 #include "core/hash.h"
 #include "io/project_db.h"
+#include "stroke/palette.h"
 
 namespace tuft::io {
 namespace {
@@ -181,7 +182,7 @@ StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerT
     // Layers know the same pigments, some of them not all yet.
     std::vector<ink::Pigment> pigments;
     for (const stroke::LayerTexels& layer : layers) {
-        stored.n_slots = layer.canvas->n_slots();
+        if (layer.layer != stroke::kPaletteLayer) stored.n_slots = layer.canvas->n_slots();
         if (layer.canvas->pigments().size() > pigments.size()) pigments = layer.canvas->pigments();
     }
     stored.hash = hash_of({layers.begin(), layers.end()}, pigments);
@@ -198,7 +199,7 @@ StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerT
         const std::vector<std::uint32_t> slots = layer.canvas->touched_slots();
         if (!first && !slots.empty()) {
             db.exec(kLayerTables);
-            raise_format(db, kProjectFormat);
+            raise_format(db, layer.layer == stroke::kPaletteLayer ? kProjectFormat : kLayersFormat);
         }
         Rows rows(db, layer.layer);
         for (const std::uint32_t slot : slots) rows.store_tile(layer.canvas->snapshot(slot));
@@ -210,7 +211,8 @@ std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::
                                                std::size_t n_slots, std::uint64_t& hash) {
     std::vector<stroke::LayerCanvas> layers;
     const auto add = [&](std::uint32_t id) -> ink::Canvas& {
-        return layers.emplace_back(stroke::LayerCanvas{id, ink::Canvas(n_slots)}).canvas;
+        const std::size_t slots = id == stroke::kPaletteLayer ? stroke::make_palette().texels.n_slots() : n_slots;
+        return layers.emplace_back(stroke::LayerCanvas{id, ink::Canvas(slots)}).canvas;
     };
     add(stroke::kFirstLayer);
     if (has_layers(db)) {

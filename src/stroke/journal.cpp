@@ -14,7 +14,7 @@ namespace {
 constexpr double kLongestString = 1.0;    // metres
 constexpr double kStrongestFilter = 100;
 constexpr double kLongestWait = 86400;    // seconds
-constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe"};
+constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe", "wash"};
 
 nlohmann::json json_of(const Settings& s) {
     return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
@@ -85,7 +85,8 @@ std::string entry_json(const Stroke& entry) {
     if (entry.action != Action::stroke) j["action"] = name_of(entry.action);
     if (entry.action == Action::dry) j["seconds"] = entry.seconds;
     if (entry.action == Action::layer) j["edit"] = json_of(entry.edit);
-    if (entry.layer != kFirstLayer) j["layer"] = entry.layer;
+    if (entry.layer == kPaletteLayer) j["on"] = "palette";
+    else if (entry.layer != kFirstLayer) j["layer"] = entry.layer;
     if (entry.action == Action::mask) j["mask_edit"] = json_of(entry.mask_edit);
     if (entry.mask != 0) j["mask"] = entry.mask;
     if (entry.action == Action::fill) j["fill"] = json_of(entry.fill);
@@ -104,12 +105,16 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     const auto id = [&j](const char* key, std::uint32_t otherwise) {
         const auto value = j.find(key);
         if (value == j.end()) return otherwise;
-        if (!value->is_number_unsigned() || value->get<std::uint64_t>() >= kNone)
+        if (!value->is_number_unsigned() || value->get<std::uint64_t>() >= kPaletteLayer)
             throw Error(std::string("the ") + key + " of a journal's entry cannot be read");
         return value->get<std::uint32_t>();
     };
     entry.layer = id("layer", entry.layer);
     entry.mask = id("mask", entry.mask);
+    if (const auto on = j.find("on"); on != j.end()) {
+        if (*on != "palette" && *on != "model") throw Error("a stroke is on the palette or the model, not on " + on->dump().substr(0, 40));
+        if (*on == "palette") entry.layer = kPaletteLayer;
+    }
     entry.trace.erases = false;
     if (const auto tool = j.find("tool"); tool != j.end()) {
         if (*tool != "eraser" && *tool != "brush") throw Error("the tool of a stroke is brush or eraser, not " + tool->dump().substr(0, 40));
@@ -140,9 +145,9 @@ std::string name_of(Action action) { return kActions[static_cast<int>(action)]; 
 
 Action action_of(const std::string& name) {
     for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape, Action::dry, Action::layer,
-                           Action::mask, Action::fill, Action::wipe})
+                           Action::mask, Action::fill, Action::wipe, Action::wash})
         if (name == name_of(a)) return a;
-    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill and wipe");
+    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash");
 }
 
 void check_extent(const Extent& e) {
@@ -191,14 +196,14 @@ Care care_of_text(const std::string& text) {
 }
 
 bool has_brush(Action action) {
-    return action != Action::dry && action != Action::fill && !keeps_texels(action);
+    return action != Action::dry && action != Action::fill && action != Action::wash && !keeps_texels(action);
 }
 
 bool keeps_texels(Action action) { return action == Action::layer || action == Action::mask; }
 
 std::vector<std::string> inks_of(const Stroke& entry) {
     std::vector<std::string> inks;
-    const bool none = entry.action == Action::dry || keeps_texels(entry.action) || entry.trace.erases;
+    const bool none = entry.action == Action::dry || entry.action == Action::wash || keeps_texels(entry.action) || entry.trace.erases;
     if (!none && !entry.trace.ink.empty()) inks.push_back(entry.trace.ink);
     if (entry.action == Action::fill && !entry.fill.to_ink.empty()) inks.push_back(entry.fill.to_ink);
     return inks;

@@ -50,7 +50,7 @@ struct Stroke {
     bool hidden = false;      ///< kept, but not painted
     Action action = Action::stroke;
     double seconds = 0;       ///< of `Action::dry`; 0: until all is dry
-    std::uint32_t layer = kFirstLayer;  ///< that is painted on
+    std::uint32_t layer = kFirstLayer;  ///< that is painted on, or `kPaletteLayer`
     std::uint32_t mask = 0;   ///< that a stroke or fill keeps to; 0: none
     LayerEdit edit = {};      ///< of `Action::layer`
     MaskEdit mask_edit = {};  ///< of `Action::mask`
@@ -62,7 +62,7 @@ struct Stroke {
 std::string entry_json(const Stroke& entry);
 void read_entry_json(const std::string& json, Stroke& entry);
 
-/// "stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe"; and back, throwing `Error`
+/// "stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe", "wash"; and back, throwing `Error`
 /// for any other word.
 std::string name_of(Action action);
 Action action_of(const std::string& name);

@@ -68,7 +68,7 @@ void apply(LayerTable& table, const LayerEdit& edit) {
             throw Error("a painting has at most " + std::to_string(kMaxLayers) + " layers");
         Layer layer = edit.layer;
         if (layer.id == 0) layer.id = table.next_id;
-        if (layer.id < table.next_id || layer.id == kNone)
+        if (layer.id < table.next_id || layer.id >= kPaletteLayer)
             throw Error("layer " + std::to_string(layer.id) + " cannot be added again");
         if (edit.place > layers.size()) throw Error("a layer's place is beyond the highest one");
         table.next_id = layer.id + 1;

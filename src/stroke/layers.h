@@ -6,12 +6,15 @@
 #include <string_view>
 #include <vector>
 
+#include "core/types.h"
 #include "ink/canvas.h"
 
 /// User layers: films of their own that are painted, shown and changed apart from each other.
 namespace tuft::stroke {
 
 inline constexpr std::uint32_t kFirstLayer = 1;  ///< the layer that every painting begins with
+/// In the place of a layer: entries that belong on the palette (palette.h). No layer has this id.
+inline constexpr std::uint32_t kPaletteLayer = kNone - 1;
 inline constexpr std::size_t kMaxLayers = 100;
 inline constexpr std::size_t kMaxNameBytes = 200;
 

@@ -55,6 +55,8 @@ double footprint_area(const footprint::Footprint& f) {
 // The stroke in work: everything between the hand's samples and the texels.
 struct Painting::Hand {
     Stroke stroke;
+    const Model* model = nullptr;          // that it is drawn on: the painting's, or the palette
+    const ink::Substrate* substrate = nullptr;
     brush::Tuft tuft;
     ink::Ink ink;
     ink::Reservoir reservoir;
@@ -79,15 +81,17 @@ struct Painting::Hand {
     Vec3 force{0};  // to the hand
     Vec3 last_position{0};
 
-    Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& model, ink::Canvas& canvas,
-         const ink::Substrate& substrate, double step_, double texel)
+    Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& on, ink::Canvas& canvas,
+         const ink::Substrate& ground, double step_, double texel)
         : stroke(std::move(s)),
+          model(&on),
+          substrate(&ground),
           tuft(std::move(held.tuft)),
           ink(i),
           reservoir(held.reservoir),
           dipped(std::move(held.dipped)),
           resampler({.step = step_, .lever = tuft.preset.length}),
-          stamper(model, canvas, stamp_options(stroke.settings), substrate),
+          stamper(on, canvas, stamp_options(stroke.settings), ground),
           step(step_),
           cell(0.5 * texel) {
         contact_options.method = stroke.settings.contact == "vertices" ? contact::Method::vertices
@@ -144,7 +148,8 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
     parted = travel;
 
     Stamp stamp;
-    const bool closed = least >= 1;
+    // On the palette the pool itself fills the gaps of dry hair.
+    const bool closed = least >= 1 || stroke.layer == kPaletteLayer;
     closed_area = 0;
     if (!closed) footprint::splay(trails, std::clamp((1 - mean) / kSplays, 0.0, 1.0));
     std::vector<footprint::Outline> outlines;
@@ -203,6 +208,7 @@ void Painting::settle(Stroke& entry) const {
         entry.edit.layer.id = layers_.next_id;
     if (entry.action == Action::mask && !entry.mask_edit.remove && entry.mask_edit.mask.id == 0)
         entry.mask_edit.mask.id = masks_.next_id;
+    if (entry.layer == kPaletteLayer) entry.settings.film = "wet";
     if (!has_brush(entry.action) || entry.trace.erases) return;
     const BrushInHand* last = held(entry.trace.brush);
     if (!last) entry.settings.dip = "each";
@@ -271,6 +277,7 @@ void Painting::act(const Stroke& entry) {
     if (entry.action == Action::dry) return dry(entry);
     if (entry.action == Action::layer) return edit_layers(entry);
     if (entry.action == Action::mask) return edit_masks(entry);
+    if (entry.action == Action::wash) return wash(entry);
     BrushInHand brush = take_up(entry);
     switch (entry.action) {
         case Action::dip:
@@ -288,6 +295,7 @@ void Painting::act(const Stroke& entry) {
         case Action::layer:
         case Action::mask:
         case Action::fill:
+        case Action::wash:
         case Action::stroke: break;
     }
     brush.tuft.ink_left = brush.reservoir.fullness();
@@ -305,16 +313,19 @@ void Painting::begin_hand(Stroke stroke) {
     settle(stroke);
     BrushInHand brush = take_up(stroke);
     const ink::Ink& ink = stroke.trace.erases ? ink::Ink{} : this->ink(brush.dipped);
-    const double texel = model_->texels.texel_size;
+    const Model& model = ground_of(stroke);
+    const ink::Substrate& substrate = substrate_of(stroke);
+    const double texel = model.texels.texel_size;
     const double spacing = stroke.settings.spacing * texel;
     ink::Canvas& canvas = this->canvas(stroke.layer);
     const MaskTexels* mask = stroke.mask ? &this->mask(stroke.mask) : nullptr;
-    hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, *model_, canvas, substrate_,
+    hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, model, canvas, substrate,
                                    spacing, texel);
     hand_->stamper.keep_to(mask);
     const Settings& settings = hand_->stroke.settings;
-    if (settings.film == "wet" && !hand_->stroke.trace.erases)
-        hand_->wet.emplace(film(), canvas, ink::film_params(substrate_, settings.down));
+    if (settings.film != "wet" || hand_->stroke.trace.erases) return;
+    if (&model == model_) hand_->wet.emplace(film(), canvas, ink::film_params(substrate, settings.down));
+    else hand_->wet.emplace(*plate().film, canvas, plate().params);
 }
 
 void Painting::extend(std::span<const brush::Pose> poses) {
@@ -345,7 +356,7 @@ void Painting::draw_poses() {
         // A hair that painted before comes through the air, as it sprang back.
         if (!h.moved && h.tuft.posed) brush::step(h.tuft, pose, {}, 0);
         contact::Result contact =
-            contact::step(h.tuft, pose, *model_->query, h.memory, dt, h.contact_options);
+            contact::step(h.tuft, pose, *h.model->query, h.memory, dt, h.contact_options);
         h.force += -std::expm1(-std::max(dt, 0.0) / kForceTime) * (contact.hand_force - h.force);
         if (!h.moved) h.force = contact.hand_force;
         h.last_time = pose.time;
@@ -383,8 +394,8 @@ void Painting::draw_poses() {
             // A batch shares what is left.
             .area = area * static_cast<double>(Stamper::kBatch),
             .touch = h.touched};
-        stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, substrate_);
-        stamp.ink.capacity = substrate_.capacity;
+        stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
+        stamp.ink.capacity = h.substrate->capacity;
         stamp.ds = h.step;
         if (h.stroke.trace.erases) stamp.erases = 0.25 + 0.75 * touch.moment_factor;  // as ink is given
         if (h.wet) {
@@ -443,7 +454,7 @@ std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
         if (is_new) lead->second = drag_lead(preset);
         options.lead = lead->second;
     }
-    return hand_path(*model_->query, steady(stroke.trace, stroke.settings), options).poses;
+    return hand_path(*ground_of(stroke).query, steady(stroke.trace, stroke.settings), options).poses;
 }
 
 StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
@@ -551,6 +562,7 @@ void Painting::repaint_all() {
     for (const LayerTexels& layer : canvases()) touch_look(layer.layer);
     canvas_.clear();
     upper_.clear();
+    if (palette_) palette_->canvas.clear();
     layers_ = {};
     masks_ = {};
     held_.clear();

@@ -18,6 +18,7 @@
 #include "ink/reservoir.h"
 #include "stroke/journal.h"
 #include "stroke/model.h"
+#include "stroke/palette.h"
 #include "stroke/placement.h"
 
 namespace tuft::stroke {
@@ -96,6 +97,12 @@ std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable ta
 /// `Error` for a mask that is not there.
 void keep_to_named_masks(std::vector<Stroke>& strokes, const MaskTable& table, const std::string& name = {});
 
+class Painting;
+
+/// Draws what the palette of a painting looks like: all of it, or only these slots anew.
+void refresh(PalettePicture& picture, const Painting& painting);
+void refresh(PalettePicture& picture, const Painting& painting, std::span<const std::uint32_t> slots);
+
 /// A model being painted: its journal and the texels made from it. The model must
 /// outlive it. All strokes take one path, whether they come from a file, a project or a
 /// hand that moves right now: sample → resample → contact → brush → footprint → ink.
@@ -170,6 +177,8 @@ class Painting {
     /// The layers now. They are changed by entries with `Action::layer` (see `LayerEdit`), which
     /// costs no texel; undo and redo go over them as over strokes.
     const LayerTable& layers() const { return layers_; }
+    /// The same and the palette, where there is something on it: what a project stores.
+    std::vector<LayerTexels> all_canvases() const;
     /// What is to be seen: the visible layers, or those of `show_only`.
     ink::Stack stack() const;
     /// Shows these layers alone, whatever the table says; empty: as it says. Not kept.
@@ -183,6 +192,17 @@ class Painting {
 
     /// The eyedropper: what lies at the surface point nearest to `point`.
     Pick pick(const Vec3& point) const;
+    /// The same on the palette, in its frame.
+    Pick pick_palette(const Vec3& point);
+
+    /// The texels of the palette; null while nothing was put on it. Strokes and fills with the
+    /// layer `kPaletteLayer` go onto it, always with wet ink; `Action::wash` cleans it. It is
+    /// no part of `hash`, `canvases` and `stack`.
+    const ink::Canvas* palette() const { return palette_ ? &palette_->canvas : nullptr; }
+    /// The plate; made at the first call.
+    const Model& palette_model() { return plate().model; }
+    /// Slots of the palette whose look changed since the last call, ascending.
+    std::vector<std::uint32_t> take_palette_dirty();
     /// An ink that is all pigment, in the proportions picked, and leaves as thick a film; nothing
     /// where the surface is bare. Take it up by `use_ink`.
     std::optional<ink::Ink> ink_of(const Pick& pick, const std::string& name) const;
@@ -206,6 +226,8 @@ class Painting {
     /// Slots whose look changed since the last call, ascending.
     std::vector<std::uint32_t> take_dirty();
 
+    friend void refresh(PalettePicture& picture, const Painting& painting, std::span<const std::uint32_t> slots);
+
   private:
     struct Hand;  // the stroke in work
     struct Undo {
@@ -226,6 +248,11 @@ class Painting {
     void act(const Stroke& entry);
     void dry(const Stroke& entry);
     ink::WetFilm& film();
+    Palette& plate();
+    void wash(const Stroke& entry);
+    const Model& ground_of(const Stroke& entry);
+    const ink::Substrate& substrate_of(const Stroke& entry) const;
+    Pick pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const;
     void edit_layers(const Stroke& entry);
     StrokeReport lay_fill(const Stroke& entry);
     void edit_masks(const Stroke& entry);
@@ -252,6 +279,7 @@ class Painting {
     ink::Canvas canvas_;                              ///< of kFirstLayer
     std::map<std::uint32_t, ink::Canvas> upper_;      ///< of the other layers
     LayerTable layers_;
+    std::unique_ptr<Palette> palette_;                ///< made when something is put on it
     MaskTable masks_;
     std::map<std::uint32_t, MaskTexels> mask_texels_;  ///< of those that were asked for
     std::vector<std::uint32_t> shown_;                ///< of `show_only`

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "core/parallel.h"
@@ -5,16 +6,28 @@
 
 /// Fills and gradients.
 namespace tuft::stroke {
+namespace {
+
+// The water that comes with a coat.
+void pour(ink::Canvas& canvas, std::uint32_t slot, const ink::Coat& coat) {
+    if (std::none_of(coat.film.begin(), coat.film.end(), [](float f) { return f > 0; })) return;
+    ink::Plane& liquid = canvas.touch_liquid(slot, ink::Liquid::film);
+    for (std::size_t t = 0; t < liquid.size(); ++t) liquid[t] += coat.film[t];
+}
+
+}  // namespace
 
 StrokeReport Painting::lay_fill(const Stroke& entry) {
     check_fill(entry.fill);
     const Fill& fill = entry.fill;
     const ink::Mix first = mix_of(entry.trace.ink);
     const ink::Mix second = fill.to_ink.empty() ? first : mix_of(fill.to_ink);
-    const std::vector<std::uint8_t> charts = charts_of(fill, *model_);
+    const bool on_palette = entry.layer == kPaletteLayer;
+    const Model& model = ground_of(entry);
+    const std::vector<std::uint8_t> charts = charts_of(fill, model);
     ink::Canvas& canvas = this->canvas(entry.layer);
-    const MaskTexels* mask = entry.mask ? &this->mask(entry.mask) : nullptr;
-    const atlas::TexelMap& map = model_->texels;
+    const MaskTexels* mask = entry.mask && !on_palette ? &this->mask(entry.mask) : nullptr;
+    const atlas::TexelMap& map = model.texels;
 
     std::vector<std::uint32_t> slots;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
@@ -43,7 +56,8 @@ StrokeReport Painting::lay_fill(const Stroke& entry) {
                 coat.towards[t] = static_cast<float>(along);
             }
             if (mask) mask->apply(slots[i], coat.film);
-            laid[i] = ink::lay_coat(canvas, slots[i], tile.area, coat, substrate_.capacity);
+            laid[i] = ink::lay_coat(canvas, slots[i], tile.area, coat, substrate_of(entry).capacity);
+            if (on_palette) pour(canvas, slots[i], coat);
         }
     });
     keep_undo(std::move(undo));

@@ -24,6 +24,10 @@ bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id) {
 std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable table, const std::string& name) {
     std::vector<Stroke> out;
     for (Stroke& s : strokes) {
+        if (s.layer == kPaletteLayer) {
+            out.push_back(std::move(s));
+            continue;
+        }
         const std::string& wanted = s.trace.layer.empty() ? name : s.trace.layer;
         if (!wanted.empty() && !table.find(wanted)) {
             Stroke entry;
@@ -40,6 +44,12 @@ std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable ta
 }
 
 ink::Canvas& Painting::canvas(std::uint32_t layer) {
+    if (layer == kPaletteLayer) {
+        ink::Canvas& canvas = plate().canvas;
+        for (std::size_t p = canvas.pigments().size(); p < canvas_.pigments().size(); ++p)
+            canvas.add_pigment(canvas_.pigments()[p]);
+        return canvas;
+    }
     if (!layers_.find(layer)) throw Error("there is no layer " + std::to_string(layer));
     if (layer == kFirstLayer) return canvas_;
     ink::Canvas& canvas = upper_.at(layer);
@@ -115,6 +125,7 @@ std::vector<std::uint32_t> Painting::take_dirty() {
 // Before the hand begins: what it may not do. A replay may, since the lock came after it.
 void Painting::check_layer(const Stroke& entry) const {
     if (entry.action != Action::stroke && entry.action != Action::fill) return;
+    if (entry.layer == kPaletteLayer) return;
     const Layer* layer = layers_.find(entry.layer);
     if (!layer) throw Error("there is no layer " + std::to_string(entry.layer) + " to paint on");
     if (entry.mask && !masks_.find(entry.mask)) throw Error("there is no mask " + std::to_string(entry.mask));
@@ -181,9 +192,11 @@ void Painting::take_back_layers(Undo& undo) {
 }
 
 void Painting::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id) {
-    for (const LayerCanvas& layer : canvases)
-        if (layer.canvas.n_slots() != model_->texels.n_slots())
+    for (const LayerCanvas& layer : canvases) {
+        const Model& model = layer.layer == kPaletteLayer ? plate().model : *model_;
+        if (layer.canvas.n_slots() != model.texels.n_slots())
             throw Error("the stored texels belong to another atlas");
+    }
     if (!fits(strokes, stroke_id)) throw Error("the stored texels belong to other strokes");
     const auto last = std::find_if(strokes.begin(), strokes.end(),
                                    [stroke_id](const Stroke& s) { return s.id == stroke_id; });
@@ -194,6 +207,7 @@ void Painting::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canva
     std::map<std::uint32_t, ink::Canvas> upper;
     for (LayerCanvas& layer : canvases) {
         if (layer.layer == kFirstLayer) first = std::move(layer.canvas);
+        else if (layer.layer == kPaletteLayer) plate().canvas = std::move(layer.canvas);
         else upper.insert_or_assign(layer.layer, std::move(layer.canvas));
     }
     for (const auto& [id, canvas] : upper) {

@@ -12,7 +12,7 @@ MaskTable masks_after(std::span<const Stroke> entries) {
 
 void keep_to_named_masks(std::vector<Stroke>& strokes, const MaskTable& table, const std::string& name) {
     for (Stroke& s : strokes) {
-        if (s.action != Action::stroke && s.action != Action::fill) continue;
+        if ((s.action != Action::stroke && s.action != Action::fill) || s.layer == kPaletteLayer) continue;
         const std::string& wanted = s.trace.mask.empty() ? name : s.trace.mask;
         if (wanted.empty()) continue;
         const Mask* mask = table.find(wanted);

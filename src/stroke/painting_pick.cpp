@@ -6,16 +6,18 @@
 /// The eyedropper.
 namespace tuft::stroke {
 
-Pick Painting::pick(const Vec3& point) const {
-    const auto at = model_->query->closest_point(point);
+Pick Painting::pick(const Vec3& point) const { return pick_at(point, *model_, shown_layers()); }
+
+Pick Painting::pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const {
+    const auto at = model.query->closest_point(point);
     if (!at) throw Error("there is no surface to look at");
     Pick pick;
     pick.at = *at;
-    pick.texel = atlas::texel_at(*model_->mesh, model_->atlas, model_->texels, at->triangle, at->position);
+    pick.texel = atlas::texel_at(*model.mesh, model.atlas, model.texels, at->triangle, at->position);
     if (!pick.texel.valid()) return pick;
     const std::uint32_t slot = pick.texel.slot;
     const std::uint8_t t = pick.texel.texel;
-    for (const LayerTexels& layer : shown_layers()) {
+    for (const LayerTexels& layer : layers) {
         const ink::Canvas& canvas = *layer.canvas;
         for (int film = 0; film < ink::kFilms; ++film) {
             PickedFilm picked{.layer = layer.layer, .film = film, .amounts = {}};

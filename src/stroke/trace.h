@@ -46,6 +46,7 @@ enum class Action {
     mask,     ///< changes the table of masks; likewise
     fill,     ///< lays ink over a whole part of the model; likewise
     wipe,     ///< draws it over a rag: part of its ink goes
+    wash,     ///< washes the palette clean
 };
 
 /// How far a brush is dipped, or wiped.
@@ -78,6 +79,7 @@ struct Trace {
     bool placed = false;                 ///< the file says where; else the placement is only a default
     std::vector<TraceSample> samples;    ///< time never falls
     std::string brush, ink;              ///< preset names; empty: as the command line says
+    bool on_palette = false;             ///< belongs on the palette, in its frame (palette.h)
     bool erases = false;                 ///< takes ink away, wet and dry, where it would leave some
     std::string mask;                    ///< name of the mask it keeps to; empty: as the command line says
     std::string layer;                   ///< name of the layer; empty: as the command line says

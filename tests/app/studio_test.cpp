@@ -202,6 +202,22 @@ TEST_F(StudioProgram, AMixturePickedUpIsAnInkOfTheProject) {
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }
 
+TEST_F(StudioProgram, InksMixOnThePaletteAndTheMixtureReplays) {
+    const Ran ran = studio(kBowl + "set palette on\nwait 0.1\nset palette-tool pour\nset ink cinnabar\nmove 370,150\npress\nrelease\nwait-ready\n"
+                                   "set ink gamboge\nmove 440,150\npress\nrelease\nwait-ready\nset palette-tool brush\nclick \"Rinse the brush\"\nwait-ready\n"
+                                   "stroke 355,150 455,150 360,155\nwait-ready\nexpect strokes 4\nset palette off\nset wet on\nstroke 52%,60% 57%,61%\nwait-ready\nexpect strokes 5\n"
+                                   "undo\nwait-ready\nundo\nwait-ready\nexpect strokes 3\nredo\nredo\nwait-ready\nexpect strokes 5\nexpect kept\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = io::Project::open(path("work.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 5u);
+    EXPECT_EQ(strokes[0].layer, stroke::kPaletteLayer);
+    EXPECT_EQ(strokes[2].action, stroke::Action::rinse);
+    EXPECT_EQ(strokes[3].layer, stroke::kPaletteLayer);
+    EXPECT_EQ(strokes[4].layer, stroke::kFirstLayer);
+    EXPECT_EQ(strokes[4].trace.ink, strokes[3].trace.ink) << "the brush was not dipped anew";
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
+}
+
 TEST_F(StudioProgram, StrokesKeepToAMaskDrawnOnTheModel) {
     const std::string lasso = "set tool mask\nset mask-kind lasso\nmove 49%,50%\npress\nmove 60%,50%\nmove 60%,66%\nmove 49%,66%\nrelease\nwait-ready\nwait 0.1\nset tool brush\n";
     const std::string crossing = "stroke 44%,58% 55%,59%\nwait-ready\n";

@@ -219,7 +219,7 @@ TEST(Project, LayersComeBackWithTheirTiles) {
     // In any order; 3 is empty, 2 lies lowest.
     const std::vector<stroke::LayerTexels> all{{2, &gold}, {1, &first}, {3, &empty}};
     project.save_canvases(all, 7);
-    EXPECT_EQ(project.format(), kProjectFormat) << "older programs do not know layers";
+    EXPECT_EQ(project.format(), kLayersFormat) << "older programs do not know layers";
     auto saved = Project::open(folder / "a.tuft").load_canvases(20);
     ASSERT_TRUE(saved);
     EXPECT_EQ(saved->stroke_id, 7u);
@@ -407,7 +407,7 @@ TEST(Project, ForeignFilesAreNamedAsSuch) {
     EXPECT_NE(fault(folder / "o.tuft").find("not a tuft project"), std::string::npos);
     bytes[63] = 9;  // user_version
     write_file(folder / "n.tuft", bytes.data(), bytes.size());
-    EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to 3)"),
+    EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to " + std::to_string(kProjectFormat) + ")"),
               std::string::npos);
     EXPECT_THROW(Project::create(folder / "no/where/a.tuft", sample_model()), Error);
 }

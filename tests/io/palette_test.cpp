@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "io/inkml.h"
+#include "io/project.h"
+#include "io/restore.h"
+
+namespace tuft::io {
+namespace {
+
+// A pool of each ink, and a stroke through both of them.
+std::vector<stroke::Stroke> mixing() {
+    std::vector<stroke::Stroke> entries;
+    for (const auto& [ink, x] : {std::pair{"cinnabar", -0.006}, std::pair{"gamboge", 0.006}}) {
+        stroke::Stroke pool;
+        pool.action = stroke::Action::fill;
+        pool.trace.flat = false;
+        pool.trace.ink = ink;
+        pool.layer = stroke::kPaletteLayer;
+        pool.fill = {.film = 50, .gradient = stroke::Gradient::round, .to_film = 0, .from = {x, 0, 0}, .to = {x + 0.006, 0, 0}};
+        entries.push_back(pool);
+    }
+    stroke::Stroke s;
+    s.trace.brush = "wolf-small";
+    s.trace.ink = "cinnabar";
+    s.layer = stroke::kPaletteLayer;
+    s.settings.spacing = 4;
+    for (int i = 0; i <= 20; ++i) s.trace.samples.push_back({.time = 0.02 * i, .position = {-0.01 + 0.001 * i, 0, 0}, .pressure = 0.6});
+    entries.push_back(s);
+    return entries;
+}
+
+TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
+    const stroke::Model model = stroke::make_palette();  // any model will do
+    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tuft_palette.tuft";
+    stroke::Painting painting(model);
+    for (const stroke::Stroke& s : mixing()) painting.paint(s);
+    const std::uint64_t last = painting.journal().strokes().back().id;
+    {
+        ProjectModel stored;
+        stored.mesh = *model.mesh;
+        stored.atlas = model.atlas;
+        stored.substrate = ink::substrate_toml(painting.painted_on());
+        Project project = Project::create(file, stored);
+        project.append(painting.journal().strokes());
+        EXPECT_EQ(project.format(), 4) << "programs without a palette would paint on the model";
+        project.save_canvases(painting.all_canvases(), last);
+    }
+    const Project project = Project::open(file);
+    EXPECT_EQ(project.strokes()[0].layer, stroke::kPaletteLayer);
+    stroke::Painting back(model);
+    restore_strokes(project, back, [](std::string_view phase, double) {
+        ADD_FAILURE() << "a replay: " << phase;
+        return true;
+    });
+    ASSERT_NE(back.palette(), nullptr);
+    EXPECT_EQ(back.palette()->hash(), painting.palette()->hash());
+    EXPECT_EQ(back.hash(), painting.hash());
+    // The eyedropper there: both pigments in the pool that was crossed second.
+    const stroke::Pick pick = back.pick_palette({0.006, 0, 0});
+    EXPECT_GT(pick.amounts[0], 0);
+    EXPECT_GT(pick.amounts[1], 0);
+    ASSERT_EQ(pick.films.size(), 1u);
+    EXPECT_EQ(pick.films[0].layer, stroke::kPaletteLayer);
+    std::filesystem::remove(file);
+}
+
+TEST(Palette, StrokeFilesSayWhatBelongsOnIt) {
+    std::vector<stroke::Trace> traces(2);
+    for (stroke::Trace& t : traces) t.samples = {{.position = {0, 0, 0}, .pressure = 0.5}, {.time = 0.5, .position = {0.01, 0, 0}, .pressure = 0.5}};
+    traces[1].on_palette = true;
+    const std::vector<stroke::Trace> read = parse_inkml(inkml_text(traces), "test");
+    ASSERT_EQ(read.size(), 2u);
+    EXPECT_FALSE(read[0].on_palette);
+    EXPECT_TRUE(read[1].on_palette);
+}
+
+}  // namespace
+}  // namespace tuft::io

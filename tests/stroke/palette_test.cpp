@@ -1,0 +1,184 @@
+#include "stroke/palette.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+const std::string kBrush = "wolf-medium";
+
+// A pool of ink on the palette, 16 mm wide and half a millimetre deep in its middle.
+Stroke pool(const std::string& ink, const Vec3& at) {
+    Stroke s;
+    s.action = Action::fill;
+    s.trace.flat = false;
+    s.trace.ink = ink;
+    s.layer = kPaletteLayer;
+    s.fill = {.film = 50, .gradient = Gradient::round, .to_film = 0, .from = at, .to = at + Vec3{0.008, 0, 0}};
+    return s;
+}
+
+// A stroke through a place, on the palette or the model, with what is in the brush.
+Stroke through(const Vec3& at, std::uint32_t layer, const std::string& ink) {
+    Stroke s = line(kBrush, 8e-3, make_frame(at, {0, 0, 1}, {1, 0, 0}));
+    s.trace.ink = ink;
+    s.layer = layer;
+    s.settings.dip = "carry";
+    s.settings.film = "wet";
+    s.settings.spacing = 3;  // coarse is enough here, and quick
+    return s;
+}
+
+Stroke rinse(const std::string& ink) {
+    Stroke s;
+    s.action = Action::rinse;
+    s.trace.flat = false;
+    s.trace.brush = kBrush;
+    s.trace.ink = ink;
+    return s;
+}
+
+std::vector<Stroke> mixing() {
+    return {pool("cinnabar", {-0.012, 0, 0}), pool("gamboge", {0.012, 0, 0}), rinse("cinnabar"),
+            through({-0.012, 0, 0}, kPaletteLayer, "cinnabar"), through({0.012, 0, 0}, kPaletteLayer, "cinnabar"),
+            through({0, 0, 0}, kFirstLayer, "cinnabar")};
+}
+
+// Of pigment `plane`: on palette and model, and in the brush, film·m².
+double all_of(Painting& painting, int plane) {
+    double sum = painting.canvas().total(painting.model().texels, plane);
+    if (painting.palette()) sum += painting.palette()->total(painting.palette_model().texels, plane);
+    if (const BrushInHand* brush = painting.held(kBrush)) sum += brush->reservoir.pigment(plane);
+    return sum;
+}
+
+TEST(Palette, ItsTexelsLieWhereTheyAreSaidTo) {
+    const Model plate = make_palette();
+    ASSERT_EQ(plate.atlas.size, kPaletteTexels);
+    EXPECT_NEAR(plate.atlas.texel_size, kPaletteTexel, 1e-9);
+    std::size_t covered = 0;
+    for (std::uint32_t slot = 0; slot < plate.texels.n_slots(); ++slot)
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            if (plate.texels.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+            const std::uint32_t tile = plate.texels.tile_of_slot[slot];
+            const double i = tile % plate.texels.tiles_per_side * 16.0 + t % 16, j = tile / plate.texels.tiles_per_side * 16.0 + t / 16;
+            const Vec3 wanted{(i + 0.5) * kPaletteTexel - 0.064, (j + 0.5) * kPaletteTexel - 0.049, 0};
+            // Positions are floats of some centimetres.
+            EXPECT_LT(glm::distance(Vec3(plate.texels.position(slot, t)), wanted), 1e-8);
+            EXPECT_NEAR(static_cast<double>(plate.texels.tiles[slot].area[t]), kPaletteTexel * kPaletteTexel, 1e-12);
+            ++covered;
+        }
+    EXPECT_EQ(covered, 480u * 360u);
+}
+
+TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
+    const Model model = sheet();
+    Painting painting(model);
+    const std::vector<Stroke> strokes = mixing();
+    for (std::size_t i = 0; i < 3; ++i) painting.paint(strokes[i]);
+    const int red = 0, yellow = 1;
+    ASSERT_EQ(painting.canvas().pigments().size(), 2u);
+    // A cone of 50 units: π r² h / 3, times the pigment's part of the ink.
+    const double cone = 3.14159265 * 0.008 * 0.008 * 50 / 3 * painting.ink("cinnabar").parts[0].fraction;
+    EXPECT_NEAR(painting.palette()->total(painting.palette_model().texels, red) / cone, 1, 1e-3);  // texels of 1/64 of its width
+    const double before[] = {all_of(painting, red), all_of(painting, yellow)};
+    EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), 0);
+
+    painting.paint(strokes[3]);
+    EXPECT_GT(painting.held(kBrush)->reservoir.fullness(), 0.02);
+    EXPECT_EQ(painting.held(kBrush)->reservoir.pigment(yellow), 0);
+    painting.paint(strokes[4]);
+    const ink::Reservoir& loaded = painting.held(kBrush)->reservoir;
+    EXPECT_GT(loaded.pigment(red), 0);
+    EXPECT_GT(loaded.pigment(yellow), 0);
+    EXPECT_EQ(painting.canvas().total(model.texels, red), 0) << "the model is clean so far";
+
+    painting.paint(strokes[5]);
+    for (const int p : {red, yellow}) EXPECT_GT(painting.canvas().total(model.texels, p), 0);
+
+    // Stirred to and fro over both pools, what lies between them is of both.
+    for (int i = 0; i < 3; ++i) painting.paint(through({0, 0, 0}, kPaletteLayer, "cinnabar"));
+    const Pick between = painting.pick_palette({0, 0, 0});
+    EXPECT_GT(between.amounts[red], 0.05 * between.amounts[yellow]);
+    EXPECT_GT(between.amounts[yellow], 0.05 * between.amounts[red]);
+    // Amounts are floats on texels, some 1e5 of them: what goes astray is rounding.
+    for (const int p : {red, yellow}) EXPECT_NEAR(all_of(painting, p) / before[p], 1, 1e-5);
+}
+
+TEST(Palette, ReplaysAndIsTakenBackToTheBit) {
+    const Model model = sheet();
+    Painting painting(model);
+    std::vector<std::uint64_t> palette, texels;
+    const auto note = [&] {
+        palette.push_back(painting.palette() ? painting.palette()->hash() : 0);
+        texels.push_back(painting.hash());
+    };
+    for (const Stroke& s : mixing()) {
+        painting.paint(s);
+        note();
+    }
+    Stroke wash;
+    wash.action = Action::wash;
+    wash.trace.flat = false;
+    painting.paint(wash);
+    EXPECT_TRUE(painting.palette()->touched_slots().empty());
+    EXPECT_EQ(painting.hash(), texels.back());
+
+    // Hashes tell the pigments met so far: from the second pool on there are two.
+    for (std::size_t i = palette.size(); i-- > 1;) {
+        ASSERT_TRUE(painting.undo());
+        EXPECT_EQ(painting.palette()->hash(), palette[i]) << i;
+        EXPECT_EQ(painting.hash(), texels[i]) << i;
+    }
+    for (std::size_t i = 2; i < palette.size(); ++i) ASSERT_TRUE(painting.redo());
+    EXPECT_EQ(painting.palette()->hash(), palette.back());
+    EXPECT_EQ(painting.hash(), texels.back());
+
+    Painting again(model);
+    again.replay(painting.journal().strokes());
+    EXPECT_EQ(again.palette()->hash(), palette.back());
+    EXPECT_EQ(again.hash(), texels.back());
+    EXPECT_NE(texels.back(), texels.front());
+}
+
+TEST(Palette, PicturesShowThePoolsInTheirPlaces) {
+    const Model model = sheet();
+    Painting painting(model);
+    PalettePicture bare, inked;
+    painting.paint(rinse("cinnabar"));
+    painting.palette_model();
+    refresh(bare, painting);
+    painting.paint(pool("cinnabar", {0.03, 0.02, 0}));
+    inked = bare;
+    refresh(inked, painting, painting.take_palette_dirty());
+    // 0.03 m to the right of the middle and 0.02 above it, in pixels of 0.25 mm.
+    const auto at = [](const PalettePicture& p, int x, int y) { return &p.rgb[3 * static_cast<std::size_t>(y * p.width + x)]; };
+    const std::uint8_t *there = at(inked, 240 + 120, 180 - 80), *mirrored = at(inked, 240 + 120, 180 + 80);
+    EXPECT_GT(there[0], there[2] + 60) << "red";
+    EXPECT_EQ(std::vector(mirrored, mirrored + 3), std::vector(at(bare, 360, 260), at(bare, 360, 260) + 3));
+    PalettePicture whole;
+    refresh(whole, painting);
+    EXPECT_EQ(whole.rgb, inked.rgb);
+}
+
+TEST(Palette, IsNoLayerThatCouldBeMade) {
+    LayerTable table;
+    table.next_id = kPaletteLayer;
+    EXPECT_THROW(apply(table, add_on_top(table, "mine")), Error);
+    Stroke entry;
+    EXPECT_THROW(read_entry_json(R"({"layer": 4294967294})", entry), Error);
+    read_entry_json(R"({"on": "palette"})", entry);
+    EXPECT_EQ(entry.layer, kPaletteLayer);
+    EXPECT_THROW(read_entry_json(R"({"on": "table"})", entry), Error);
+    Stroke again;
+    read_entry_json(entry_json(entry), again);
+    EXPECT_EQ(again.layer, kPaletteLayer);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
