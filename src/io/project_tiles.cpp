@@ -220,7 +220,8 @@ std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::
                                       std::to_string(stroke::kMaxLayers + 1));
         while (ids.executeStep()) {
             const std::int64_t id = ids.getColumn(0).getInt64();
-            if (id <= stroke::kFirstLayer || id >= std::int64_t{kNone} || layers.size() >= stroke::kMaxLayers)
+            const std::size_t most = stroke::kMaxLayers + (id == stroke::kPaletteLayer ? 1 : 0);
+            if (id <= stroke::kFirstLayer || id >= std::int64_t{kNone} || layers.size() >= most)
                 damaged(path, "it has tiles of a layer that cannot be");
             add(static_cast<std::uint32_t>(id));
         }

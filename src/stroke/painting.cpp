@@ -318,7 +318,9 @@ void Painting::begin_hand(Stroke stroke) {
     const double texel = model.texels.texel_size;
     const double spacing = stroke.settings.spacing * texel;
     ink::Canvas& canvas = this->canvas(stroke.layer);
-    const MaskTexels* mask = stroke.mask ? &this->mask(stroke.mask) : nullptr;
+    // Masks are of the model's texels.
+    const bool masked = stroke.mask && stroke.layer != kPaletteLayer;
+    const MaskTexels* mask = masked ? &this->mask(stroke.mask) : nullptr;
     hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, model, canvas, substrate,
                                    spacing, texel);
     hand_->stamper.keep_to(mask);

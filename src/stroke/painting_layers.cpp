@@ -205,6 +205,7 @@ void Painting::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canva
     MaskTable masks = masks_after({strokes.begin(), rest});
     ink::Canvas first(model_->texels.n_slots());
     std::map<std::uint32_t, ink::Canvas> upper;
+    if (palette_) palette_->canvas.clear();
     for (LayerCanvas& layer : canvases) {
         if (layer.layer == kFirstLayer) first = std::move(layer.canvas);
         else if (layer.layer == kPaletteLayer) plate().canvas = std::move(layer.canvas);

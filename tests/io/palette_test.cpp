@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "core/error.h"
 #include "io/inkml.h"
 #include "io/project.h"
 #include "io/restore.h"
@@ -63,6 +64,32 @@ TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
     EXPECT_GT(pick.amounts[1], 0);
     ASSERT_EQ(pick.films.size(), 1u);
     EXPECT_EQ(pick.films[0].layer, stroke::kPaletteLayer);
+    std::filesystem::remove(file);
+}
+
+TEST(Palette, IsOneMoreThanTheMostLayers) {
+    const stroke::Model model = stroke::make_palette();
+    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tuft_palette_layers.tuft";
+    stroke::Painting painting(model);
+    painting.paint(mixing()[0]);
+    const stroke::LayerTexels palette = painting.all_canvases().back();
+    ASSERT_EQ(palette.layer, stroke::kPaletteLayer);
+    std::vector<stroke::LayerTexels> all;
+    for (std::uint32_t i = 0; i < stroke::kMaxLayers; ++i) all.push_back({stroke::kFirstLayer + i, palette.canvas});
+    const auto stored = [&](const std::vector<stroke::LayerTexels>& canvases) {
+        ProjectModel kept;
+        kept.mesh = *model.mesh;
+        kept.atlas = model.atlas;
+        kept.substrate = ink::substrate_toml(painting.painted_on());
+        Project project = Project::create(file, kept);
+        project.append(painting.journal().strokes());
+        project.save_canvases(canvases, painting.journal().strokes().back().id);
+        return project.load_canvases(model.texels.n_slots())->layers.size();
+    };
+    all.push_back(palette);
+    EXPECT_EQ(stored(all), stroke::kMaxLayers + 1);
+    all.insert(all.end() - 1, {static_cast<std::uint32_t>(stroke::kFirstLayer + stroke::kMaxLayers), palette.canvas});
+    EXPECT_THROW(stored(all), Error);
     std::filesystem::remove(file);
 }
 

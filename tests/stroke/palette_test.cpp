@@ -76,6 +76,27 @@ TEST(Palette, ItsTexelsLieWhereTheyAreSaidTo) {
     EXPECT_EQ(covered, 480u * 360u);
 }
 
+TEST(Palette, NoMaskOfTheModelHoldsOnIt) {
+    const Model model = sheet();
+    Stroke mask;
+    mask.action = Action::mask;
+    mask.trace.flat = false;
+    mask.mask_edit.mask = {.id = 1, .name = "under", .kind = MaskKind::angle, .direction = {0, 0, -1}, .within = 0.5};
+    const auto painted = [&](std::uint32_t with) {
+        Painting painting(model);
+        painting.paint(mask);
+        std::vector<Stroke> strokes = mixing();
+        strokes.resize(4);
+        for (Stroke& s : strokes) {
+            if (s.layer == kPaletteLayer) s.mask = with;
+            painting.paint(s);
+        }
+        return std::pair{painting.palette()->hash(), painting.hash()};
+    };
+    // A project from elsewhere may say so, and its model may have fewer texels than the palette.
+    EXPECT_EQ(painted(1), painted(0));
+}
+
 TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
     const Model model = sheet();
     Painting painting(model);
