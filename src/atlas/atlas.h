@@ -51,6 +51,10 @@ struct AskedSeams {
     bool any() const { return groups || sharp_angle > 0; }
 };
 
+/// Whether large charts are halved so that one page of a given size is covered better: never,
+/// where less than 65 % of it would be covered, or as long as it gains much.
+enum class Cutting { never, where_useful, tight };
+
 struct UnwrapOptions {
     std::uint32_t size = 0;        ///< texels per side (of a page); 0: from texel_size
     double texel_size = 0;         ///< metres; used when size is 0. Both 0: size 2048
@@ -63,7 +67,7 @@ struct UnwrapOptions {
     UvPolicy uvs = UvPolicy::automatic;
     AskedSeams seams;              ///< these, and pages, make new UVs unless `keep` is asked
     std::uint32_t max_size = 16384;  ///< of all pages together
-    bool tight = false;  ///< cut large charts where one page of `size` is covered better then
+    Cutting cutting = Cutting::where_useful;
     ProgressFn progress;
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "atlas/hull.h"
 #include "atlas/straighten.h"
@@ -14,9 +15,9 @@ namespace tuft::atlas {
 namespace {
 
 constexpr int kMostCuts = 6;
+constexpr double kBeyond = 1.03;  // of the goal, once charts are cut: a short search errs by this
 constexpr std::size_t kCandidates = 4;   // largest charts that are tried
-constexpr std::size_t kMostCharts = 64;  // with more, small ones fill the gaps
-constexpr int kTrials = 48;              // of the packer, to compare layouts
+constexpr std::size_t kMostCharts = 48;  // with more, small ones fill the gaps
 constexpr std::size_t kDear = 200000;    // triangles of a chart that is left as it is
 
 std::vector<Vec2> border_of(const FlatChart& chart) {
@@ -104,11 +105,46 @@ std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut,
     return halves;
 }
 
-void apply(CutMesh& cut, std::uint32_t chart, Halves halves) {
+void apply(CutMesh& cut, std::uint32_t chart, const Halves& halves) {
     for (const std::uint32_t h : halves.cut) cut.glued[h] = kNone;
-    cut.charts[chart] = std::move(halves.parts[0]);
-    for (std::size_t i = 1; i < halves.parts.size(); ++i)
-        cut.charts.push_back(std::move(halves.parts[i]));
+    cut.charts[chart] = halves.parts[0];
+    cut.charts.insert(cut.charts.end(), halves.parts.begin() + 1, halves.parts.end());
+}
+
+/// Charts to be cut together.
+using Proposal = std::vector<std::pair<std::uint32_t, Halves>>;
+
+/// Each of the charts with the largest boxes, and the two largest together.
+std::vector<Proposal> proposals(const mesh::TriangleMesh& mesh, const CutMesh& cut, double gap) {
+    std::vector<double> box(cut.charts.size());
+    for (std::size_t c = 0; c < box.size(); ++c) {
+        const Rectangle r = smallest_rectangle(chart_hull(cut.charts[c]));
+        box[c] = r.length * r.width;
+    }
+    std::vector<std::uint32_t> order(box.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return box[a] > box[b]; });
+    order.resize(std::min(order.size(), kCandidates));
+    std::vector<std::optional<Halves>> halves(order.size());
+    run_tasks(order.size(),
+              [&](std::size_t i) { halves[i] = halve(mesh, cut, cut.charts[order[i]], gap); });
+    std::vector<Proposal> all;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        if (halves[i]) all.push_back({{order[i], *halves[i]}});
+    if (order.size() > 1 && halves[0] && halves[1])
+        all.push_back({{order[0], *halves[0]}, {order[1], *halves[1]}});
+    return all;
+}
+
+std::vector<std::vector<Vec2>> borders_after(std::vector<std::vector<Vec2>> borders,
+                                             const Proposal& proposal) {
+    for (const auto& [chart, halves] : proposal) {
+        borders[chart] = border_of(halves.parts[0]);
+        for (std::size_t p = 1; p < halves.parts.size(); ++p)
+            borders.push_back(border_of(halves.parts[p]));
+    }
+    return borders;
 }
 
 }  // namespace
@@ -120,40 +156,39 @@ std::vector<std::vector<Vec2>> chart_borders(const CutMesh& cut) {
     return borders;
 }
 
-int cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options) {
-    options.trials = kTrials;
-    options.progress = {};
+CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
+                      double goal) {
+    CutToPack result;
+    std::vector<std::vector<Vec2>> borders = chart_borders(cut);
     double area = 0;
     for (const FlatChart& chart : cut.charts) area += chart.mesh.area;
-    std::vector<std::vector<Vec2>> borders = chart_borders(cut);
-    double use = cut.charts.size() > kMostCharts ? 1 : use_of(pack(borders, options), area);
-    int cuts = 0;
-    for (; cuts < kMostCuts && use < kGoodUse; ++cuts) {
-        std::vector<std::uint32_t> order(cut.charts.size());
-        std::iota(order.begin(), order.end(), 0u);
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return cut.charts[a].mesh.area > cut.charts[b].mesh.area;
+    result.packing = pack(borders, options);
+    const double whole_use = use_of(*result.packing, area);
+    if (cut.charts.size() > kMostCharts || whole_use >= goal) return result;
+    options.search = Search::coarse;
+    const ProgressFn progress = std::exchange(options.progress, {});
+    double use = use_of(pack(borders, options), area);
+    goal *= kBeyond * use / whole_use;  // what coarse masks will show of it
+    for (; result.cuts < kMostCuts && use < goal; borders = chart_borders(cut)) {
+        report(progress, "cut to pack", double(result.cuts) / kMostCuts);
+        const std::vector<Proposal> all = proposals(mesh, cut, gap);
+        std::vector<double> gained(all.size(), 0);
+        run_tasks(all.size(), [&](std::size_t i) {
+            gained[i] = use_of(pack(borders_after(borders, all[i]), options), area);
+            // Two cuts have to gain as much as each of them would.
+            if (gained[i] < goal && gained[i] < std::pow(kCutGain, all[i].size()) * use)
+                gained[i] = 0;
         });
-        order.resize(std::min(order.size(), kCandidates));
-        std::vector<std::optional<Halves>> halves(order.size());
-        std::vector<double> gained(order.size(), 0);
-        run_tasks(order.size(), [&](std::size_t i) {
-            halves[i] = halve(mesh, cut, cut.charts[order[i]], gap);
-            if (!halves[i]) return;
-            std::vector<std::vector<Vec2>> trial = borders;
-            trial[order[i]] = border_of(halves[i]->parts[0]);
-            for (std::size_t p = 1; p < halves[i]->parts.size(); ++p)
-                trial.push_back(border_of(halves[i]->parts[p]));
-            gained[i] = use_of(pack(trial, options), area);
-        });
-        const auto best = static_cast<std::size_t>(
-            std::max_element(gained.begin(), gained.end()) - gained.begin());
-        if (gained.empty() || gained[best] < kCutGain * use) break;
-        use = gained[best];
-        apply(cut, order[best], std::move(*halves[best]));
-        borders = chart_borders(cut);
+        const auto best = std::max_element(gained.begin(), gained.end());
+        if (best == gained.end() || *best <= use) break;
+        use = *best;
+        result.packing.reset();
+        for (const auto& [chart, halves] : all[static_cast<std::size_t>(best - gained.begin())]) {
+            apply(cut, chart, halves);
+            ++result.cuts;
+        }
     }
-    return cuts;
+    return result;
 }
 
 }  // namespace tuft::atlas

@@ -1,17 +1,26 @@
 #pragma once
 
+#include <optional>
+
 #include "atlas/charts.h"
 #include "atlas/pack.h"
 
 namespace tuft::atlas {
 
-/// Halves large charts across their length where the page is then covered better: rings, long
-/// bows, a few large squares. Only while less than `kGoodUse` of the page is covered, and only
-/// if each cut gains `kCutGain`. The halves lie flat as the whole did. `gap` as in
-/// `ChartOptions`. Returns the number of cuts.
-int cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options);
+struct CutToPack {
+    int cuts = 0;
+    std::optional<Packing> packing;  ///< of the charts as they are, when none was cut
+};
 
-inline constexpr double kGoodUse = 0.66;   ///< covered part of the page
+/// Halves large charts across their length where the page is then covered better: rings, long
+/// bows, a few large squares. Only while less than `goal` of the page is covered, and only if
+/// each cut gains a part of `kCutGain`, or reaches the goal. The halves lie flat as the whole
+/// did. `gap` as in `ChartOptions`.
+CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
+                      double goal);
+
+inline constexpr double kGoodUse = 0.65;   ///< covered part of a page that is good enough
+inline constexpr double kTightUse = 0.85;  ///< where it shall be as large as it can
 inline constexpr double kCutGain = 1.035;  ///< over before
 
 /// Borders of the charts in the plane, as `pack` wants them.

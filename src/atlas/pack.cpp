@@ -20,17 +20,23 @@ constexpr std::uint32_t kCells =
     1024;  // cells per side of the page that masks are made on, at most
 constexpr std::uint32_t kCoarseCells = 512;  // the same while searching
 constexpr double kStep = 1.01;               // by which the search raises the scale
+constexpr double kFineStep = 1.003;          // the same on fine masks
+constexpr double kOverhang = 1.3;  // height of the strip while searching, over the page's
+constexpr int kFineShare = 6;                // of the trials, that fine masks get
 constexpr double kTrials = 8000;             // charts placed while searching, about
+constexpr double kCoarseTrials = 800;        // the same when layouts are only compared
+constexpr int kStarts = 3;                   // searches, of which the best counts
 
 struct Layout {
-    double unplaced = 0;  // area of the charts that found no place
-    std::uint32_t first_unplaced = kNone;
-    std::uint32_t rows = 0;  // cells, up to the highest chart
+    double excess = 0;  // sum of area × rows beyond the page, all of the strip's without a place
+    std::uint32_t first_beyond = kNone;  // the first chart that reaches beyond the page
+    std::uint32_t rows = 0;              // cells, up to the highest chart
     double scale = 0;
     std::vector<Placement> placements;
     std::vector<std::uint8_t> placed;  // [n_charts]
 
-    bool complete() const { return scale > 0 && first_unplaced == kNone; }
+    bool complete() const { return scale > 0 && first_beyond == kNone; }
+    bool all_placed() const { return std::find(placed.begin(), placed.end(), 0) == placed.end(); }
 };
 
 /// What the search varies: which chart comes when, and how each is turned to begin with.
@@ -71,8 +77,8 @@ class Packer {
         return page;
     }
 
-    /// Fills a strip as wide as the page, at most `limit` times as high; gives up when
-    /// charts of more than `hopeless` area found no place.
+    /// Fills a strip as wide as the page, at most `limit` times as high; gives up when its
+    /// excess is beyond `hopeless`.
     Layout fill(const Page& page, double scale, double limit,
                 double hopeless = std::numeric_limits<double>::infinity()) {
         Layout layout;
@@ -98,11 +104,11 @@ class Packer {
                 spot = s;
                 best = &mask;
             }
-            if (best == nullptr) {
-                if (layout.first_unplaced == kNone) layout.first_unplaced = i;
-                layout.unplaced += shapes_[i].area;
-                if (layout.unplaced > hopeless) break;
-                continue;
+            if (best == nullptr || best_top > page.cells) {
+                if (layout.first_beyond == kNone) layout.first_beyond = i;
+                layout.excess += shapes_[i].area * (std::min(best_top, most_rows) - page.cells);
+                if (layout.excess > hopeless) break;
+                if (best == nullptr) continue;
             }
             strip.place(*best, spot);
             layout.placed[i] = 1;
@@ -115,11 +121,13 @@ class Packer {
 
     /// The largest scale found at which everything fits the page: after a first fit, a
     /// search on coarse masks raises the scale step by step and looks for an order and
-    /// turns that fit, then the masks are refined. Not complete when nothing fits.
-    Layout largest(std::uint32_t size, bool quick, int trials) {
-        if (trials == 0)
-            trials = std::clamp(
-                static_cast<int>(kTrials / std::max<std::size_t>(shapes_.size(), 1)), 8, 300);
+    /// turns that fit, three times from the same start; then the masks are refined. Not
+    /// complete when nothing fits.
+    Layout largest(std::uint32_t size, Search search) {
+        const double per_chart = search == Search::full ? kTrials : kCoarseTrials;
+        const int trials =
+            std::clamp(static_cast<int>(per_chart / static_cast<double>(shapes_.size() + 1)), 9,
+                       search == Search::full ? 300 : 48);
         const double full = size / std::sqrt(area_);
         const double least = std::sqrt(kLeastUse) * full;
         const Page coarse = page(size, kCoarseCells), fine = page(size, kCells);
@@ -137,36 +145,54 @@ class Packer {
             best = fill(fine, least, 1);
             return best;
         }
-        if (quick) return best;
+        if (search == Search::quick) return best;
         Random random(shapes_.size());
-        double unplaced = std::numeric_limits<double>::infinity();
+        const Layout first = best;
+        const Plan first_plan = plan_;
+        Plan best_plan = plan_;
+        for (int start = 0; start < kStarts; ++start) {
+            Layout layout = first;
+            plan_ = first_plan;
+            climb(coarse, kStep, trials / kStarts, random, layout);
+            report(progress_, "pack", 0.8 * (start + 1) / kStarts);
+            if (layout.scale <= best.scale) continue;
+            best = std::move(layout);
+            best_plan = plan_;
+        }
+        plan_ = best_plan;
+        if (search == Search::coarse || fine.cell == coarse.cell) return best;
+        for (double scale = 1.03 * best.scale; scale > best.scale; scale *= 0.996) {
+            Layout layout = fill(fine, scale, 1);
+            if (!layout.complete()) continue;
+            best = std::move(layout);
+            break;
+        }
+        climb(fine, kFineStep, trials / kFineShare, random, best);
+        report(progress_, "pack", 1);
+        return best;
+    }
+
+    /// Raises the scale of a layout step by step, looking for an order and turns that fit:
+    /// fewer and smaller charts, less far beyond the page's edge.
+    void climb(const Page& page, double step, int trials, Random& random, Layout& best) {
+        double excess = std::numeric_limits<double>::infinity();
         std::uint32_t failed = kNone;
         bool climbing = true;  // the plan as it is has not failed at the target yet
         for (int trial = 0; trial < trials; ++trial) {
-            if (trial % 8 == 0) report(progress_, "pack", 0.9 * trial / trials);
             const Plan before = plan_;
             if (!climbing) vary(random, failed);
-            Layout layout = fill(coarse, kStep * best.scale, 1, unplaced);
+            Layout layout = fill(page, step * best.scale, kOverhang, excess);
             climbing = layout.complete();
             if (climbing) {
                 best = std::move(layout);
-                unplaced = std::numeric_limits<double>::infinity();
-            } else if (layout.unplaced <= unplaced) {
-                unplaced = layout.unplaced;
-                failed = layout.first_unplaced;
+                excess = std::numeric_limits<double>::infinity();
+            } else if (layout.excess <= excess) {
+                excess = layout.excess;
+                failed = layout.first_beyond;
             } else {
                 plan_ = before;
             }
         }
-        if (fine.cell < coarse.cell) {
-            for (double scale = 1.03 * best.scale; scale > best.scale; scale *= 0.996) {
-                Layout layout = fill(fine, scale, 1);
-                if (!layout.complete()) continue;
-                best = std::move(layout);
-                break;
-            }
-        }
-        return best;
     }
 
     /// All charts at a given scale within the page.
@@ -209,12 +235,12 @@ class Packer {
     }
 
     /// The largest scale at which all charts lie on `most` pages, by steps of 1.5 %.
-    Packing fill_pages(std::uint32_t size, std::uint32_t most, bool quick) {
+    Packing fill_pages(std::uint32_t size, std::uint32_t most, Search search) {
         const double full = size * std::sqrt(most / area_);
         Packing packing;
         for (double scale = 0.92 * full; scale > std::sqrt(kLeastUse) * full; scale *= 0.985) {
             report(progress_, "pack", std::clamp((0.92 * full / scale - 1) / 0.3, 0.0, 1.0));
-            packing = on_pages(size, quick ? kCoarseCells : kCells, scale, most);
+            packing = on_pages(size, search == Search::full ? kCells : kCoarseCells, scale, most);
             if (packing.fits) break;
         }
         return packing;
@@ -298,9 +324,9 @@ Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& o
     if (options.pages > 1)
         return options.texels_per_unit > 0
                    ? packer.on_pages(options.size, kCells, options.texels_per_unit, options.pages)
-                   : packer.fill_pages(options.size, options.pages, options.quick);
+                   : packer.fill_pages(options.size, options.pages, options.search);
     if (options.size > 0) {
-        Layout layout = packer.largest(options.size, options.quick, options.trials);
+        Layout layout = packer.largest(options.size, options.search);
         packing.size = options.size;
         packing.fits = layout.complete();
         packing.texels_per_unit = layout.scale;
@@ -320,12 +346,12 @@ Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& o
         packing.size = static_cast<std::uint32_t>(size / 16 + 1) * 16;
         const std::uint32_t cells = packer.page(packing.size, kCells).cells;
         Layout layout = packer.at_scale(packing.size, options.texels_per_unit, 2);
-        if (layout.complete() && layout.rows <= cells) {
+        if (layout.complete()) {
             packing.fits = true;
             packing.placements = std::move(layout.placements);
             break;
         }
-        const double filled = layout.complete() ? static_cast<double>(layout.rows) / cells : 2;
+        const double filled = layout.all_placed() ? static_cast<double>(layout.rows) / cells : 2;
         size = std::max(packing.size + 15.0, packing.size * std::sqrt(filled) * 0.995);
     }
     return packing;

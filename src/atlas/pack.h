@@ -9,12 +9,15 @@
 /// Lays chart shapes side by side in a square page, as large as they fit.
 namespace tuft::atlas {
 
+/// How long to look for a good layout of one page: take the first that fits, look a little and
+/// on coarse masks (to compare sets of charts), or look well.
+enum class Search { quick, coarse, full };
+
 struct PackOptions {
     std::uint32_t size = 0;      ///< texels per side; 0: as many as `texels_per_unit` needs
     double texels_per_unit = 0;  ///< scale; 0: the largest that fits `size`
     std::uint32_t gutter = 4;    ///< texels free between charts; half of it along the page's edge
-    bool quick = false;          ///< take the first layout that fits
-    int trials = 0;              ///< layouts to try; 0: by the number of charts
+    Search search = Search::full;
     std::uint32_t pages = 1;     ///< most pages; above 1, `size` must be given
     ProgressFn progress;
 };

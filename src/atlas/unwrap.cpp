@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "atlas/atlas.h"
@@ -91,7 +92,7 @@ PackOptions pack_options(const CutMesh& cut, const UnwrapOptions& options) {
 
 Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options, bool quick) {
     PackOptions how = pack_options(cut, options);
-    how.quick = quick;
+    if (quick) how.search = Search::quick;
     Packing packing = pack(chart_borders(cut), how);
     check_packing(cut, options, packing);
     return packing;
@@ -170,8 +171,10 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     // after all are cut. Both end, at single triangles at the latest. A quick layout is
     // enough to find them; the best one is made at the end and checked again.
     bool quick = true;
+    std::optional<Packing> made;
     for (int round = 0; round < kMostRepairs; ++round) {
-        const Packing packing = pack_charts(cut, options, quick);
+        const Packing packing = made ? std::move(*made) : pack_charts(cut, options, quick);
+        made.reset();
         watch.lap(out.report, "pack");
         if (!packing.too_large.empty()) {
             cut_again(mesh, cut, packing.too_large, chart_options, options.progress);
@@ -185,9 +188,12 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
         if (roomless.empty() && coverage.twice == 0) {
             if (!quick) break;
             quick = false;
-            if (options.tight && options.pages == 1 && options.size > 0) {
-                cut_to_pack(mesh, cut, chart_options.gap, pack_options(cut, options));
-                watch.lap(out.report, "cut to pack");
+            if (options.cutting != Cutting::never && options.pages == 1 && options.size > 0) {
+                const bool tight = options.cutting == Cutting::tight;
+                made = cut_to_pack(mesh, cut, chart_options.gap, pack_options(cut, options),
+                                   tight ? kTightUse : kGoodUse)
+                           .packing;
+                watch.lap(out.report, "pack");
             }
             continue;
         }

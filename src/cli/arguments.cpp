@@ -69,7 +69,10 @@ void add_surface(CLI::App* app, Surface& s) {
     auto* renew = app->add_flag("--new-uv", s.new_uv, "make a new atlas even if the file has UVs");
     auto* keep = app->add_flag("--keep-uv", s.keep_uv, "use the file's UVs or fail");
     renew->excludes(keep);
-    app->add_flag("--tight", s.tight, "cut large charts where the atlas is covered better then");
+    auto* tight = app->add_flag("--tight", s.tight,
+                                "halve large charts as long as the atlas is covered better then "
+                                "(else: only where less than 65 % would be)");
+    app->add_flag("--whole", s.whole, "never halve charts for the sake of the atlas")->excludes(tight);
     app->add_option("--seams", s.seams,
                     "where the atlas must be cut: free, groups (of faces), sharp (edges), both")
         ->check(CLI::IsMember({"free", "groups", "sharp", "both"}))

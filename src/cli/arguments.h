@@ -17,7 +17,7 @@ struct Surface {
     double texel_size_mm = 0;
     std::uint32_t pages = 0;        ///< most pages (UDIM); 0: not said
     bool new_uv = false, keep_uv = false;
-    bool tight = false;
+    bool tight = false, whole = false;
     std::string seams = "free";     ///< free | groups | sharp | both
     double sharp_angle_deg = 40;
     std::string texel_store = "auto";  ///< auto | float | packed

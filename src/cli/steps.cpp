@@ -35,7 +35,9 @@ stroke::ModelOptions model_options(const Surface& s, Console& console) {
     options.unwrap.size = s.atlas_size;
     options.unwrap.texel_size = s.texel_size_mm * kMillimetre;
     options.unwrap.pages = std::max(s.pages, 1u);
-    options.unwrap.tight = s.tight;
+    options.unwrap.cutting = s.tight   ? atlas::Cutting::tight
+                             : s.whole ? atlas::Cutting::never
+                                       : atlas::Cutting::where_useful;
     options.unwrap.seams.groups = s.seams == "groups" || s.seams == "both";
     if (s.seams == "sharp" || s.seams == "both")
         options.unwrap.seams.sharp_angle = s.sharp_angle_deg * kDegree;
@@ -363,7 +365,9 @@ nlohmann::json to_json(const atlas::Atlas& a, const atlas::AtlasReport& r) {
                      {"seam_length", r.seam_length},
                      {"smallest_gap", r.smallest_gap}};
     for (std::uint32_t page = 0; page < a.pages; ++page) j["udims"].push_back(atlas::udim_of(a, page));
-    for (const auto& [phase, seconds] : r.seconds) j["seconds"][phase] = seconds;
+    j["seconds"] = nlohmann::json::object();
+    for (const auto& [phase, seconds] : r.seconds)  // some phases come more than once
+        j["seconds"][phase] = j["seconds"].value(phase, 0.0) + seconds;
     return j;
 }
 

@@ -203,6 +203,7 @@ TEST(Unwrap, SeamsFollowSharpEdgesWhereAsked) {
     });
     UnwrapOptions options;
     options.size = 512;
+    options.cutting = Cutting::never;
     EXPECT_EQ(unwrap(roof, options).report.charts, 1u);
     for (const TriangleMesh* m : {&cube, &roof}) {
         options.seams.sharp_angle = 0.35;  // 20°
@@ -282,7 +283,7 @@ TEST(Unwrap, AskedSeamsKeepTheInvariantsOfARealModel) {
 
 // Two squares fill half a square page whichever way they lie; with one cut, five sixths and more
 // could be filled.
-TEST(Unwrap, CutsChartsThatWouldLeaveThePageHalfEmptyWhereAsked) {
+TEST(Unwrap, CutsChartsThatWouldLeaveThePageHalfEmpty) {
     const TriangleMesh one = test::grid_mesh(24, 24, false, false, [](double u, double v) {
         return Vec3(u, v, 0);
     });
@@ -294,8 +295,9 @@ TEST(Unwrap, CutsChartsThatWouldLeaveThePageHalfEmptyWhereAsked) {
     const TriangleMesh two = test::finish_mesh(p, t);
     UnwrapOptions options;
     options.size = 512;
+    options.cutting = Cutting::never;
     EXPECT_EQ(unwrap(two, options).report.charts, 2u);
-    options.tight = true;
+    options.cutting = Cutting::where_useful;
     EXPECT_EQ(unwrap(one, options).report.charts, 1u);
     const Unwrapped u = unwrap(two, options);
     expect_sound(two, u);
