@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kMostCuts = 6;
 constexpr double kBeyond = 1.03;  // of the goal, once charts are cut: a short search errs by this
+constexpr double kAsLong = 0.85;         // of the longest chart's length
 constexpr std::size_t kCandidates = 4;   // largest charts that are tried
 constexpr std::size_t kMostCharts = 48;  // with more, small ones fill the gaps
 constexpr std::size_t kDear = 200000;    // triangles of a chart that is left as it is
@@ -114,12 +115,14 @@ void apply(CutMesh& cut, std::uint32_t chart, const Halves& halves) {
 /// Charts to be cut together.
 using Proposal = std::vector<std::pair<std::uint32_t, Halves>>;
 
-/// Each of the charts with the largest boxes, and the two largest together.
+/// Each of the charts with the largest boxes, the two largest together, and those of them that
+/// are about as long as the longest, which may be all that keeps the rest small.
 std::vector<Proposal> proposals(const mesh::TriangleMesh& mesh, const CutMesh& cut, double gap) {
-    std::vector<double> box(cut.charts.size());
+    std::vector<double> box(cut.charts.size()), length(cut.charts.size());
     for (std::size_t c = 0; c < box.size(); ++c) {
         const Rectangle r = smallest_rectangle(chart_hull(cut.charts[c]));
         box[c] = r.length * r.width;
+        length[c] = r.length;
     }
     std::vector<std::uint32_t> order(box.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -134,6 +137,12 @@ std::vector<Proposal> proposals(const mesh::TriangleMesh& mesh, const CutMesh& c
         if (halves[i]) all.push_back({{order[i], *halves[i]}});
     if (order.size() > 1 && halves[0] && halves[1])
         all.push_back({{order[0], *halves[0]}, {order[1], *halves[1]}});
+    const double longest = *std::max_element(length.begin(), length.end());
+    Proposal together;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        if (halves[i] && length[order[i]] >= kAsLong * longest)
+            together.push_back({order[i], *halves[i]});
+    if (together.size() > 1) all.push_back(std::move(together));
     return all;
 }
 

@@ -109,6 +109,7 @@ TEST(Fill, APartAndAChartEndWhereTheyEnd) {
     ModelOptions options;
     options.repair.metres_per_unit = 1;
     options.unwrap.size = 256;
+    options.unwrap.cutting = atlas::Cutting::never;
     const Model two = prepare_model(std::move(soup), options);
     for (const Region region : {Region::part, Region::chart}) {
         Painting p(two);
