@@ -164,6 +164,51 @@ TEST(RodLaws, GradientMatchesAtRandomShapesToo) {
     }
 }
 
+TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
+    // A run stopped after k iterations is the beginning of a longer one: Π at its end never rises with
+    // k. Elastic and without friction, so that nothing but the shape changes from run to run.
+    Random random(41);
+    const Rod rod = make_rod({-1, -0.8}, 16, 0.5);
+    int steps = 0;
+    for (int trial = 0; trial < 40; ++trial) {
+        Clamp clamp{{0, 0, random.uniform(0.55, 0.95)}, glm::normalize(Vec3{random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), -1}), {}};
+        clamp.side = glm::normalize(glm::cross(clamp.tangent, Vec3{0.3, 1, 0.2}));
+        Memory start = make_memory(rod, clamp);
+        for (Vec3& t : start.tangent)
+            t = glm::normalize(t + 0.3 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        start.node = nodes(rod, start);
+        std::vector<Obstacle> planes(17, {{0, 0, 0}, {0, 0, 1}, 0.06});
+        Law law;
+        law.points_per_segment = 6;
+        law.stiffness = 60;
+        law.core_stiffness = 3000;
+        law.onset = 1e-3;
+        law.adhesion = trial % 2 == 0 ? 0.5 : 0;
+        law.adhesion_range = 0.03;
+        law.tolerance = 1e-9;
+        if (trial % 4 == 1) {  // over an edge, each node by the face that it is nearest to
+            law.edge = 6e-3;
+            const Vec3 left = glm::normalize(Vec3{-0.5, 0, 1}), right = glm::normalize(Vec3{0.5, 0, 1});
+            for (std::size_t i = 0; i < planes.size(); ++i) planes[i].normal = start.node[i].x < 0 ? left : right;
+        }
+        const std::vector<double> still(2 * 16, 0.0);
+        double before = probe_energy(rod, start, planes, law, {}, still).value;
+        const double first = before;
+        for (int k = 1; k <= 60; ++k) {
+            law.max_iterations = k;
+            Memory memory = start;
+            const Result r = solve(rod, memory, clamp, planes, law);
+            const double now = probe_energy(rod, memory, planes, law, {}, still).value;
+            EXPECT_LE(now, before + 1e-11 * (1 + std::abs(first))) << trial << " after " << k;  // round-off
+            steps += now < before;
+            before = now;
+            if (r.converged) break;
+        }
+        EXPECT_LT(before, first) << trial;
+    }
+    EXPECT_GT(steps, 200);
+}
+
 TEST(RodLaws, EndsThatMeetTheSurfaceEndOnGiveAsTheySay) {
     // A straight stiff rod pushed down upright: the force follows k_e s²/2, k_e = 2 P/s_e², and
     // reaches the buckling load P at s_e, less where the give fades behind the tip.
