@@ -35,6 +35,15 @@ mkdir -p "$out/stroke-sheet"
 say "brush"
 "$tuft" brush goat-medium --picture "$out/brush.png" > "$out/brush.txt"
 
+# The sheet's four corners and the bowl, on one picture.
+paint wet-sheet sheet wet-sheet "--film wet --dry 0 --atlas-size 2048" --view 0,89 --size 1400x1400 --zoom 1.7
+paint wet-bowl bowl wet-bowl "--film wet --dry 0 --atlas-size 2048 --substrate bisque" \
+  --view -6,12 --size 1020x460 --zoom 2 --target -7,-68,43
+sheet=$out/wet-sheet.png
+oiiotool "$out/wet-bowl.png" "$sheet" --cut 460x460+147+796 "$sheet" --cut 560x460+712+744 \
+  "$sheet" --cut 460x460+770+200 "$sheet" --cut 460x460+155+200 --create 1480x920 3 \
+  --paste +0+0 --paste +460+0 --paste +920+0 --paste +0+460 --paste +460+460 -d uint8 -o "$out/wet.png"
+
 say "colour chart"
 build/release/samples/chart/tuft-chart "$out/colour-chart.png"
 

@@ -15,6 +15,10 @@ std::vector<stroke::Trace> bowl_outside();
 std::vector<stroke::Trace> plate_ornament();
 /// The strokes of three brushes, and what a tilted, a split and a dry tuft does, on the flat sheet.
 std::vector<stroke::Trace> stroke_sheet();
+/// Petals from a brush with two inks, glazes, a clean brush through wet ink, dry sweeps; on the flat sheet.
+std::vector<stroke::Trace> wet_sheet();
+/// Drops of three inks into water, and one of water into them, on the outside of the bowl.
+std::vector<stroke::Trace> wet_bowl();
 /// Pinstripes along the right flank of the car.
 std::vector<stroke::Trace> car_pinstripe();
 

@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
         save("man-bu-ren-sheng.inkml", "漫步人生", samples::bowl_outside());
         save("plate-ornament.inkml", "Leaves on a winding stem", samples::plate_ornament());
         save("stroke-sheet.inkml", "Strokes of wolf, goat and mixed hair", samples::stroke_sheet());
+        save("wet-sheet.inkml", "Wet ink", samples::wet_sheet());
+        save("wet-bowl.inkml", "Wet in wet", samples::wet_bowl());
         save("car-pinstripe.inkml", "Pinstripes", samples::car_pinstripe());
     } catch (const Error& e) {
         fmt::print(stderr, "tuft-strokes: {}\n", e.what());

@@ -23,7 +23,8 @@ void expect_fits(const std::string& strokes, const std::string& model, std::size
     const mesh::SurfaceQuery query(surface.mesh);
     for (const stroke::Trace& t : traces) {
         EXPECT_NO_THROW(brush::load_preset(t.brush)) << t.brush;
-        EXPECT_NO_THROW(ink::load_ink(t.ink)) << t.ink;
+        const bool own = t.ink.ends_with(".toml");  // named from the project's folder
+        EXPECT_NO_THROW(ink::load_ink(own ? (source / t.ink).string() : t.ink)) << t.ink;
         ASSERT_GT(t.samples.size(), 10u);
         EXPECT_EQ(t.samples.front().pressure, 0);  // lands from the air and leaves for it
         EXPECT_EQ(t.samples.back().pressure, 0);
@@ -52,6 +53,11 @@ TEST(Samples, CharactersFitTheBowl) {
 
 TEST(Samples, OrnamentFitsThePlate) {
     expect_fits("plate-ornament", "plate", 12 * 2 * 9);
+}
+
+TEST(Samples, WetInkFitsTheSheetAndTheBowl) {
+    expect_fits("wet-sheet", "sheet", 5 + 3 * 2 + 1 + 3 + 2);
+    expect_fits("wet-bowl", "bowl", 6);
 }
 
 TEST(Samples, PinstripesFitTheCar) {
