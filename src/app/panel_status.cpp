@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/panels.h"
+#include "ink/composite.h"
 
 namespace tuft::app {
 
@@ -75,6 +76,8 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
         if (hit) ground.push_back(v.at(hit->position));
     }
     draw->AddPolyline(ground.data(), static_cast<int>(ground.size()), s.ui.faint, 0, s.ui.px(2));
+    const unsigned ink = colour_in_tuft(s);
+    const auto encoded = [](float linear) { return ink::srgb_encode(linear); };
     for (const brush::Branch& b : s.tuft.branches)
         for (std::size_t i = 1; i < b.sections.size(); ++i) {
             const auto edge = [&](const brush::Section& c, double side) {
@@ -83,7 +86,9 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
                 return v.at(c.centre + side * r * across);
             };
             const brush::Section &p = b.sections[i - 1], &q = b.sections[i];
-            draw->AddQuadFilled(edge(p, 1), edge(q, 1), edge(q, -1), edge(p, -1), s.ui.strong);
+            const Vec3f hair = hair_colour(static_cast<double>(i) / static_cast<double>(b.sections.size()), ink);
+            draw->AddQuadFilled(edge(p, 1), edge(q, 1), edge(q, -1), edge(p, -1),
+                                ImGui::ColorConvertFloat4ToU32(ImVec4(encoded(hair[0]), encoded(hair[1]), encoded(hair[2]), 1)));
             if (p.pressure > 0 && q.pressure > 0) draw->AddLine(v.at(p.centre), v.at(q.centre), s.ui.accent, s.ui.px(2.5f));
         }
     const auto r = static_cast<float>(std::max(root.a, root.b)) * v.scale * 1.1f;

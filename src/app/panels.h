@@ -49,6 +49,10 @@ double height_range(const Session& s);
 /// sRGB colour (ImU32) of a full film of this ink on porcelain.
 unsigned ink_colour(const Session& s, const std::string& ink);
 unsigned ink_colour(const ink::Ink& ink);
+/// Of the ink that the next stroke lays down.
+unsigned colour_in_tuft(const Session& s);
+/// Linear colour of hair at a place between the tip (0) and the root (1) of a tuft dipped into `ink`.
+Vec3f hair_colour(double from_tip, unsigned ink);
 
 /// Modal window in the middle; true while it is drawn. Close it with `end_dialog`.
 bool begin_dialog(Session& s, const char* title, float width);

@@ -235,7 +235,7 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
                                                    render::Shading::height, render::Shading::height, render::Shading::texels, render::Shading::triangles,
                                                    render::Shading::triangles};
     const bool dark = s.ui.settings().theme == Theme::dark;
-    const render::GlSolid solid = solid_of(s.tuft);
+    const render::GlSolid solid = solid_of(s.tuft, colour_in_tuft(s));
     render::GlView::Frame f{.camera = camera(), .solid = &solid, .opacity = s.view.see_through ? 0.25f : s.pressed ? 0.92f : 0.72f};
     f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)], .roughness = s.looks.roughness,
                       .height_range = static_cast<float>(height_range(s)), .section = section_plane(s)};

@@ -112,7 +112,7 @@ class Studio {
     double shown_ = 0;
 };
 
-/// Hair and ferrule as triangles for drawing.
-render::GlSolid solid_of(const brush::TuftState& tuft);
+/// Hair, as it is dipped into an ink of that colour (sRGB), and ferrule as triangles for drawing.
+render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink);
 
 }  // namespace tuft::app

@@ -1,14 +1,18 @@
+#include <imgui.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "app/panels.h"
 #include "app/studio.h"
 #include "brush/skin.h"
+#include "ink/composite.h"
 
 namespace tuft::app {
 namespace {
 
-const Vec3f kHair{0.050f, 0.042f, 0.038f}, kFerrule{0.32f, 0.22f, 0.11f}, kBamboo{0.42f, 0.30f, 0.15f};
+const Vec3f kHair{0.21f, 0.14f, 0.085f}, kFerrule{0.32f, 0.22f, 0.11f}, kBamboo{0.42f, 0.30f, 0.15f};
 
 // A tube round the holder's axis between two heights above the ferrule's mouth.
 void add_tube(render::GlSolid& solid, const Vec3& mouth, const Vec3& up, double r0, double r1, double from, double to,
@@ -30,16 +34,39 @@ void add_tube(render::GlSolid& solid, const Vec3& mouth, const Vec3& up, double 
     }
 }
 
+Vec3f linear_of(unsigned colour) {
+    Vec3f linear;
+    for (int c = 0; c < 3; ++c) linear[c] = ink::srgb_decode(static_cast<float>((colour >> (8 * c)) & 255) / 255);
+    return linear;
+}
+
 }  // namespace
 
-render::GlSolid solid_of(const brush::TuftState& tuft) {
+unsigned colour_in_tuft(const Session& s) {
+    if (s.carry && s.last.brush_colour) {
+        const auto& c = *s.last.brush_colour;
+        return IM_COL32(c[0], c[1], c[2], 255);
+    }
+    return ink_colour(s, s.ink);
+}
+
+// Wet hair is dark: of the ink's light a part stays in it. The root keeps its own colour.
+Vec3f hair_colour(double from_tip, unsigned ink) {
+    const auto inked = static_cast<float>(1 - std::clamp((from_tip - 0.35) / 0.5, 0.0, 1.0));
+    return glm::mix(kHair, 0.85f * linear_of(ink), inked * inked * (3 - 2 * inked));
+}
+
+render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink) {
     render::GlSolid solid;
     if (tuft.branches.empty()) return solid;
     const brush::Skin skin = brush::make_skin(tuft);
+    const std::vector<brush::Section>& spine = tuft.branches.front().sections;
+    const double length = std::max(1e-6, glm::distance(spine.front().centre, spine.back().centre));
     for (std::size_t i = 0; i < skin.positions.size(); ++i) {
         solid.positions.push_back(Vec3f(skin.positions[i]));
         solid.normals.push_back(Vec3f(skin.normals[i]));
-        solid.colours.push_back(kHair);
+        const double from_root = glm::distance(skin.positions[i], spine.back().centre);
+        solid.colours.push_back(hair_colour(1 - from_root / length, ink));
     }
     solid.triangles = skin.triangles;
     const brush::Section& root = tuft.branches.front().sections.back();
