@@ -11,13 +11,13 @@ out=${1:-results}
 mkdir -p "$out"
 export TUFT_DATA=$PWD
 
-# paint NAME MODEL STROKES "PAINT OPTIONS" RENDER OPTIONS...
+# paint NAME MODEL STROKES "PAINT OPTIONS" RENDER OPTIONS..., on an atlas of 4096² texels where ATLAS says nothing else
 paint() {
   local name=$1 model=$2 strokes=$3 options=$4
   shift 4
   say "$name"
   # shellcheck disable=SC2086  # several options in one word
-  "$tuft" paint "models/$model.ply" --strokes "samples/strokes/$strokes.inkml" --atlas-size 4096 $options \
+  "$tuft" paint "models/$model.ply" --strokes "samples/strokes/$strokes.inkml" --atlas-size "${ATLAS:-4096}" $options \
     --project "$out/$name.tuft" --export "$out/$name.glb"
   "$tuft" render "$out/$name.tuft" -o "$out/$name.png" "$@"
 }
@@ -36,8 +36,8 @@ say "brush"
 "$tuft" brush goat-medium --picture "$out/brush.png" > "$out/brush.txt"
 
 # The sheet's four corners and the bowl, on one picture.
-paint wet-sheet sheet wet-sheet "--film wet --dry 0 --atlas-size 2048" --view 0,89 --size 1400x1400 --zoom 1.7
-paint wet-bowl bowl wet-bowl "--film wet --dry 0 --atlas-size 2048 --substrate bisque" \
+ATLAS=2048 paint wet-sheet sheet wet-sheet "--film wet --dry 0" --view 0,89 --size 1400x1400 --zoom 1.7
+ATLAS=2048 paint wet-bowl bowl wet-bowl "--film wet --dry 0 --substrate bisque" \
   --view -6,12 --size 1020x460 --zoom 2 --target -7,-68,43
 sheet=$out/wet-sheet.png
 oiiotool "$out/wet-bowl.png" "$sheet" --cut 460x460+147+796 "$sheet" --cut 560x460+712+744 \
