@@ -219,15 +219,30 @@ void GlScene::update_tiles(std::span<const TilePixels> tiles) {
     }
 }
 
+namespace {
+
+// Mesa's software driver is not exact to the sample at the border of what is cut: it draws up to a
+// few pixels more or less. So depth is cleared for more than the backdrop covers, and the model is
+// drawn for more than that; what lies there already is as near and stays.
+constexpr int kBlock = 8;
+
+void cut_to(const PixelRect& part, int margin) {
+    const int x = std::max(0, part.x - margin), y = std::max(0, part.y - margin);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(x, y, part.x + part.width + margin - x, part.y + part.height + margin - y);
+}
+
+}  // namespace
+
 void GlScene::draw_backdrop(const GlCamera& c, const Vec3f& low, const Vec3f& high, const PixelRect& part) {
     State& s = *state_;
     glViewport(0, 0, c.width, c.height);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(part.x, part.y, part.width, part.height);
+    cut_to(part, kBlock);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    cut_to(part, 0);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
-    glClear(GL_DEPTH_BUFFER_BIT);
     glUseProgram(s.backdrop_program);
     set_vector(s.backdrop_program, "u_low", low);
     set_vector(s.backdrop_program, "u_high", high);
@@ -267,10 +282,7 @@ void GlScene::draw_clusters(const GlCamera& c, const PixelRect& part) {
 void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOptions& options, const PixelRect& part) {
     State& s = *state_;
     glViewport(0, 0, c.width, c.height);
-    // A pixel wider than the part: Mesa's software driver leaves out samples of a cut triangle's
-    // outermost pixels. What lies there already is as near and stays.
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(std::max(0, part.x - 1), std::max(0, part.y - 1), part.width + 2, part.height + 2);
+    cut_to(part, 2 * kBlock);
     glEnable(GL_DEPTH_TEST);
     set_view(s.mesh_program, c, light);
     const auto at = [&](const char* name) { return glGetUniformLocation(s.mesh_program, name); };
@@ -290,7 +302,7 @@ void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOpti
         glBindVertexArray(s.mesh_array);
         glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
     } else {
-        draw_clusters(c, part);
+        draw_clusters(c, {part.x - kBlock, part.y - kBlock, part.width + 2 * kBlock, part.height + 2 * kBlock});
     }
     glBindVertexArray(0);
     glDisable(GL_SCISSOR_TEST);
