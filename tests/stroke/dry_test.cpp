@@ -143,6 +143,33 @@ TEST(DryBrush, AStrokeRunsDryByItself) {
     EXPECT_LT(before, 0.9 * covered(painting, -0.009, -0.003));
 }
 
+TEST(DryBrush, PaintingDriesTheTuft) {
+    // Its wetness is what it holds over a quarter of its capacity, x (2 - x), and only falls.
+    const Model model = sheet();
+    Painting painting(model);
+    brush::Preset small = painting.brush(kBrush);
+    small.capacity *= 0.006;
+    painting.use_brush(small);
+    painting.paint(wipe(0.6, 7));
+    double wet = 1, left = 1e9;
+    for (int i = 0; i < 12; ++i) {
+        Stroke s = drag(7 + i);
+        for (TraceSample& sample : s.trace.samples) sample.position.y += 5e-3 * (i - 5.5);  // each on bare ground
+        s.settings.dip = "carry";
+        const StrokeReport r = painting.paint(s);
+        const BrushInHand* held = painting.held(kBrush);
+        ASSERT_NE(held, nullptr);
+        EXPECT_LT(r.ink_left, left) << i;
+        EXPECT_LE(held->tuft.wetness, wet) << i;
+        const double x = std::min(1.0, held->reservoir.fullness() / 0.25);
+        // Set at the last stamp, before it gave.
+        EXPECT_NEAR(held->tuft.wetness, x * (2 - x), 0.02) << i;
+        wet = held->tuft.wetness;
+        left = r.ink_left;
+    }
+    EXPECT_LT(wet, 0.7);
+}
+
 TEST(DryBrush, FastHairIsDrierAndRoughGroundShowsItsGrain) {
     const Model model = sheet();
     const double slow = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.02))), fast = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.5)));
