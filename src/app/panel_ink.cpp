@@ -169,10 +169,7 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
 
 void colours_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
-    ImGui::SetNextWindowPos(ImVec2(left, top));
-    ImGui::SetNextWindowSize(ImVec2(ui.px(kToolWidth), bottom - top));
-    ImGui::Begin("###colours", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    begin_side_panel(s, "###colours", left, top, kToolWidth, bottom);
     ui.heading("Recolour");
     ui.note(ui.tr("Pigment amounts stay as they were painted; only what they look like changes."));
     std::set<std::string> used;

@@ -73,10 +73,7 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
 
 void journal_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
-    ImGui::SetNextWindowPos(ImVec2(left, top));
-    ImGui::SetNextWindowSize(ImVec2(ui.px(kJournalWidth), bottom - top));
-    ImGui::Begin("###journal", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    begin_side_panel(s, "###journal", left, top, kJournalWidth, bottom);
     const float half = (kJournalWidth - 24 - 8) / 2;
     if (ui.button("Undo", "Ctrl+Z", half, s.last.can_undo)) s.painter->post(UndoStroke{});
     ImGui::SameLine();

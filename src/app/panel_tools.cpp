@@ -264,11 +264,15 @@ void curve_section(Session& s) {
 
 }  // namespace
 
-void tool_panel(Session& s, float top, float bottom, float left) {
+void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom) {
     ImGui::SetNextWindowPos(ImVec2(left, top));
-    ImGui::SetNextWindowSize(ImVec2(s.ui.px(kToolWidth), bottom - top));
-    ImGui::Begin("###tools", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), bottom - top));
+    ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+}
+
+void tool_panel(Session& s, float top, float bottom, float left) {
+    begin_side_panel(s, "###tools", left, top, kToolWidth, bottom);
     tool_buttons(s);
     curve_section(s);
     writing_section(s);

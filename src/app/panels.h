@@ -47,6 +47,8 @@ RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint
 double height_range(const Session& s);
 
 /// sRGB colour (ImU32) of a full film of this ink on porcelain.
+/// A column of the window between two heights, `width` in units of the display scale; ends with ImGui::End.
+void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom);
 unsigned ink_colour(const Session& s, const std::string& ink);
 unsigned ink_colour(const ink::Ink& ink);
 /// Of the ink that the next stroke lays down.

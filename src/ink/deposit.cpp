@@ -5,12 +5,12 @@
 
 #include "ink/elementary.h"
 #include "ink/simd.h"
+#include "ink/tile_store.h"
 
 namespace tuft::ink {
 namespace {
 
 constexpr int kN = atlas::kTileTexels;
-constexpr int kLanes = 16;
 
 /// film = the least of film and w / part.
 TUFT_CLONES void limit_film(float* __restrict film, const float* __restrict w, float inverse_part) {
@@ -47,24 +47,6 @@ TUFT_CLONES bool increments(float* __restrict film, const float* __restrict all,
     int wanted = 0;
     for (int t = 0; t < kN; ++t) wanted |= film[t] > 0;
     return wanted != 0;
-}
-
-/// w += part · dw; returns Σ (stored change) · area, summed in lanes of fixed order.
-TUFT_CLONES double store(float* __restrict w, const float* __restrict dw, float part,
-                         const float* __restrict area) {
-    double sum[kLanes] = {};
-    for (int t = 0; t < kN; t += kLanes) {
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const float before = w[t + lane];
-            const float after = before + part * dw[t + lane];
-            w[t + lane] = after;
-            sum[lane] += (static_cast<double>(after) - static_cast<double>(before)) *
-                         static_cast<double>(area[t + lane]);
-        }
-    }
-    double total = 0;
-    for (const double s : sum) total += s;
-    return total;
 }
 
 }  // namespace
@@ -130,7 +112,7 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
     double given = 0;
     for (int p = 0; p < kMaxPigments; ++p)
         if (params.mix[p] > 0)
-            given += store(canvas.touch(slot, p).data(), film, params.mix[p], area.data());
+            given += store_change(canvas.touch(slot, p).data(), film, params.mix[p], area.data());
     return given / strength;
 }
 

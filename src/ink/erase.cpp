@@ -6,6 +6,7 @@
 #include "ink/deposit.h"
 #include "ink/elementary.h"
 #include "ink/simd.h"
+#include "ink/tile_store.h"
 
 namespace tuft::ink {
 namespace {
@@ -43,22 +44,6 @@ TUFT_CLONES double scale(float* __restrict w, const float* __restrict factor, co
             const float before = w[t + lane], after = before * factor[t + lane];
             w[t + lane] = after;
             sum[lane] += (static_cast<double>(before) - static_cast<double>(after)) *
-                         static_cast<double>(area[t + lane]);
-        }
-    }
-    double total = 0;
-    for (const double s : sum) total += s;
-    return total;
-}
-
-/// w += dw, kept where dw is; returns Σ (change) · area.
-TUFT_CLONES double add(float* __restrict w, const float* __restrict dw, const float* __restrict area) {
-    double sum[kLanes] = {};
-    for (int t = 0; t < kN; t += kLanes) {
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const float before = w[t + lane], after = before + dw[t + lane];
-            w[t + lane] = after;
-            sum[lane] += (static_cast<double>(after) - static_cast<double>(before)) *
                          static_cast<double>(area[t + lane]);
         }
     }
@@ -140,7 +125,7 @@ Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> 
             dw[t] = room[t] * coat.film[t] * (coat.first[p] + coat.towards[t] * (coat.second[p] - coat.first[p]));
             any = any || dw[t] > 0;
         }
-        if (any) laid.pigment[p] += add(canvas.touch(slot, p).data(), dw.data(), area.data());
+        if (any) laid.pigment[p] += store_change(canvas.touch(slot, p).data(), dw.data(), 1, area.data());
     }
     return laid;
 }

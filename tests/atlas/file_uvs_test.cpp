@@ -8,35 +8,15 @@
 
 #include "atlas/atlas.h"
 #include "core/error.h"
-#include "test_mesh.h"
+#include "shapes.h"
 
 namespace tuft::atlas {
 namespace {
 
 using mesh::TriangleMesh;
-constexpr double kPi = std::numbers::pi;
-
-TriangleMesh sheet() {
-    return test::grid_mesh(40, 30, false, false,
-                           [](double u, double v) { return Vec3(0.2 * u, 0.15 * v, 0); });
-}
-
-TriangleMesh cylinder() {
-    return test::grid_mesh(96, 40, true, false, [](double u, double v) {
-        return Vec3(0.05 * std::cos(2 * kPi * u), 0.05 * std::sin(2 * kPi * u), 0.2 * v);
-    });
-}
-
-TriangleMesh torus() {
-    return test::grid_mesh(96, 48, true, true, [](double u, double v) {
-        const double r = 0.05 + 0.02 * std::cos(2 * kPi * v);
-        return Vec3(r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u),
-                    0.02 * std::sin(2 * kPi * v));
-    });
-}
 
 TEST(FileUvs, AreKeptWhenTheyAreOurOwn) {
-    TriangleMesh m = torus();
+    TriangleMesh m = test::torus();
     UnwrapOptions options;
     options.size = 512;
     const Unwrapped first = unwrap(m, options);
@@ -51,7 +31,7 @@ TEST(FileUvs, AreKeptWhenTheyAreOurOwn) {
 }
 
 TEST(FileUvs, ThatAreMirroredAreTurnedOver) {
-    TriangleMesh m = sheet();
+    TriangleMesh m = test::sheet();
     for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
         const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];
         m.corner_uvs.push_back({0.9f - 4 * p.x, 4 * p.y});
@@ -63,7 +43,7 @@ TEST(FileUvs, ThatAreMirroredAreTurnedOver) {
 }
 
 TEST(FileUvs, ThatCannotServeAreRenewed) {
-    TriangleMesh m = cylinder();
+    TriangleMesh m = test::cylinder();
     const std::function<Vec2f(const Vec3f&)> bad[] = {
         [](const Vec3f& p) { return Vec2f(5 * p.x + 0.5f, 4 * p.z); },    // front over back
         [](const Vec3f& p) { return Vec2f(20 * p.x + 0.5f, 40 * p.z); },  // outside
@@ -117,7 +97,7 @@ void expect_sound(const Unwrapped& u) {
 // 2 to 7 pages: squares of 2 x 2 pages, which floats divide exactly, and of 3 x 3, which they
 // do not. Rounding moves a UV by 2^-24 of the whole, 2e-4 of a texel.
 TEST(FileUvs, OnSeveralPagesComeBackOnTheSame) {
-    TriangleMesh m = torus();
+    TriangleMesh m = test::torus();
     for (const std::uint32_t pages : {2u, 4u, 5u, 7u}) {
         SCOPED_TRACE(pages);
         UnwrapOptions options;
@@ -145,7 +125,7 @@ TEST(FileUvs, OnSeveralPagesComeBackOnTheSame) {
 }
 
 TEST(FileUvs, KeepTheNumbersOfTheirPages) {
-    TriangleMesh m = sheet();  // in four stripes, on pages as another program may number them
+    TriangleMesh m = test::sheet();  // in four stripes, on pages as another program may number them
     const std::array<Vec2f, 4> tiles{Vec2f(0, 0), Vec2f(9, 0), Vec2f(2, 7), Vec2f(9, 99)};
     const auto stripe_of = [&](std::size_t t) {
         return static_cast<std::size_t>(
@@ -178,7 +158,7 @@ TEST(FileUvs, KeepTheNumbersOfTheirPages) {
 }
 
 TEST(FileUvs, OnNoPageAreRefused) {
-    TriangleMesh m = sheet();
+    TriangleMesh m = test::sheet();
     for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
         const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];
         m.corner_uvs.push_back({0.05f + 4 * p.x, 0.05f + 4 * p.y});
@@ -207,7 +187,7 @@ TEST(FileUvs, OnNoPageAreRefused) {
 }
 
 TEST(FileUvs, OnTooManyPagesAreRefused) {
-    TriangleMesh m = sheet();  // 2400 triangles, each pair on a page of its own
+    TriangleMesh m = test::sheet();  // 2400 triangles, each pair on a page of its own
     const auto on_pages = [&](std::size_t pages) {
         m.corner_uvs.clear();
         for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {

@@ -14,47 +14,13 @@
 #include "core/files.h"
 #include "core/parallel.h"
 #include "mesh/repair.h"
+#include "shapes.h"
 #include "test_mesh.h"
 
 namespace tuft::atlas {
 namespace {
 
 using mesh::TriangleMesh;
-constexpr double kPi = std::numbers::pi;
-
-TriangleMesh sheet() {
-    return test::grid_mesh(40, 30, false, false,
-                           [](double u, double v) { return Vec3(0.2 * u, 0.15 * v, 0); });
-}
-
-TriangleMesh cylinder() {
-    return test::grid_mesh(96, 40, true, false, [](double u, double v) {
-        return Vec3(0.05 * std::cos(2 * kPi * u), 0.05 * std::sin(2 * kPi * u), 0.2 * v);
-    });
-}
-
-TriangleMesh cone() {
-    return test::grid_mesh(96, 40, true, false, [](double u, double v) {
-        const double r = 0.02 + 0.06 * v;
-        return Vec3(r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u), 0.1 * v);
-    });
-}
-
-TriangleMesh torus() {
-    return test::grid_mesh(96, 48, true, true, [](double u, double v) {
-        const double r = 0.05 + 0.02 * std::cos(2 * kPi * v);
-        return Vec3(r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u),
-                    0.02 * std::sin(2 * kPi * v));
-    });
-}
-
-TriangleMesh sphere() {
-    return test::grid_mesh(96, 48, true, false, [](double u, double v) {
-        const double polar = kPi * (0.001 + 0.998 * v);
-        return Vec3(0.05 * std::sin(polar) * std::cos(2 * kPi * u),
-                    0.05 * std::sin(polar) * std::sin(2 * kPi * u), -0.05 * std::cos(polar));
-    });
-}
 
 TriangleMesh scaled(TriangleMesh m, float factor) {
     for (Vec3f& p : m.positions) p *= factor;
@@ -78,11 +44,11 @@ void expect_sound(const TriangleMesh& m, const Unwrapped& u) {
 }
 
 TEST(Unwrap, ShapesKeepTheInvariants) {
-    const std::pair<const char*, TriangleMesh> shapes[] = {{"sheet", sheet()},
-                                                           {"cylinder", cylinder()},
-                                                           {"cone", cone()},
-                                                           {"torus", torus()},
-                                                           {"sphere", sphere()}};
+    const std::pair<const char*, TriangleMesh> shapes[] = {{"sheet", test::sheet()},
+                                                           {"cylinder", test::cylinder()},
+                                                           {"cone", test::cone()},
+                                                           {"torus", test::torus()},
+                                                           {"sphere", test::sphere()}};
     for (const auto& [name, m] : shapes) {
         SCOPED_TRACE(name);
         UnwrapOptions options;
@@ -125,7 +91,7 @@ TEST(Unwrap, PorcelainGetsFewChartsThatHardlyStretch) {
 // A cylinder and a cone unroll without stretch; what is left is that of facets, which are
 // flat, so the floats of the UVs: 2^-24 over a triangle's size of about 1/100.
 TEST(Unwrap, DevelopableSurfacesUnrollIsometrically) {
-    for (const TriangleMesh& m : {sheet(), cylinder(), cone()}) {
+    for (const TriangleMesh& m : {test::sheet(), test::cylinder(), test::cone()}) {
         const Unwrapped u = unwrap(m, {});
         EXPECT_NEAR(u.report.l2_stretch, 1, 1e-5);
         EXPECT_NEAR(u.report.angle_distortion, 1, 1e-3);
@@ -133,7 +99,7 @@ TEST(Unwrap, DevelopableSurfacesUnrollIsometrically) {
 }
 
 TEST(Unwrap, IsTheSameForAnyNumberOfThreads) {
-    const TriangleMesh m = torus();
+    const TriangleMesh m = test::torus();
     std::vector<Vec2f> first;
     for (const int threads : {1, 2, 8}) {
         set_thread_count(threads);
@@ -145,7 +111,7 @@ TEST(Unwrap, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Unwrap, ChartsDoNotDependOnTheUnit) {
-    for (const TriangleMesh& m : {torus(), sphere(), cone()}) {
+    for (const TriangleMesh& m : {test::torus(), test::sphere(), test::cone()}) {
         const auto charts = static_cast<double>(unwrap(m, {}).report.charts);
         for (const float factor : {0.001f, 1000.f})
             EXPECT_NEAR(static_cast<double>(unwrap(scaled(m, factor), {}).report.charts), charts,
@@ -308,7 +274,7 @@ TEST(Unwrap, CutsChartsThatWouldLeaveThePageHalfEmpty) {
 }
 
 TEST(Unwrap, TexelSizeIsKept) {
-    const TriangleMesh m = torus();
+    const TriangleMesh m = test::torus();
     UnwrapOptions options;
     options.texel_size = 0.0005;
     const Unwrapped u = unwrap(m, options);
@@ -344,11 +310,11 @@ void expect_paged(const Atlas& atlas) {
 TEST(Unwrap, SpreadsChartsOverAsManyPagesAsATexelSizeNeeds) {
     UnwrapOptions options;
     options.texel_size = 0.0005;
-    const Unwrapped one = unwrap(torus(), options);
+    const Unwrapped one = unwrap(test::torus(), options);
     options.size = 160;  // the torus needs about 0.04 m² / (0.5 mm)² = 158,000 texels
     options.pages = 20;
-    const Unwrapped u = unwrap(torus(), options);
-    expect_sound(torus(), u);
+    const Unwrapped u = unwrap(test::torus(), options);
+    expect_sound(test::torus(), u);
     expect_paged(u.atlas);
     EXPECT_GE(u.atlas.pages, 7u);
     EXPECT_LE(u.atlas.pages, 20u);
@@ -356,22 +322,22 @@ TEST(Unwrap, SpreadsChartsOverAsManyPagesAsATexelSizeNeeds) {
     EXPECT_NEAR(u.atlas.texel_size, one.atlas.texel_size, 1e-3 * one.atlas.texel_size);
     EXPECT_EQ(udim_of(u.atlas, u.atlas.pages_per_side()), 1011u);
     options.pages = u.atlas.pages - 1;
-    EXPECT_THROW(unwrap(torus(), options), Error);
+    EXPECT_THROW(unwrap(test::torus(), options), Error);
     options.pages = 20;
     options.size = 2048;
-    EXPECT_EQ(unwrap(torus(), options).atlas.pages, 1u);
+    EXPECT_EQ(unwrap(test::torus(), options).atlas.pages, 1u);
     options.max_size = 300;  // no room for two pages beside each other
     options.size = 160;
-    EXPECT_THROW(unwrap(torus(), options), Error);
+    EXPECT_THROW(unwrap(test::torus(), options), Error);
 }
 
 TEST(Unwrap, FillsThePagesItIsGiven) {
     UnwrapOptions options;
     options.size = 256;
-    const double one = unwrap(torus(), options).atlas.texel_size;
+    const double one = unwrap(test::torus(), options).atlas.texel_size;
     options.pages = 4;
-    const Unwrapped u = unwrap(torus(), options);
-    expect_sound(torus(), u);
+    const Unwrapped u = unwrap(test::torus(), options);
+    expect_sound(test::torus(), u);
     expect_paged(u.atlas);
     EXPECT_EQ(u.atlas.pages, 4u);
     EXPECT_GE(u.report.utilisation, 0.4);
@@ -384,14 +350,14 @@ TEST(Unwrap, WiderGuttersAreKept) {
     options.size = 512;
     for (const std::uint32_t gutter : {0u, 1u, 3u, 8u, 16u}) {
         options.gutter = gutter;
-        expect_sound(torus(), unwrap(torus(), options));
+        expect_sound(test::torus(), unwrap(test::torus(), options));
     }
 }
 
 TEST(Unwrap, RefusesSizesThatCannotBeWithTheSizeNeeded) {
     const auto message = [](const UnwrapOptions& options) -> std::string {
         try {
-            unwrap(torus(), options);
+            unwrap(test::torus(), options);
         } catch (const Error& e) {
             return e.what();
         }
@@ -414,11 +380,11 @@ TEST(Unwrap, RefusesSizesThatCannotBeWithTheSizeNeeded) {
 TEST(Unwrap, CanBeCancelled) {
     UnwrapOptions options;
     options.progress = [](std::string_view, double) { return false; };
-    EXPECT_THROW(unwrap(torus(), options), Cancelled);
+    EXPECT_THROW(unwrap(test::torus(), options), Cancelled);
 }
 
 TEST(AtlasPicture, ShowsChartsAndTheirStretch) {
-    const TriangleMesh m = torus();
+    const TriangleMesh m = test::torus();
     UnwrapOptions options;
     options.size = 256;
     const Unwrapped u = unwrap(m, options);
@@ -433,7 +399,7 @@ TEST(AtlasPicture, ShowsChartsAndTheirStretch) {
 }
 
 TEST(AtlasPicture, LeavesOutUvsThatAreNotNumbersOrOutside) {
-    const TriangleMesh m = sheet();
+    const TriangleMesh m = test::sheet();
     UnwrapOptions options;
     options.size = 256;
     Atlas atlas = unwrap(m, options).atlas;

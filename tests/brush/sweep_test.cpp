@@ -33,11 +33,8 @@ TEST(Sweep, LinesWidenEvenlyWithDepth) {
     }
 }
 
-TEST(Sweep, Robot2020DrawsTheMeasuredLines) {
-    const std::string path = std::string(TUFT_TEST_DATA) + "/brush/brush_robot2020_even.csv";
-    const std::vector<SweepRow> measured = read_sweep(path);
-    const Preset p = load_preset("robot-2020");
-    EXPECT_NEAR(p.length, stated_length(path).value(), 1e-9);
+/// A quarter more than one standard deviation of the measurement itself.
+void expect_within_repeatability(const Preset& p, const std::vector<SweepRow>& measured) {
     SweepRow sum;
     for (const SweepRow& row : measured) {
         const SweepRow swept = sweep_depth(p, std::span(&row.depth, 1)).front();
@@ -45,10 +42,17 @@ TEST(Sweep, Robot2020DrawsTheMeasuredLines) {
         sum.drag += std::pow(swept.drag - row.drag, 2) / measured.size();
         sum.offset += std::pow(swept.offset - row.offset, 2) / measured.size();
     }
-    // A quarter more than one standard deviation of the measurement itself.
     EXPECT_LT(std::sqrt(sum.width), 1.25 * 1.4e-3);
     EXPECT_LT(std::sqrt(sum.drag), 1.25 * 0.5e-3);
     EXPECT_LT(std::sqrt(sum.offset), 1.25 * 0.7e-3);
+}
+
+TEST(Sweep, Robot2020DrawsTheMeasuredLines) {
+    const std::string path = std::string(TUFT_TEST_DATA) + "/brush/brush_robot2020_even.csv";
+    const std::vector<SweepRow> measured = read_sweep(path);
+    const Preset p = load_preset("robot-2020");
+    EXPECT_NEAR(p.length, stated_length(path).value(), 1e-9);
+    expect_within_repeatability(p, measured);
     // Depths between and beyond the table: even growth, steps back below the ruler's 0.5 mm.
     std::vector<double> depths;
     for (int i = 0; i <= 34; ++i) depths.push_back(5e-4 * i);
@@ -106,17 +110,7 @@ TEST(Calibrate, HoldsForDepthsThatWereHeldBack) {
     CalibrateOptions options;
     options.max_evaluations = 60;
     const Calibration fit = calibrate(load_preset("robot-2020"), fitted, options);
-    SweepRow sum;
-    for (const SweepRow& row : held) {
-        const SweepRow swept = sweep_depth(fit.preset, std::span(&row.depth, 1)).front();
-        sum.width += std::pow(swept.width - row.width, 2) / held.size();
-        sum.drag += std::pow(swept.drag - row.drag, 2) / held.size();
-        sum.offset += std::pow(swept.offset - row.offset, 2) / held.size();
-    }
-    // As for the rows themselves: a quarter more than the measurement's own spread.
-    EXPECT_LT(std::sqrt(sum.width), 1.25 * 1.4e-3);
-    EXPECT_LT(std::sqrt(sum.drag), 1.25 * 0.5e-3);
-    EXPECT_LT(std::sqrt(sum.offset), 1.25 * 0.7e-3);
+    expect_within_repeatability(fit.preset, held);
 }
 
 TEST(Sweep, TableReadsBack) {
