@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 . .ci/setup.sh
 install_missing "${packages_build[@]}"
 cmake_options=()
-build tuft tuft_images tuft-chart
+build tuft tuft_images tuft-chart tuft-patterns
 tuft=build/release/src/cli/tuft
 out=${1:-results}
 mkdir -p "$out"
