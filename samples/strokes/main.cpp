@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
                               const std::vector<stroke::Trace>& traces) {
             double seconds = 0;
             for (const stroke::Trace& t : traces) seconds += t.samples.back().time;
-            io::write_inkml(folder / name, traces, title);
+            io::write_inkml(folder / name, traces, title, io::Digits::rounded);
             fmt::print("{}: {} strokes, {:.0f} s\n", name, traces.size(), seconds);
         };
         save("qi-shang-ba-xia.inkml", "七上八下", samples::bowl_inside());

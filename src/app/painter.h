@@ -231,6 +231,7 @@ class Painter {
     void rewrite(std::vector<stroke::Stroke> strokes);
     void take_presets(stroke::Painting& painting);
     void export_model(const ExportModel& command);
+    void export_strokes(const std::filesystem::path& path);
     void draw_pictures(const ExportModel& command, const stroke::Painting& painting);
     void publish(bool strokes_changed = false);
     void say(std::string message);

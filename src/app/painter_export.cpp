@@ -1,7 +1,9 @@
 #include "app/painter.h"
 #include "io/export.h"
 #include "io/image.h"
+#include "io/inkml.h"
 #include "render/picture.h"
+#include "stroke/journal_traces.h"
 
 /// Exports and pictures, on the painter's thread.
 namespace tuft::app {
@@ -9,6 +11,7 @@ namespace tuft::app {
 void Painter::export_model(const ExportModel& command) {
     const stroke::Painting* painting = work_.painting.get();
     progress("Exporting")("", 0);
+    if (command.path.extension() == ".inkml") return export_strokes(command.path);
     // At another size the strokes are painted anew beside what is there.
     std::unique_ptr<stroke::Model> model;
     std::unique_ptr<stroke::Painting> resized;
@@ -32,6 +35,14 @@ void Painter::export_model(const ExportModel& command) {
     io::export_model(command.path, *m.mesh, m.atlas, maps, {.frame = work_.frame, .progress = progress("Exporting")});
     if (command.pictures > 0) draw_pictures(command, *painting);
     say("Exported " + command.path.string());
+    publish();
+}
+
+void Painter::export_strokes(const std::filesystem::path& path) {
+    const stroke::JournalTraces written = stroke::traces_of(work_.painting->journal().strokes());
+    if (written.traces.empty()) throw Error("There are no strokes to export yet.");
+    io::write_inkml(path, written.traces, path.stem().string());
+    say("Exported " + path.string() + (written.left_out > 0 ? "; changes of layers and masks are not in a stroke file" : ""));
     publish();
 }
 

@@ -18,6 +18,7 @@ constexpr Preset kPresets[] = {
     {"Unreal", ".glb", "One GLB file; drag it into the content browser", true, true, 8192},
     {"Unity", ".gltf", "glTF with pictures beside it, for the glTFast package", true, true, 8192},
     {"Web", ".glb", "A small GLB file for model viewers in a browser", false, false, 2048},
+    {"Strokes", ".inkml", "The strokes alone, to be painted again with tuft paint", false, false, 0},
     {"Print proof", ".obj", "OBJ, MTL and PNG for colour printers and print shops", false, false, 0},
 };
 
@@ -58,6 +59,8 @@ void export_dialog(Session& s) {
     row(s, "For");
     if (ui.combo("Preset", c.preset, names)) choose_preset(s);
     ui.note(ui.tr(preset_of(c.preset).note));
+    const bool strokes_alone = preset_of(c.preset).extension == std::string(".inkml");
+    ImGui::BeginDisabled(strokes_alone);
     row(s, "Maps");
     bool colour = true;
     ImGui::BeginDisabled();
@@ -90,6 +93,7 @@ void export_dialog(Session& s) {
         ImGui::AlignTextToFramePadding();
         ImGui::TextDisabled("\xc3\x97 %d", c.picture_width * 9 / 16);
     }
+    ImGui::EndDisabled();
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     const bool go = ui.primary_button("Choose a file...", 160);
     ImGui::SameLine();

@@ -268,10 +268,10 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_common(r, replay.common);
 
     Export exported;
-    auto* e = app.add_subcommand("export", "write a project's textured model or maps");
+    auto* e = app.add_subcommand("export", "write a project's textured model, maps or strokes");
     e->add_option("PROJECT", exported.project, "project file (.tuft)")->required();
     e->add_option("-o,--output", exported.output,
-                  ".glb, .gltf, .obj (model); .png, .exr (one map)")->required();
+                  ".glb, .gltf, .obj (model); .png, .exr (one map); .inkml (strokes, to the bit)")->required();
     e->add_option("--map", exported.map,
                   "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr) or palette (.png); "
                   "default: the file's name if it is one of these, else base-colour")

@@ -7,8 +7,10 @@
 #include "cli/steps.h"
 #include "io/export.h"
 #include "io/image.h"
+#include "io/inkml.h"
 #include "io/read_model.h"
 #include "io/restore.h"
+#include "stroke/journal_traces.h"
 
 /// Commands that start from a project: replay, export, render.
 namespace tuft::cli {
@@ -98,6 +100,25 @@ void write_map(const std::filesystem::path& path, const std::string& name, const
     }
 }
 
+int write_strokes(const Export& a, Console& console) {
+    const std::vector<stroke::Stroke> entries = io::Project::open(a.project).strokes();
+    const stroke::JournalTraces written = stroke::traces_of(entries);
+    if (written.traces.empty()) throw Error(a.project.string(), "there are no strokes to write");
+    io::write_inkml(a.output, written.traces, a.project.stem().string());
+    if (written.left_out > 0)
+        console.note(fmt::format("warning: {} changes of layers and masks are not in a stroke file", written.left_out));
+    if (a.common.json)
+        std::cout << nlohmann::json{{"project", a.project.string()},
+                                    {"wrote", a.output.string()},
+                                    {"traces", written.traces.size()},
+                                    {"left_out", written.left_out}}
+                         .dump(2)
+                  << '\n';
+    else
+        fmt::print("wrote {}\n", a.output.string());
+    return 0;
+}
+
 }  // namespace
 
 int run(const Replay& a) {
@@ -151,10 +172,11 @@ int run(const Replay& a) {
 }
 
 int run(const Export& a) {
-    check_extension(a.output, {".glb", ".gltf", ".obj", ".png", ".exr"});
+    check_extension(a.output, {".glb", ".gltf", ".obj", ".png", ".exr", ".inkml"});
     check_output(a.output);
     const std::string map = map_name(a);
     Console console(a.common.quiet);
+    if (a.output.extension() == ".inkml") return write_strokes(a, console);
     const auto project = open_project(a.project, console);
     stroke::Painting painting(project->model);
     restore(*project, painting, console);

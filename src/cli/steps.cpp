@@ -122,7 +122,7 @@ std::vector<stroke::Care> care_before(const Paint& a, const stroke::Trace& trace
     const bool first = std::none_of(painted.begin(), painted.end(), [&](const stroke::Stroke& s) {
         return s.trace.brush == trace.brush;
     });
-    if (first || a.dip == "each")
+    if ((first || a.dip == "each") && !trace.samples.empty())
         for (const std::string& text : a.prepare) care.push_back(stroke::care_of_text(text));
     care.insert(care.end(), trace.before.begin(), trace.before.end());
     return care;
@@ -145,14 +145,16 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
 
     std::vector<stroke::Stroke> strokes;
     for (const fs::path& file : a.strokes) {
-        std::vector<stroke::Trace> traces = io::read_strokes(file);
+        std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true});
         if (habit) traces = stroke::undo_habit(*habit, std::move(traces));
         for (stroke::Trace& trace : traces) {
             if (trace.brush.empty() || !a.brush.empty())
                 trace.brush = a.brush.empty() ? "wolf-medium" : a.brush;
             if (trace.ink.empty() || !a.ink.empty()) trace.ink = a.ink.empty() ? "carbon" : a.ink;
             // What is done with a brush shows in the stroke after it: that goes on with this brush.
-            stroke::Settings with = settings;
+            const bool own = !trace.settings.empty();
+            stroke::Settings with = own ? stroke::settings_from_json(trace.settings) : settings;
+            const std::string dip = with.dip;
             for (const stroke::Care& care : care_before(a, trace, strokes)) {
                 stroke::Stroke entry{.settings = with, .action = care.action, .seconds = care.seconds, .extent = care.extent};
                 if (stroke::has_brush(care.action)) with.dip = "carry";
@@ -166,6 +168,8 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
                 strokes.push_back(std::move(entry));
             }
             trace.before.clear();
+            if (trace.samples.empty()) continue;
+            if (own) with.dip = dip;
             stroke::Stroke s{.settings = with};
             if (trace.flat && !trace.pressed) s.settings.pressure = a.pressure;
             trace.erases = trace.erases || a.erases;

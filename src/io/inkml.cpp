@@ -33,7 +33,7 @@ struct State {
 /// A trace with what is settled only once the whole file is read.
 struct Draft {
     Trace trace;
-    bool has_time = false, has_pressure = false, pressure_ranged = true;
+    bool has_time = false, has_pressure = false, pressure_ranged = true, keeps_clock = false;
     double sample_rate = 0;
     double duration = 0;  ///< seconds, 0 unknown
     long line = 0;
@@ -264,11 +264,12 @@ class Reader : InkmlText {
         const long line = line_at((first ? first : node).offset_debug());
         const InkmlRows rows = decode_inkml(text_of(node), state.format,
                                             options_.max_samples - n_samples_, path, line);
-        if (rows.n_rows() == 0) return;
+        std::vector<stroke::Care> before = care_of(*this, node);
+        if (rows.n_rows() == 0 && (before.empty() || !options_.actions)) return;
         n_samples_ += rows.n_rows();
 
         Draft draft = draft_of(rows, state, line);
-        draft.trace.before = care_of(*this, node);
+        draft.trace.before = std::move(before);
         if (const auto x = to_number(node.attribute("duration").value()))
             draft.duration = 1e-3 * *x;
         const std::string_view continuation = node.attribute("continuation").value();
@@ -314,6 +315,8 @@ class Reader : InkmlText {
         d.trace.on_palette = state.marks.on_palette;
         d.trace.seed = state.marks.seed;
         d.trace.label = state.marks.label;
+        d.trace.settings = state.marks.settings;
+        d.keeps_clock = state.marks.keeps_clock;
         d.trace.pressed = d.has_pressure;
         d.trace.samples.reserve(rows.n_rows());
         for (std::size_t i = 0; i < rows.n_rows(); ++i) {
@@ -339,7 +342,7 @@ class Reader : InkmlText {
                 s.rotation = Quat(get(q[0]), get(q[1]), get(q[2]), get(q[3]));
                 if (!(glm::length(s.rotation) > 1e-6))
                     throw Error(path, line, "a rotation is zero");
-                s.rotation = glm::normalize(s.rotation);
+                if (!is_unit(glm::dot(s.rotation, s.rotation))) s.rotation = glm::normalize(s.rotation);
             } else if (!d.trace.flat) {
                 const Vec3 up = glm::normalize(Vec3(std::tan(s.tilt.x), std::tan(s.tilt.y), 1));
                 s.rotation = Quat(Vec3(0, 0, 1), up);
@@ -362,6 +365,7 @@ class Reader : InkmlText {
             auto& samples = d.trace.samples;
             for (TraceSample& s : samples)
                 s.pressure = std::clamp(s.pressure / (d.pressure_ranged ? 1 : largest), 0.0, 1.0);
+            if (samples.empty()) continue;
             set_times(d);
             if (d.trace.flat && !d.has_pressure) default_pressure(d.trace);
         }
@@ -383,12 +387,15 @@ class Reader : InkmlText {
 
     void set_times(Draft& d) const {
         auto& samples = d.trace.samples;
+        const bool kept = d.has_time && d.keeps_clock;
         const double start = samples.front().time;
-        double length = 0, last = 0;
+        double length = 0, last = kept ? start : 0;
         for (std::size_t i = 0; i < samples.size(); ++i) {
             if (i > 0) length += glm::length(samples[i].position - samples[i - 1].position);
             double t = length / options_.pen_speed;
-            if (d.has_time)
+            if (kept)
+                t = samples[i].time;
+            else if (d.has_time)
                 t = samples[i].time - start;
             else if (d.sample_rate > 0)
                 t = static_cast<double>(i) / d.sample_rate;

@@ -22,6 +22,7 @@ struct InkmlOptions {
     double max_extent = 1000;    ///< metres; coordinates beyond are refused
     std::size_t max_bytes = std::size_t{1} << 30;
     std::size_t max_samples = 10'000'000;
+    bool actions = false;  ///< keeps traces without points that say what is done with a brush
 };
 
 /// The pen-down traces of a file, in order.
@@ -45,13 +46,14 @@ struct InkmlOptions {
 ///     tuft:label    any text             tuft:laying  wrap | project
 ///     tuft:mask     name of a mask that the project has
 ///     tuft:layer    name of a layer      tuft:tool    brush | eraser
-///     tuft:on       model | palette
+///     tuft:on       model | palette      tuft:settings  stroke::to_json of a journal's settings
+///     tuft:clock    kept: T is not rebased
 ///
 /// and, on a `trace` only, what is done with the brush before it, in the order written:
 /// tuft:dip (an ink's name, or empty: the trace's own), tuft:wipe, tuft:rinse,
 /// tuft:reshape, tuft:wash (of the palette), tuft:dry (seconds, or empty: until all is dry), tuft:fill (an ink's name, or empty: the trace's own) with the
 /// attributes film, region (all, part, chart), at, gradient (none, along, round), to_film, to_ink,
-/// from, to: see stroke::Fill, points "x y z" in mm. A dip or wipe may have attributes depth and
+/// from, to: see stroke::Fill, points "x y z" in mm, or followed by m in metres. A dip or wipe may have attributes depth and
 /// amount, 0–1: see stroke::Extent.
 ///
 /// Flat traces without P and F get pressure that swells in and tapers out over their length
@@ -66,13 +68,21 @@ std::vector<stroke::Trace> read_inkml(const std::filesystem::path& path,
 std::vector<stroke::Trace> parse_inkml(std::string_view text, const std::string& source,
                                        const InkmlOptions& options = {});
 
-/// InkML text, millimetres and milliseconds, explicit values: traces that share a placement,
-/// brush and ink form a `traceGroup`. Read back, positions agree to 1e-9 m (flat: 5e-7 m),
-/// times to 1e-6 s, pressures to 1e-5, tilts to 1e-4 rad, rotations to 1e-9.
-std::string inkml_text(std::span<const stroke::Trace> traces, const std::string& title = {});
+/// How many digits are written.
+enum class Digits {
+    exact,    ///< metres, seconds, radians, each number with the fewest digits that give it back to the
+              ///< bit; directions and rotations must be of unit length to 1e-14, tilts within 85
+              ///< degrees and pressures within 0–1, as the reader has them
+    rounded,  ///< for people: millimetres, milliseconds, degrees. Positions agree to 1e-9 m (flat:
+              ///< 5e-7 m), times to 1e-6 s, pressures to 1e-5, tilts to 1e-4 rad, rotations to 1e-9
+};
+
+/// InkML text with explicit values: traces that share a placement, brush, ink and settings form
+/// a `traceGroup`.
+std::string inkml_text(std::span<const stroke::Trace> traces, const std::string& title = {}, Digits digits = Digits::exact);
 
 /// Writes the text atomically.
 void write_inkml(const std::filesystem::path& path, std::span<const stroke::Trace> traces,
-                 const std::string& title = {});
+                 const std::string& title = {}, Digits digits = Digits::exact);
 
 }  // namespace tuft::io

@@ -15,7 +15,7 @@ namespace {
 
 using pugi::xml_node;
 
-Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view text, std::string_view unit) {
     double v[3];
     for (double& x : v) {
         text = trimmed(text);
@@ -24,22 +24,37 @@ Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view tex
             file.fail(node, std::string(node.attribute("type").value()) + " needs three numbers");
         text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     }
-    if (!trimmed(text).empty() && trimmed(text) != "mm")
+    if (!trimmed(text).empty() && trimmed(text) != unit)
         file.fail(node, std::string(node.attribute("type").value()) +
                             " needs three numbers, millimetres");
     return {v[0], v[1], v[2]};
 }
 
+/// Metres.
+Vec3 point_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+    const bool metres = trimmed(text).ends_with('m') && !trimmed(text).ends_with("mm");
+    return metres ? vector_of(file, node, text, "m") : kMillimetre * vector_of(file, node, text, "mm");
+}
+
 Vec3 direction_of(const InkmlText& file, const xml_node& node, std::string_view text) {
-    const Vec3 v = vector_of(file, node, text);
+    const Vec3 v = vector_of(file, node, text, "mm");
     if (!(glm::length(v) > 0)) file.fail(node, "a placement's direction is zero");
-    return glm::normalize(v);
+    return is_unit(glm::dot(v, v)) ? v : glm::normalize(v);
 }
 
 std::string name_of(const InkmlText& file, const xml_node& node, std::string_view text,
                     const char* of_what) {
     try {
         stroke::check_name(text, of_what);
+    } catch (const Error& e) {
+        file.fail(node, e.what());
+    }
+    return std::string(text);
+}
+
+std::string settings_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+    try {
+        stroke::settings_from_json(std::string(text));
     } catch (const Error& e) {
         file.fail(node, e.what());
     }
@@ -58,7 +73,7 @@ stroke::Fill fill_of(const InkmlText& file, const xml_node& node) {
     };
     const auto point = [&](const char* name, Vec3& to) {
         if (node.attribute(name))
-            to = kMillimetre * vector_of(file, node, node.attribute(name).value());
+            to = point_of(file, node, node.attribute(name).value());
     };
     number("film", fill.film);
     fill.to_film = fill.film;
@@ -181,12 +196,18 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
             file.fail(node, "tuft:on is neither model nor palette");
         else if (type == "on")
             marks.on_palette = text == "palette";
+        else if (type == "clock" && text != "kept")
+            file.fail(node, "tuft:clock is nothing but kept");
+        else if (type == "clock")
+            marks.keeps_clock = true;
+        else if (type == "settings")
+            marks.settings = settings_of(file, node, text);
         else if (type == "mask")
             marks.mask = name_of(file, node, text, "mask");
         else if (type == "layer")
             marks.layer = name_of(file, node, text, "layer");
         else if (type == "origin") {
-            marks.placement.origin = kMillimetre * vector_of(file, node, text);
+            marks.placement.origin = point_of(file, node, text);
             marks.placed = true;
         } else if (type == "right")
             marks.placement.right = direction_of(file, node, text);

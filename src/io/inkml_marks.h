@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,6 +33,8 @@ std::string_view local_name(const pugi::xml_node& node);
 /// The element's own text.
 std::string text_of(const pugi::xml_node& node);
 std::string_view trimmed(std::string_view s);
+/// Whether a vector of that squared length was normalised already: doing so again would change its last bits.
+inline bool is_unit(double squared_length) { return std::abs(squared_length - 1) <= 1e-14; }
 /// The whole of `s` as a finite number.
 std::optional<double> to_number(std::string_view s);
 
@@ -41,7 +44,8 @@ struct InkmlMarks {
     bool placed = false;
     std::string brush, ink, label, layer, mask;
     std::uint64_t seed = 0;
-    bool erases = false, on_palette = false;
+    std::string settings;
+    bool erases = false, on_palette = false, keeps_clock = false;
 };
 
 /// Takes over what the annotations of `parent` say; throws `Error` for what means nothing.

@@ -87,6 +87,8 @@ struct Trace {
     std::string label;                   ///< free text for people: a character, a stroke's name
     bool pressed = true;                 ///< false: pressures were made up, the device gave none
     std::vector<Care> before;            ///< what a file wants done with the brush first
+    std::string settings;                ///< as a file wants them, see `to_json` in journal.h; empty: as
+                                         ///< the command line says
 };
 
 }  // namespace tuft::stroke

@@ -173,14 +173,21 @@ TEST_F(StudioProgram, KeysCanBeChangedAndStayChanged) {
 }
 
 TEST_F(StudioProgram, LayersArePaintedHiddenAndUndoneLikeStrokes) {
-    const Ran ran = studio(kBowl + "stroke 46%,58% 50%,61%\nwait-ready\nclick \"Add a layer\"\nwait-ready\nwait 0.1\nset layer \"Layer 2\"\nset ink cinnabar\n"
+    const Ran ran = studio(kBowl + "set wet on\nset carry on\nstroke 46%,58% 50%,61%\nwait-ready\nclick \"Add a layer\"\nwait-ready\nwait 0.1\nset layer \"Layer 2\"\nset ink cinnabar\n"
                                    "stroke 44%,57% 47%,60%\nwait-ready\nexpect strokes 3\nclick \"show Layer 2\"\nwait-ready\nexpect strokes 4\nundo\nundo\nredo\nwait-ready\n"
-                                   "expect strokes 3\nset shading wetness\nwait-ready\nset shading glaze\nexpect kept\nsave work.tuft\nwait-ready\n");
+                                   "expect strokes 3\nset shading wetness\nwait-ready\nset shading glaze\nexpect kept\nsave work.tuft\nwait-ready\nsave more.tuft\nwait-ready\nset ink carbon\nset tip-ink gamboge\nset two-inks on\nset mirror x\n"
+                                   "stroke 52%,57% 56%,60%\nwait-ready\nexport more.inkml\nwait-ready\nexpect message Exported\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 3u);
     EXPECT_EQ(strokes[0].layer, stroke::kFirstLayer);
     EXPECT_NE(strokes[2].layer, stroke::kFirstLayer);
+    // The exported strokes paint the same, on both layers, with what was done with the brush between them.
+    const nlohmann::json painted = tuft("paint " TUFT_SOURCE "/models/bowl.ply --strokes '" + path("more.inkml") + "' --atlas-size 512");
+    EXPECT_EQ(painted["strokes"].size(), 4u);
+    EXPECT_EQ(painted["canvas_hash"], tuft("replay '" + path("more.tuft") + "'")["canvas_hash"]);
+    tuft("export '" + path("more.tuft") + "' -o '" + path("again.inkml") + "'");
+    EXPECT_EQ(read(path("again.inkml")), read(path("more.inkml")));
 }
 
 TEST_F(StudioProgram, AMixturePickedUpIsAnInkOfTheProject) {

@@ -118,7 +118,7 @@ class Window : public testing::Test {
 };
 
 // Opens, unwraps, paints, undoes, is killed, recovers, saves and exports; the texels are those of a
-// replay, to the bit, and the exported file is valid.
+// replay, and those that `tuft paint` makes of the exported strokes, to the bit, and the exported model is valid.
 TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     open_studio(TUFT_SOURCE "/models/plate.ply");
     std::this_thread::sleep_for(std::chrono::seconds(2));
@@ -154,6 +154,14 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     type(path("work.glb"));
     keys("Return");
     wait_for("the exported model", [&] { return fs::exists(path("work.glb")); });
+    keys("ctrl+e");
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    keys("Return");
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    keys("ctrl+a");
+    type(path("work.inkml"));
+    keys("Return");
+    wait_for("the exported strokes", [&] { return fs::exists(path("work.inkml")); });
     keys("ctrl+q");
     int status = -1;
     waitpid(studio_, &status, 0);
@@ -163,6 +171,10 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     const nlohmann::json replayed = tuft("replay '" + path("work.tuft") + "'");
     EXPECT_EQ(replayed["strokes"], 3);
     EXPECT_EQ(replayed["canvas_hash"], test::stored_hash(path("work.tuft")));
+    const std::string size = std::to_string(io::Project::open(path("work.tuft")).model().atlas.size);
+    const nlohmann::json painted = tuft("paint " TUFT_SOURCE "/models/plate.ply --strokes '" + path("work.inkml") + "' --atlas-size " + size);
+    EXPECT_EQ(painted["strokes"].size(), 3u);
+    EXPECT_EQ(painted["canvas_hash"], test::stored_hash(path("work.tuft")));
     const int valid = std::system(("bash '" TUFT_SOURCE "/tests/io/validate_glb.sh' '" TUFT_SOURCE "/build/node' '" + path("work.glb") + "' >'" + path("valid") + "' 2>&1").c_str());
     if (WEXITSTATUS(valid) == 77) std::puts("the glTF validator is not installed: the exported file is not checked");
     else EXPECT_EQ(valid, 0) << read("valid");

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 
 #include "core/error.h"
@@ -279,7 +281,7 @@ TEST(Inkml, PenUpTracesAreSkippedAndContinuationsJoined) {
     EXPECT_EQ(millimetres(t[0]), (Points{{1, 1}, {2, 2}, {3, 3}}));
 }
 
-TEST(Inkml, WritesWhatItReads) {
+TEST(Inkml, WritesForPeopleWhatItReads) {
     std::vector<Trace> traces(5);
     for (std::size_t k = 0; k < traces.size(); ++k) {
         Trace& t = traces[k];
@@ -308,7 +310,7 @@ TEST(Inkml, WritesWhatItReads) {
         }
     }
     const auto path = std::filesystem::temp_directory_path() / "tuft_inkml_test.inkml";
-    write_inkml(path, traces, "Five <strokes>");
+    write_inkml(path, traces, "Five <strokes>", Digits::rounded);
     const auto back = read_inkml(path);
     std::filesystem::remove(path);
     ASSERT_EQ(back.size(), traces.size());
@@ -333,7 +335,79 @@ TEST(Inkml, WritesWhatItReads) {
         }
     }
     // Written again, the text is the same: rounding is idempotent.
-    EXPECT_EQ(inkml_text(back), inkml_text(parse_inkml(inkml_text(back), "again")));
+    const std::string text = inkml_text(back, "", Digits::rounded);
+    EXPECT_EQ(text, inkml_text(parse_inkml(text, "again"), "", Digits::rounded));
+}
+
+// A finite number with random bits, of magnitude below `most`.
+double any_double(std::uint64_t seed, std::uint64_t n, double most) {
+    for (std::uint64_t k = 0;; ++k) {
+        const double x = std::bit_cast<double>(hash_bits(seed, 1000 * n + k));
+        if (std::abs(x) < most) return x;
+    }
+}
+
+std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
+
+TEST(Inkml, AnyNumberComesBackToTheBit) {
+    std::vector<Trace> traces(200);
+    for (std::size_t k = 0; k < traces.size(); ++k) {
+        Trace& t = traces[k];
+        auto number = [&, n = std::uint64_t{0}](double most) mutable { return any_double(k, n++, most); };
+        t.flat = k % 3 != 0;
+        t.brush = "wolf-small";
+        t.settings = R"({"dip":"carry","down":[0.1,0.0,-1.0],"film":"wet"})";
+        if (t.flat)
+            t.placement = {{number(1000), number(1000), number(1000)},
+                           glm::normalize(Vec3(1, number(3), 3)), glm::normalize(Vec3(2, -1, number(3))), stroke::Laying::wrap};
+        // A clock that began before the stroke, at it, and at minus nothing.
+        double time = k % 4 == 0 ? 0 : k % 4 == 1 ? -0.0 : k % 4 == 2 ? 1e5 + number(1) : -std::abs(number(1e6));
+        for (int i = 0; i < 20; ++i) {
+            stroke::TraceSample s;
+            s.time = time;
+            time += std::abs(number(1));
+            s.position = {number(1000), number(1000), t.flat ? 0 : number(1000)};
+            s.pressure = std::abs(number(1));
+            if (t.flat && k % 3 == 1) s.tilt = {number(1.4), number(1.4)};
+            if (!t.flat) s.rotation = glm::normalize(Quat(1, number(2), number(2), number(2)));
+            t.samples.push_back(s);
+        }
+    }
+    traces[0].samples[3].position = {-0.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min()};
+    traces[0].before.push_back({.action = stroke::Action::fill, .fill = {.film = 1.0 / 3, .to_film = 1.0 / 3, .region = stroke::Region::part,
+                                                                         .at = {1.0 / 3, -2e-9 / 7, 123.456}}});
+    const auto back = parse_inkml(inkml_text(traces), "exact.inkml");
+    ASSERT_EQ(back.size(), traces.size());
+    for (std::size_t k = 0; k < traces.size(); ++k) {
+        const Trace &a = traces[k], &b = back[k];
+        EXPECT_EQ(a.settings, b.settings);
+        ASSERT_EQ(a.samples.size(), b.samples.size());
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_EQ(bits(a.placement.origin[i]), bits(b.placement.origin[i])) << k;
+            EXPECT_EQ(bits(a.placement.right[i]), bits(b.placement.right[i])) << k;
+            EXPECT_EQ(bits(a.placement.down[i]), bits(b.placement.down[i])) << k;
+        }
+        for (std::size_t i = 0; i < a.samples.size(); ++i) {
+            const auto &s = a.samples[i], &r = b.samples[i];
+            EXPECT_EQ(bits(s.time), bits(r.time)) << k << " " << i;
+            EXPECT_EQ(bits(s.pressure), bits(r.pressure)) << k << " " << i;
+            for (int c = 0; c < 3; ++c) EXPECT_EQ(bits(s.position[c]), bits(r.position[c])) << k << " " << i;
+            for (int c = 0; c < 2; ++c) EXPECT_EQ(bits(s.tilt[c]), bits(r.tilt[c])) << k << " " << i;
+            for (int c = 0; c < 4; ++c) EXPECT_EQ(bits(s.rotation[c]), bits(r.rotation[c])) << k << " " << i;
+        }
+    }
+    ASSERT_EQ(back[0].before.size(), 1u);
+    EXPECT_EQ(back[0].before[0].fill, traces[0].before[0].fill);
+}
+
+TEST(Inkml, TracesThatOnlyCareForTheBrushAreReadWhereTheyAreWanted) {
+    const std::string body = "<trace><annotation type='tuft:rinse'/></trace><trace></trace><trace>0 0,1 1</trace>";
+    EXPECT_EQ(parse(body).size(), 1u);
+    const auto all = parse(body, {.actions = true});
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_TRUE(all[0].samples.empty());
+    ASSERT_EQ(all[0].before.size(), 1u);
+    EXPECT_EQ(all[0].before[0].action, stroke::Action::rinse);
 }
 
 TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
@@ -366,6 +440,10 @@ TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
                 HasSubstr("three numbers"));
     EXPECT_THAT(message(ink("<annotation type='tuft:right'>0 0 0</annotation><trace>1 2</trace>")),
                 HasSubstr("direction is zero"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:clock'>reset</annotation><trace>1 2</trace>")),
+                HasSubstr("nothing but kept"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:settings'>{\"film\": 3}</annotation><trace>1 2</trace>")),
+                HasSubstr("test.inkml:2: "));
     EXPECT_THAT(message(ink("<annotation type='tuft:laying'>flat</annotation><trace>1 2</trace>")),
                 HasSubstr("neither wrap nor project"));
     EXPECT_THAT(message(ink("<context xml:id='a' contextRef='#b'/><context xml:id='b' "
