@@ -109,7 +109,8 @@ std::vector<double> lowering(const SectionInput& in, const std::vector<Section>&
         }
         if (z < r || tail < 0) {
             const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;
-            height = std::max(0.0, std::min(height, z - near * (r - s.b) * upright));
+            // Deeper than the tuft is thick it is not give: it is within the model, and stays there.
+            height = std::max(std::min(0.0, z + in.preset.radius), std::min(height, z - near * (r - s.b) * upright));
         }
         down[i] = z - height;
         if (z >= r && tail >= 0) continue;

@@ -361,6 +361,10 @@ TEST(Tuft, TenThousandRandomPosesStayFiniteAndBounded) {
             for (const Branch& b : state.branches) {
                 for (const Section& s : b.sections) {
                     ASSERT_TRUE(std::isfinite(glm::length(s.centre)) && std::isfinite(s.a) && std::isfinite(glm::length(s.e)));
+                    // Hair does not grow: its length from the ferrule, moved by at most its
+                    // radius, by half of what it spreads, and by a wet film.
+                    const double about = (1 + 0.5 * tuft.preset.flatten_max) * tuft.preset.radius + 2 * tuft.preset.adhesion_range;
+                    ASSERT_LE(glm::length(s.centre - pose.position), length + about);
                 }
             }
             for (std::size_t j = 0; j < tuft.spine.memory.tangent.size(); ++j) {
