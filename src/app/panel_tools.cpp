@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "app/panels.h"
 #include "brush/tuft.h"
@@ -241,9 +242,15 @@ void writing_section(Session& s) {
     double width = w.width * w.scale;
     if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", "Wheel over the model", kMillimetre)) w.scale = width / w.width;
     ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
-    bool along = w.laying == stroke::Laying::wrap;
-    if (ui.toggle("Bend it round the surface", along, "Lengths stay as written; else it is projected straight through the picture plane"))
-        w.laying = along ? stroke::Laying::wrap : stroke::Laying::project;
+    const std::tuple<stroke::Laying, const char*, const char*> layings[] = {
+        {stroke::Laying::drape, "Drape", "Bent round the surface, over its grooves, relief and gaps"},
+        {stroke::Laying::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
+        {stroke::Laying::project, "Straight", "Straight through the picture plane"}};
+    const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
+    for (const auto& [laying, name, hint] : layings) {
+        if (laying != stroke::Laying::drape) ImGui::SameLine();
+        if (ui.choice(name, w.laying == laying, hint, third)) w.laying = laying;
+    }
     const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (names) ui.toggle("Brush and ink of the file", w.own_ink);
     ui.note(ui.tr("Wheel: size    Shift + wheel: turn    Click: lay it down"));

@@ -75,18 +75,25 @@ std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query
     std::size_t all = 0;
     for (const stroke::Trace& trace : w.traces) all += trace.samples.size();
     const std::size_t step = std::max<std::size_t>(1, all / most);
-    std::vector<std::vector<GhostPoint>> lines;
+    // All in one trace: what is found out about the ground is found once.
+    stroke::Trace thin{.placement = placement};
+    std::vector<std::size_t> starts;
     for (const stroke::Trace& trace : w.traces) {
-        stroke::Trace thin{.placement = placement};
+        starts.push_back(thin.samples.size());
         const std::size_t n = trace.samples.size();
         for (std::size_t i = 0; i < n; i += step) thin.samples.push_back(trace.samples[i]);
         if ((n - 1) % step != 0) thin.samples.push_back(trace.samples.back());
-        for (stroke::TraceSample& s : thin.samples) s.position *= w.scale;
-        lines.emplace_back();
-        for (const stroke::LaidSample& s : stroke::lay(query, thin).samples) {
-            if (s.on_surface) lines.back().push_back({s.position, s.normal});
-            else if (!lines.back().empty()) lines.emplace_back();
+    }
+    for (stroke::TraceSample& s : thin.samples) s.position *= w.scale;
+    const std::vector<stroke::LaidSample> laid = stroke::lay(query, thin).samples;
+    std::vector<std::vector<GhostPoint>> lines;
+    for (std::size_t i = 0, next = 0; i < laid.size(); ++i) {
+        while (next < starts.size() && starts[next] == i) {
+            lines.emplace_back();
+            ++next;
         }
+        if (laid[i].on_surface) lines.back().push_back({laid[i].position, laid[i].normal});
+        else if (!lines.back().empty()) lines.emplace_back();
     }
     return lines;
 }

@@ -15,7 +15,7 @@ struct Writing {
     double width = 0, height = 0;        ///< metres, as in the file
     double scale = 1;
     double turn = 0;                     ///< radians, clockwise as seen
-    stroke::Laying laying = stroke::Laying::wrap;
+    stroke::Laying laying = stroke::Laying::drape;
     bool own_ink = false;                ///< brush and ink as the file names them
 
     bool empty() const { return traces.empty(); }

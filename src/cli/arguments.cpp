@@ -162,8 +162,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
     p->add_option("MODEL", paint.model, "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project")->required();
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
-    p->add_option("--brush", paint.brush, "brush for strokes that name none ('tuft brush' lists them)");
-    p->add_option("--ink", paint.ink, "ink for strokes that name none");
+    p->add_option("--brush", paint.brush, "brush for all strokes ('tuft brush' lists them; default: what they name, else wolf-medium)");
+    p->add_option("--ink", paint.ink, "ink for all strokes (default: what they name, else carbon)");
     p->add_option("--mask", paint.mask, "mask of the project to keep to, for strokes that name none");
     p->add_flag_callback("--erase", [&paint] { paint.erases = true; },
                          "the strokes take ink away, wet and dry, instead of leaving some");
@@ -221,6 +221,11 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
          },
          "where flat strokes go that have no place of their own: X,Y,Z in millimetres")
         ->type_name("X,Y,Z");
+    p->add_option("--laying", paint.laying,
+                  "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap (round its very "
+                  "triangles, into each groove), project (straight, as seen from before the place); default: as their file says, "
+                  "drape where it names no place")
+        ->check(CLI::IsMember({"drape", "wrap", "project"}));
     p->add_option("--place-width", paint.place_width_mm,
                   "draws what is placed this wide, all stroke files together (default: as written)")
         ->check(CLI::PositiveNumber)

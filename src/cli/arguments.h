@@ -62,6 +62,7 @@ struct Paint {
     std::filesystem::path habit;    ///< habit to undo, or empty
     std::vector<double> place_mm;   ///< x,y,z of the placement for flat strokes, or empty
     double place_width_mm = 0;      ///< of the whole drawing placed; 0: as written
+    std::string laying;             ///< drape, wrap, project; empty: see place_strokes
     double place_turn_deg = 0;      ///< anticlockwise, as seen by who stands before the surface
     Surface surface;
     std::filesystem::path project, exported, preview, forces;

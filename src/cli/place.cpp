@@ -34,6 +34,8 @@ void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& mo
     Box area;
     for (stroke::Stroke& s : strokes) {
         if (s.layer == stroke::kPaletteLayer) continue;  // in its own frame
+        if (!s.trace.placed) s.trace.placement.laying = stroke::Laying::drape;
+        if (const auto laying = stroke::laying_named(a.laying)) s.trace.placement.laying = *laying;
         if (!s.trace.flat || (a.place_mm.empty() && s.trace.placed)) continue;
         drawing.push_back(&s.trace);
         for (const stroke::TraceSample& sample : s.trace.samples) area.add(sample.position);

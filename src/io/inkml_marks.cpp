@@ -213,13 +213,11 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
             marks.placement.right = direction_of(file, node, text);
         else if (type == "down")
             marks.placement.down = direction_of(file, node, text);
-        else if (type == "laying" && text == "wrap")
-            marks.placement.laying = stroke::Laying::wrap;
-        else if (type == "laying" && text == "project")
-            marks.placement.laying = stroke::Laying::project;
-        else if (type == "laying")
-            file.fail(node, "tuft:laying is neither wrap nor project");
-        else if (type == "seed") {
+        else if (type == "laying") {
+            const auto laying = stroke::laying_named(text);
+            if (!laying) file.fail(node, "tuft:laying is neither wrap, drape nor project");
+            marks.placement.laying = *laying;
+        } else if (type == "seed") {
             const auto [end, error] =
                 std::from_chars(text.data(), text.data() + text.size(), marks.seed);
             if (error != std::errc{} || end != text.data() + text.size())

@@ -19,7 +19,8 @@
 /// its atlas, the presets used, the journal and a picture of the texels.
 namespace tuft::io {
 
-inline constexpr int kProjectFormat = 4;  ///< highest format version this program reads: a palette
+inline constexpr int kProjectFormat = 5;  ///< highest format version this program reads: draped strokes
+inline constexpr int kPaletteFormat = 4;  ///< of projects with a palette
 inline constexpr int kLayersFormat = 3;   ///< of projects with layers, masks or fills
 inline constexpr int kFilmsFormat = 2;    ///< of projects with dry films, soaked ink or water
 inline constexpr int kFirstFormat = 1;    ///< of projects without any of these

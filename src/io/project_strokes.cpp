@@ -76,7 +76,7 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         insert.bind(6, stroke::entry_json(stroke));
         insert.bind(7, stroke.hidden ? 1 : 0);
         insert.bind(8, t.flat ? 1 : 0);
-        insert.bind(9, t.placement.laying == stroke::Laying::project ? "project" : "wrap");
+        insert.bind(9, std::string(stroke::laying_name(t.placement.laying)));
         insert.bind(10, placement.data(), static_cast<int>(sizeof placement));
         insert.bind(11, static_cast<std::int64_t>(t.samples.size()));
         insert.bind(12, blob.data(), static_cast<int>(blob.size()));
@@ -85,7 +85,8 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         if (stroke::keeps_texels(stroke.action) || stroke.action == stroke::Action::fill || stroke.mask != 0 ||
             stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
             raise_format(db, kLayersFormat);
-        if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash) raise_format(db, kProjectFormat);
+        if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash) raise_format(db, kPaletteFormat);
+        if (t.flat && t.placement.laying == stroke::Laying::drape) raise_format(db, kProjectFormat);
     }
 }
 
@@ -108,8 +109,9 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         stroke::read_entry_json(select.getColumn(5).getString(), stroke);
         stroke.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
-        t.placement.laying = select.getColumn(8).getString() == "project" ? stroke::Laying::project
-                                                                          : stroke::Laying::wrap;
+        const auto laying = stroke::laying_named(select.getColumn(8).getString());
+        if (!laying) throw Error(what + " is laid onto the model in a way that is not known");
+        t.placement.laying = *laying;
         const SQLite::Column placement = select.getColumn(9);
         std::array<double, 9> p{};
         if (placement.getBytes() != static_cast<int>(sizeof p))

@@ -199,7 +199,7 @@ StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerT
         const std::vector<std::uint32_t> slots = layer.canvas->touched_slots();
         if (!first && !slots.empty()) {
             db.exec(kLayerTables);
-            raise_format(db, layer.layer == stroke::kPaletteLayer ? kProjectFormat : kLayersFormat);
+            raise_format(db, layer.layer == stroke::kPaletteLayer ? kPaletteFormat : kLayersFormat);
         }
         Rows rows(db, layer.layer);
         for (const std::uint32_t slot : slots) rows.store_tile(layer.canvas->snapshot(slot));

@@ -39,6 +39,14 @@ struct LaidTrace {
 /// leaves in direction x right + y down (Polthier and Schmies 1998: a line crosses an edge
 /// straight in the unfolded plane), and its frame is carried along that line. Lengths and
 /// angles at the origin are kept; on a developable surface all of them are.
+/// `Laying::drape` is the same map on the ground as a hand feels it that lies on it: at each
+/// step along a line a paraboloid is fitted to the surface within `drape_radius` (rays onto
+/// a hexagonal pattern of 37 points, least sum of pseudo-Huber distances, so that what is narrow
+/// hardly counts), the line goes on straight on it, and the sample is taken down to the surface
+/// along its normal. On a surface without detail of that size it is `wrap` within 0.2 % of the
+/// length; over grooves, relief, the noise of a scan, and gaps between parts writing stays whole,
+/// where straightest lines of the triangles part. It does not turn round a rim. `normal` and axes
+/// are those of the ground. Past an edge it goes on straight.
 /// `Laying::project` shoots a ray along the placement's inward normal right × down from
 /// outside the mesh and takes the first hit.
 ///
@@ -47,6 +55,10 @@ struct LaidTrace {
 /// Throws `Error` when the trace is not flat, a number is not finite, or the placement's
 /// directions are zero or parallel. Cost: about 0.1 µs per triangle crossed.
 LaidTrace lay(const mesh::SurfaceQuery& query, const Trace& trace);
+
+/// Radius in metres of the ground that `Laying::drape` levels: 8 mm, or 4 % of the box diagonal
+/// of a smaller model.
+double drape_radius(const mesh::TriangleMesh& mesh);
 
 /// The point a straightest line of the given length reaches, and the frame carried to it.
 struct Walk {

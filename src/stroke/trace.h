@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stroke/fill.h"
@@ -13,8 +14,13 @@ namespace tuft::stroke {
 /// How flat pen data gets onto the model.
 enum class Laying {
     wrap,     ///< along the surface: (x, y) is walked as a geodesic from the placement's origin
+    drape,    ///< the same on the surface without its narrow grooves, bumps and gaps
     project,  ///< along the placement's normal: first surface met by a ray from outside
 };
+
+/// "wrap", "drape", "project", and back; nothing for another name.
+std::string_view laying_name(Laying laying);
+std::optional<Laying> laying_named(std::string_view name);
 
 /// Where flat pen data lies: its origin near the surface and the direction of its
 /// x (to the right) and y axis (down, as pens and tablets give it), metres, model frame.

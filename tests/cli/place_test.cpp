@@ -108,6 +108,19 @@ TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
     EXPECT_NEAR(reach.middle(0), fits.middle(0), kStep);
 }
 
+TEST_F(Place, WhatHasNoPlaceIsDraped) {
+    write("box.obj", box(false));
+    write("lines.inkml", lines(0, 0, 30));
+    const Reach by_itself = painted("lines.inkml", "");
+    const Reach drape = painted("lines.inkml", "--laying drape");
+    const Reach project = painted("lines.inkml", "--laying project");
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(by_itself.low[axis], drape.low[axis]) << "what has no place is draped";
+        EXPECT_NEAR(project.low[axis], drape.low[axis], kStep) << "on a flat front all are the same";
+    }
+    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --laying hung").status, 2);
+}
+
 TEST_F(Place, APictureIsTakenFromTheSideThatIsPaintedOn) {
     write("box.obj", box(false));
     write("lines.inkml", lines(0, 0, 30));

@@ -297,7 +297,7 @@ TEST(Inkml, WritesForPeopleWhatItReads) {
             t.placement = {{0.1, -0.02 * double(k / 2), 1e-4 / 3},
                            glm::normalize(Vec3(1, 2, 3)),
                            glm::normalize(Vec3(2, -1, 0)),
-                           k == 3 ? stroke::Laying::project : stroke::Laying::wrap};
+                           k == 3 ? stroke::Laying::project : k == 2 ? stroke::Laying::drape : stroke::Laying::wrap};
         for (int i = 0; i < 50; ++i) {
             stroke::TraceSample s;
             s.time = 0.005 * i + (i ? 1e-3 * random(0, 1) : 0);
@@ -445,7 +445,7 @@ TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
     EXPECT_THAT(message(ink("<annotation type='tuft:settings'>{\"film\": 3}</annotation><trace>1 2</trace>")),
                 HasSubstr("test.inkml:2: "));
     EXPECT_THAT(message(ink("<annotation type='tuft:laying'>flat</annotation><trace>1 2</trace>")),
-                HasSubstr("neither wrap nor project"));
+                HasSubstr("neither wrap, drape nor project"));
     EXPECT_THAT(message(ink("<context xml:id='a' contextRef='#b'/><context xml:id='b' "
                             "contextRef='#a'/><trace>1 2</trace>")),
                 HasSubstr("in a circle"));

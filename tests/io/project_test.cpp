@@ -156,6 +156,8 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
     std::vector<stroke::Stroke> strokes;
     for (const std::uint64_t id : {3, 1, 2, 10, 5}) strokes.push_back(sample_stroke(id));
     strokes.push_back(sample_stroke(11, 0));
+    ASSERT_TRUE(strokes[3].trace.flat);
+    strokes[3].trace.placement.laying = stroke::Laying::drape;
     {
         Project project = Project::create(folder / "a.tuft", sample_model());
         project.append(std::span(strokes).first(4));
@@ -164,6 +166,7 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
         EXPECT_THROW(project.append(strokes[0]), Error) << "ids are unique";
     }
     Project project = Project::open(folder / "a.tuft");
+    EXPECT_EQ(project.format(), kProjectFormat) << "older programs do not know draped strokes";
     ASSERT_EQ(project.n_strokes(), strokes.size());
     const auto back = project.strokes();
     for (std::size_t i = 0; i < strokes.size(); ++i) expect_equal(back[i], strokes[i]);
