@@ -70,6 +70,7 @@ struct Meeting {
     double distance2;  ///< to the middle between the centres
     Vec3 point, normal_i, normal_j;
     std::uint8_t texel_i, texel_j;  ///< beside the point, on either side
+    Vec3 fold{0};  ///< unit, along the edge over which the sides unfold; zero: along n_i × n_j
 
     auto key() const { return std::tie(i, j, distance2, point.x, point.y, point.z); }
 };
@@ -152,6 +153,13 @@ TexelRef seam_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
     return near.valid() ? near : texel_at(mesh, atlas, map, side.triangle, position);
 }
 
+Vec3 edge_direction(const mesh::TriangleMesh& mesh, const SeamEdge& edge) {
+    const Vec3 along = mesh.position(edge.triangle_a, (edge.corner_a + 1) % 3) -
+                       mesh.position(edge.triangle_a, edge.corner_a);
+    const double length = glm::length(along);
+    return length > 0 ? along / length : Vec3{0};
+}
+
 void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
                      const std::vector<Piece>& pieces, const SeamEdge& edge,
                      std::vector<SeamSample>& samples, std::vector<Meeting>& found) {
@@ -168,7 +176,8 @@ void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const T
                   s.a.normal,
                   s.b.normal,
                   a.texel,
-                  b.texel};
+                  b.texel,
+                  edge_direction(mesh, edge)};
         if (m.i == m.j) continue;
         put_in_order(m);
         set_distance(m, pieces);
@@ -217,12 +226,21 @@ Way way_to_border(const TexelMap& map, const Piece& piece, std::uint8_t texel, c
     return way;
 }
 
+/// Direction of j's tangent in i's frame, both at one point, when j's side is unfolded into i's about
+/// `fold`.
+Vec2 unfolded(const Frame& i, const Frame& j, const Vec3& fold) {
+    const Vec2 a{glm::dot(fold, i.t), glm::dot(fold, i.b)}, b{glm::dot(fold, j.t), glm::dot(fold, j.b)};
+    const double lengths = glm::length(a) * glm::length(b);
+    if (!(lengths > 0.1)) return carried_direction(i, j.t, j.n);
+    return Vec2{a.x * b.x + a.y * b.y, a.y * b.x - a.x * b.y} / lengths;
+}
+
 /// The motion i → j of a meeting: hop = log_i(q) − R log_j(q), R from carrying both tangents
 /// to the border and j's over the normals on both sides of it.
 PieceEdge edge_of(const TexelMap& map, const Meeting& m, const std::vector<Piece>& pieces) {
     const Way i = way_to_border(map, pieces[m.i], m.texel_i, m.point, m.normal_i);
     const Way j = way_to_border(map, pieces[m.j], m.texel_j, m.point, m.normal_j);
-    const Vec2 turn = carried_direction(i.frame, j.frame.t, m.normal_j);
+    const Vec2 turn = unfolded(i.frame, j.frame, m.fold);
     const Vec2 li = i.place, lj = j.place;
     return {m.j, static_cast<float>(li.x - (turn.x * lj.x - turn.y * lj.y)),
             static_cast<float>(li.y - (turn.y * lj.x + turn.x * lj.y)), static_cast<float>(turn.x),

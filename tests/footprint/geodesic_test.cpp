@@ -134,12 +134,14 @@ TEST(Geodesics, StampsKeepDistancesOnTheCar) {
     Model car = shipped("car", 2048);
     const std::vector<double> errors = distance_errors(car, 40, 60, 0.1);
     ASSERT_GT(errors.size(), 3000u);
-    // A few of these stamps reach over shut lines and folded edges, where the layout of the atlas
-    // decides which way a texel is laid out. Over three layouts the mean was 0.44 to 0.62 %, 95 %
-    // lay within 0.85 %, 98 % within 2.7 %; the last percent varied from 4 to 14 %.
-    EXPECT_LT(mean(errors), 0.008);
-    EXPECT_LT(quantile(errors, 0.95), 0.0125);
-    EXPECT_LT(quantile(errors, 0.98), 0.035);
+    // Targets for real meshes: 0.4 % mean, 2.5 % at 99 %. The last percent are texels between the
+    // spokes of the wheels, which ways round several corners reach; how the layout of the atlas cuts
+    // the spokes decides which way is taken. Over four layouts and two sets of places the mean was
+    // 0.15 to 0.28 %, 98 % lay within 1.8 %, 99 % within 4.3 %.
+    EXPECT_LT(mean(errors), 0.004);
+    EXPECT_LT(quantile(errors, 0.95), 0.01);
+    EXPECT_LT(quantile(errors, 0.98), 0.025);
+    EXPECT_LT(quantile(errors, 0.99), 0.05);
 }
 
 struct Contact {
