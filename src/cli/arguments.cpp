@@ -53,7 +53,7 @@ void add_frame(CLI::App* app, std::string& unit, std::string& up, const std::str
 }
 
 void add_surface(CLI::App* app, Surface& s) {
-    add_frame(app, s.unit, s.up, "unit of the model file: um, mm, cm, m, in, ft");
+    add_frame(app, s.unit, s.up, "unit of the model file (default: a guess from its size)");
     app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
         ->check(CLI::PositiveNumber);
     app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")
@@ -340,7 +340,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     d->add_option("FILE", render.file, "mesh or project")->required();
     d->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
     d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(CLI::Range(1, 3600));
-    add_frame(d, render.unit, render.up, "unit of a model file");
+    add_frame(d, render.unit, render.up, "unit of a model file (default: a guess from its size)");
     add_look(d, render.look);
     d->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
     add_view(d, render.view);

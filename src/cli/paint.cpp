@@ -58,7 +58,7 @@ void note_misses(const std::vector<stroke::StrokeReport>& reports,
 }  // namespace
 
 int run(const Paint& a) {
-    Outputs outputs{a.project, a.exported, a.preview, a.view, frame_of(a.surface.unit, a.surface.up)};
+    Outputs outputs{a.project, a.exported, a.preview, a.view, {}};
     check_outputs(outputs);
     check_output(a.forces);
     Console console(a.common.quiet);
@@ -67,8 +67,9 @@ int run(const Paint& a) {
     std::vector<stroke::Stroke> strokes = load_strokes(a, console);
     const bool goes_on = is_project_file(a.model);
     const std::unique_ptr<OpenProject> before = goes_on ? open_project(a.model, console) : nullptr;
-    const stroke::Model model = before ? std::move(before->model) : load_model(a.model, a.surface, console);
-    if (before) outputs.frame = before->frame;
+    Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, a.surface, console);
+    const stroke::Model model = std::move(loaded.model);
+    outputs.frame = loaded.frame;
     place_strokes(strokes, model, a, console);
     if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
 

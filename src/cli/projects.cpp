@@ -32,7 +32,7 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
     if (!a.model.empty()) {
         if (surface.atlas_size == 0 && surface.texel_size_mm == 0)
             surface.atlas_size = project.model.atlas.page_size();
-        return load_model(a.model, surface, console);
+        return load_model(a.model, surface, console).model;
     }
     if (surface.atlas_size == 0 && surface.texel_size_mm == 0 && !surface.new_uv &&
         surface.seams == "free")
@@ -214,7 +214,7 @@ int run(const Render& a) {
         show_layers(*painting, a.view.layers);
         show_looks(project->file, *painting, a.look, console);
     } else {
-        bare = load_bare(a.file, frame_of(a.unit, a.up), console);
+        bare = load_bare(a.file, a.unit, a.up, console).model;
     }
     const int count = std::max(1, a.turntable);
     std::vector<std::string> wrote;

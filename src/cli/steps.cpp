@@ -17,6 +17,7 @@
 #include "io/read_model.h"
 #include "io/restore.h"
 #include "io/svg.h"
+#include "mesh/inspect.h"
 #include "stroke/habit.h"
 
 namespace fs = std::filesystem;
@@ -29,9 +30,6 @@ FileFrame frame_of(const std::string& unit, const std::string& up, const FileFra
 
 stroke::ModelOptions model_options(const Surface& s, Console& console) {
     stroke::ModelOptions options;
-    const FileFrame frame = frame_of(s.unit, s.up);
-    options.repair.metres_per_unit = metres_per(frame.unit).value_or(kMillimetre);
-    options.repair.y_up = frame.y_up;
     options.unwrap.size = s.atlas_size;
     options.unwrap.texel_size = s.texel_size_mm * kMillimetre;
     options.unwrap.pages = std::max(s.pages, 1u);
@@ -51,20 +49,42 @@ stroke::ModelOptions model_options(const Surface& s, Console& console) {
     return options;
 }
 
-stroke::Model load_model(const fs::path& path, const Surface& s, Console& console) {
-    const ProgressFn progress = console.progress();
-    report(progress, "reading", 0);
-    mesh::PolygonSoup soup = io::read_model(path);
-    report(progress, "reading", 1);
-    stroke::ModelOptions options = model_options(s, console);
-    if (const auto fixed = io::metres_per_unit_of(path)) {
-        options.repair.metres_per_unit = *fixed;
-        options.repair.y_up = false;  // the reader has turned it
+namespace {
+
+struct Read {
+    mesh::PolygonSoup soup;
+    FileFrame frame;
+};
+
+Read read_file(const fs::path& path, const std::string& unit, const std::string& up, mesh::RepairOptions& repair,
+               Console& console) {
+    report(repair.progress, "reading", 0);
+    Read read{io::read_model(path), frame_of(unit, up)};
+    report(repair.progress, "reading", 1);
+    const auto fixed = io::metres_per_unit_of(path);
+    if (unit.empty() && !fixed) {
+        Box bounds;
+        for (const Vec3& p : read.soup.points) bounds.add(p);
+        const mesh::UnitGuess guess = mesh::guess_unit(bounds);
+        if (guess.unit != read.frame.unit) console.note(guess.sentence + " (see --unit)");
+        read.frame.unit = guess.unit;
     }
+    repair.metres_per_unit = fixed.value_or(metres_per(read.frame.unit).value_or(kMillimetre));
+    repair.y_up = read.frame.y_up && !fixed;  // the reader has turned it
+    return read;
+}
+
+}  // namespace
+
+Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
+    stroke::ModelOptions options = model_options(s, console);
+    options.repair.progress = options.progress;
+    Read read = read_file(path, s.unit, s.up, options.repair, console);
+    options.repair.progress = nullptr;
     try {
-        stroke::Model model = stroke::prepare_model(std::move(soup), options);
-        for (const std::string& warning : model.repairs.warnings) console.note("warning: " + warning);
-        return model;
+        Loaded loaded{stroke::prepare_model(std::move(read.soup), options), read.frame};
+        for (const std::string& warning : loaded.model.repairs.warnings) console.note("warning: " + warning);
+        return loaded;
     } catch (const Error& error) {
         const std::string what = error.what();
         if (what.starts_with(path.string())) throw;
@@ -72,15 +92,13 @@ stroke::Model load_model(const fs::path& path, const Surface& s, Console& consol
     }
 }
 
-stroke::Model load_bare(const fs::path& path, const FileFrame& frame, Console& console) {
+Loaded load_bare(const fs::path& path, const std::string& unit, const std::string& up, Console& console) {
     mesh::RepairOptions options;
-    const auto fixed = io::metres_per_unit_of(path);
-    options.metres_per_unit = fixed.value_or(metres_per(frame.unit).value_or(kMillimetre));
-    options.y_up = frame.y_up && !fixed;
     options.progress = console.progress();
+    const Read read = read_file(path, unit, up, options, console);
     stroke::Model model;
     try {
-        mesh::Surface surface = mesh::build_surface(io::read_model(path), options);
+        mesh::Surface surface = mesh::build_surface(read.soup, options);
         model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(surface.mesh));
         model.repairs = std::move(surface.report);
     } catch (const Error& error) {
@@ -89,7 +107,7 @@ stroke::Model load_bare(const fs::path& path, const FileFrame& frame, Console& c
         throw Error(path.string(), what);
     }
     model.query = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
-    return model;
+    return {std::move(model), read.frame};
 }
 
 void check_output(const fs::path& path) {

@@ -18,14 +18,21 @@ namespace tuft::cli {
 /// What the arguments say of the model file, else `otherwise`.
 FileFrame frame_of(const std::string& unit, const std::string& up, const FileFrame& otherwise = {});
 
-/// Unit, atlas and UV options in the terms of `stroke`.
+/// Atlas and UV options in the terms of `stroke`.
 stroke::ModelOptions model_options(const Surface& surface, Console& console);
 
-/// Reads, repairs and unwraps a model file.
-stroke::Model load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
+/// A model and how its file was read.
+struct Loaded {
+    stroke::Model model;
+    FileFrame frame;
+};
 
-/// Reads and repairs a model file without giving it an atlas: enough to look at it.
-stroke::Model load_bare(const std::filesystem::path& path, const FileFrame& frame, Console& console);
+/// Reads, repairs and unwraps a model file. Where neither the arguments nor the format say its
+/// unit, it is guessed from the size; a guess other than millimetres is told.
+Loaded load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
+
+/// The same without giving it an atlas: enough to look at it.
+Loaded load_bare(const std::filesystem::path& path, const std::string& unit, const std::string& up, Console& console);
 
 /// Throws `Error` when a file could not be written there: its folder is missing or not
 /// writable. Called before long work. Empty paths are fine.

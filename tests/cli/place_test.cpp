@@ -108,6 +108,32 @@ TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
     EXPECT_NEAR(reach.middle(0), fits.middle(0), kStep);
 }
 
+TEST_F(Place, TheUnitIsGuessedWhereNothingSaysIt) {
+    // A box of 0.6 x 0.06 x 0.04: metres, as `inspect` says too.
+    std::string metres = box(false);
+    std::istringstream in(metres);
+    std::string out, line;
+    while (std::getline(in, line)) {
+        std::istringstream words(line);
+        std::string tag;
+        double x = 0, y = 0, z = 0;
+        if (words >> tag >> x >> y >> z && tag == "v")
+            line = "v " + std::to_string(x / 100) + " " + std::to_string(y / 100) + " " + std::to_string(z / 100);
+        out += line + "\n";
+    }
+    write("metres.obj", out);
+    write("lines.inkml", lines(0, 0, 30));
+    const std::string paint = "paint " + path("metres.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") + " --place 0,-300,0";
+    const Ran guessed = tuft(paint + " --export " + path("out.glb"));
+    const std::string guessed_model = read(path("out.glb"));
+    EXPECT_EQ(guessed.status, 0) << guessed.err;
+    EXPECT_NE(guessed.err.find("look like metres"), std::string::npos) << guessed.err;
+    const Ran told = tuft(paint + " --unit m --export " + path("out.glb"));
+    EXPECT_EQ(told.status, 0) << told.err;
+    EXPECT_EQ(told.err.find("look like"), std::string::npos) << told.err;
+    EXPECT_TRUE(guessed_model == read(path("out.glb")));
+}
+
 TEST_F(Place, WhatHasNoPlaceIsDraped) {
     write("box.obj", box(false));
     write("lines.inkml", lines(0, 0, 30));

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <sstream>
 #include <string>
 
@@ -25,7 +26,7 @@ class Program : public testing::Test {
   protected:
     void SetUp() override {
         folder_ = std::filesystem::path(testing::TempDir()) /
-                  ("tuft_cli_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+                  ("tuft_cli_" + std::to_string(::getpid()) + "_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directories(folder_);
     }
