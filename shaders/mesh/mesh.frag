@@ -14,7 +14,6 @@ uniform int u_shading;               // 0 glaze, 1 clay, 2 flat colour, 3 height
 uniform float u_atlas_size;          // texels per side
 uniform float u_relief;              // exaggeration of the ink's height
 uniform float u_height_range;        // micrometres at the ramp's end
-uniform vec4 u_section;              // plane: what lies on its positive side is cut away; zero: none
 out vec4 f_colour;
 
 vec3 relief_normal(vec3 n, float height) {
@@ -26,7 +25,6 @@ vec3 relief_normal(vec3 n, float height) {
 }
 
 void main() {
-    if (dot(vec4(v_position, 1.0), u_section) > 0.0) discard;
     vec3 n = normalize(v_normal);
     vec3 to_eye = direction_to_eye(v_position);
     if (dot(n, to_eye) < 0.0) n = -n;

@@ -4,6 +4,8 @@ layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec2 a_uv;
 uniform mat4 u_view_projection;
+uniform vec4 u_section;              // plane, world: what lies on its positive side is cut away, if clipping is on
+out float gl_ClipDistance[1];
 out vec3 v_position;
 out vec3 v_normal;
 out vec2 v_uv;
@@ -11,5 +13,6 @@ void main() {
     v_position = a_position;
     v_normal = a_normal;
     v_uv = a_uv;
+    gl_ClipDistance[0] = -dot(vec4(a_position, 1.0), u_section);
     gl_Position = u_view_projection * vec4(a_position, 1.0);
 }

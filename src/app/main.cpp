@@ -84,6 +84,7 @@ void loop(app::Display& display, const Options& options) {
         studio.frame(events, display.width(), display.height(), display.framebuffer(), now);
         if (script) script->after_frame(display.width(), display.height(), now);
         display.present();
+        studio.shown(display.now());
         const std::string name = app::project_name(session);
         if (const std::string wanted = name.empty() ? "tuft studio" : name + " \xe2\x80\x93 tuft studio"; wanted != title)
             display.set_title(title = wanted);

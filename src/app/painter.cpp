@@ -72,6 +72,11 @@ bool Painter::idle() const {
     return queue_.empty() && !working_;
 }
 
+void Painter::wait_idle(double seconds) const {
+    std::unique_lock lock(mutex_);
+    rests_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return queue_.empty() && !working_; });
+}
+
 Update Painter::take() {
     const std::lock_guard lock(mutex_);
     Update out = std::move(update_);
@@ -108,6 +113,7 @@ void Painter::run() {
         {
             std::unique_lock lock(mutex_);
             working_ = false;
+            if (queue_.empty()) rests_.notify_all();
             wake_.wait(lock, [this] { return quit_ || !queue_.empty(); });
             if (queue_.empty()) break;
             command = std::move(queue_.front());

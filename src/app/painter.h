@@ -195,6 +195,8 @@ class Painter {
     Update take();
     /// Nothing asked for is left to do.
     bool idle() const;
+    /// Waits until it is so, but not longer than so many seconds.
+    void wait_idle(double seconds) const;
     /// Stops a repainting in work; what was before stays.
     void stop_long_work() { stop_ = true; }
 
@@ -250,6 +252,7 @@ class Painter {
 
     mutable std::mutex mutex_;
     std::condition_variable wake_;
+    mutable std::condition_variable rests_;
     std::deque<Command> queue_;
     Update update_;
     bool working_ = false, quit_ = false;

@@ -274,8 +274,10 @@ void curve_section(Session& s) {
 void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom) {
     ImGui::SetNextWindowPos(ImVec2(left, top));
     ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), bottom - top));
-    ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+    // The window is cleared to the panels' colour; to blend it over that again costs a software driver milliseconds.
+    ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::GetBackgroundDrawList()->AddRect(ImVec2(left, top), ImVec2(left + s.ui.px(width), bottom), ImGui::GetColorU32(ImGuiCol_Border));
 }
 
 void tool_panel(Session& s, float top, float bottom, float left) {

@@ -18,7 +18,6 @@
 namespace tuft::app {
 namespace {
 
-constexpr double kSample = 0.004;      // seconds between two samples of a stroke
 constexpr double kStrokeSpeed = 260;   // pixels per second
 constexpr double kLongestWait = 120;   // seconds until a wait is given up
 constexpr double kLabelWait = 5;       // seconds until a label is given up
@@ -84,13 +83,13 @@ void Script::stroke(Studio& studio, const ScriptCommand& command) {
     add({.kind = Event::Kind::press, .x = places[0].x, .y = places[0].y, .pressure = places[0].z}, 0.02);
     for (std::size_t i = 1; i < places.size(); ++i) {
         const double length = std::hypot(places[i].x - places[i - 1].x, places[i].y - places[i - 1].y);
-        const int n = std::clamp(static_cast<int>(length / (kStrokeSpeed * kSample)), 1, 100000);
+        const int n = std::clamp(static_cast<int>(length / (kStrokeSpeed * sample_)), 1, 100000);
         for (int k = 1; k <= n; ++k) {
             const Vec3 p = glm::mix(places[i - 1], places[i], static_cast<double>(k) / n);
-            add({.kind = Event::Kind::move, .x = p.x, .y = p.y, .pressure = p.z}, kSample);
+            add({.kind = Event::Kind::move, .x = p.x, .y = p.y, .pressure = p.z}, sample_);
         }
     }
-    add({.kind = Event::Kind::release, .x = places.back().x, .y = places.back().y, .pressure = places.back().z}, kSample);
+    add({.kind = Event::Kind::release, .x = places.back().x, .y = places.back().y, .pressure = places.back().z}, sample_);
 }
 
 // Mostly the things people do, and some that nobody should: seeded, so that it can be repeated.
@@ -149,8 +148,8 @@ void Script::report(Studio& studio, double now) {
     const auto seconds_of = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
     const double cpu = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
     std::printf("{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, \"delay_ms_p95\": %.1f, "
-                "\"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, \"peak_mb\": %.0f}\n",
-                report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95),
+                "\"samples\": %zu, \"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, \"peak_mb\": %.0f}\n",
+                report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95), studio.samples(),
                 studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now, cpu - report_cpu_,
                 static_cast<double>(usage.ru_maxrss) / 1024);
     report_cpu_ = cpu;
@@ -194,13 +193,14 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     else if (c.name == "move") {
         const ScriptPoint& p = c.points[0];
         add({.kind = Event::Kind::move, .x = p.relative_x ? s.area.x + p.x * s.area.width : p.x,
-             .y = p.relative_y ? s.area.y + p.y * s.area.height : p.y, .pressure = p.pressure}, kSample);
+             .y = p.relative_y ? s.area.y + p.y * s.area.height : p.y, .pressure = p.pressure}, sample_);
     } else if (c.name == "press" || c.name == "release") {
         Event e = cursor_;
         e.kind = c.name == "press" ? Event::Kind::press : Event::Kind::release;
         e.button = button_of(c);
         add(e, 0.02);
     } else if (c.name == "stroke") stroke(studio, c);
+    else if (c.name == "rate") sample_ = 1.0 / std::clamp(std::atof(word.c_str()), 10.0, 10000.0);
     else if (c.name == "key") press_key(word, c.line);
     else if (c.name == "type") add({.kind = Event::Kind::text, .text = word}, 0.02);
     else if (c.name == "scroll") {

@@ -61,6 +61,7 @@ class Script {
     std::vector<ScriptCommand> commands_;
     std::size_t next_ = 0;
     std::deque<Event> pending_;        ///< to be played, by time on the script's clock
+    double sample_ = 0.004;       ///< seconds between two samples of a stroke
     double clock_ = 0;                 ///< seconds, of the last event made
     bool paced_ = false;               ///< events come when their time has come
     double pace_start_ = 0, pace_from_ = 0;

@@ -219,39 +219,42 @@ void poll_session(Session& s) {
         for (const stroke::StrokeReport& m : misfits) s.misfits.push_back({.stroke = m.stroke_id, .distance = m.nearest});
         s.show_misfits = !s.misfits.empty();
     }
-    if (s.painter) {
-        Update u = s.painter->take();
-        if (u.strokes) s.strokes = std::move(*u.strokes);
-        if (u.own_inks) s.own_inks = std::move(*u.own_inks);
-        if (u.palette) {
-            s.palette.picture = std::move(*u.palette);
-            s.palette.fresh = true;
-            u.palette.reset();
-        }
-        if (u.looks) s.looks = std::move(*u.looks);
-        if (!u.picked.empty()) take_picked(s, u.picked);
-        for (std::string& message : u.messages) {
-            if (message.starts_with("Saved")) {
-                remember_project(u.project);
-                s.recent = recent_projects();
-                s.note.write(u.project, s.painter->source());
-            }
-            say(s, std::move(message));
-        }
-        u.messages.clear();
-        // The scene takes the tiles.
-        std::vector<render::TilePixels> tiles = std::move(s.last.tiles);
-        tiles.insert(tiles.end(), u.tiles.begin(), u.tiles.end());
-        u.tiles = std::move(tiles);
-        if (!u.pixels) u.pixels = std::move(s.last.pixels);
-        if (!u.tuft) u.tuft = std::move(s.last.tuft);
-        const stroke::MaskTable& masks = u.masks;
-        // A mask that was just made is the one wanted; one that is gone holds nothing back.
-        if (masks.next_id > s.masks_seen && s.masks_seen > 0 && !masks.masks.empty()) choose_mask(s, masks.masks.back().id);
-        else if (s.mask != 0 && !masks.find(s.mask)) choose_mask(s, 0);
-        s.masks_seen = masks.next_id;
-        s.last = std::move(u);
+    poll_painter(s);
+}
+
+void poll_painter(Session& s) {
+    if (!s.painter) return;
+    Update u = s.painter->take();
+    if (u.strokes) s.strokes = std::move(*u.strokes);
+    if (u.own_inks) s.own_inks = std::move(*u.own_inks);
+    if (u.palette) {
+        s.palette.picture = std::move(*u.palette);
+        s.palette.fresh = true;
+        u.palette.reset();
     }
+    if (u.looks) s.looks = std::move(*u.looks);
+    if (!u.picked.empty()) take_picked(s, u.picked);
+    for (std::string& message : u.messages) {
+        if (message.starts_with("Saved")) {
+            remember_project(u.project);
+            s.recent = recent_projects();
+            s.note.write(u.project, s.painter->source());
+        }
+        say(s, std::move(message));
+    }
+    u.messages.clear();
+    // The scene takes the tiles.
+    std::vector<render::TilePixels> tiles = std::move(s.last.tiles);
+    tiles.insert(tiles.end(), u.tiles.begin(), u.tiles.end());
+    u.tiles = std::move(tiles);
+    if (!u.pixels) u.pixels = std::move(s.last.pixels);
+    if (!u.tuft) u.tuft = std::move(s.last.tuft);
+    const stroke::MaskTable& masks = u.masks;
+    // A mask that was just made is the one wanted; one that is gone holds nothing back.
+    if (masks.next_id > s.masks_seen && s.masks_seen > 0 && !masks.masks.empty()) choose_mask(s, masks.masks.back().id);
+    else if (s.mask != 0 && !masks.find(s.mask)) choose_mask(s, 0);
+    s.masks_seen = masks.next_id;
+    s.last = std::move(u);
 }
 
 bool settled(const Session& s) {

@@ -189,6 +189,8 @@ void revise_with(Session& s, const std::filesystem::path& path);
 void accept_inspected(Session& s);
 /// Takes over what threads have finished.
 void poll_session(Session& s);
+/// The painter's part of that.
+void poll_painter(Session& s);
 /// Nothing runs in the background and nothing waits.
 bool settled(const Session& s);
 void close_model(Session& s);

@@ -20,6 +20,7 @@ namespace {
 constexpr double kTurnPause = 0.25;    // seconds without a turn of the wheel after which the view is still
 constexpr double kStillAfter = 0.4;    // seconds after the last event
 constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
+constexpr double kInkWait = 0.02, kInkPart = 0.5;  // seconds, and part of a frame's time, that the newest ink is waited for
 constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
 
 }  // namespace
@@ -167,13 +168,10 @@ void Studio::take_model() {
         s.last.pixels.reset();
         view_->scene_changed();
     }
-    if (s.last.done > shown_ && !s.last.tiles.empty()) delays_.push_back(now_ - s.last.done);
-    shown_ = s.last.done;
     scene_->update_tiles(s.last.tiles);
     for (const render::TilePixels& tile : s.last.tiles)
         for (std::size_t k = 0; k < 256; ++k) s.highest = std::max(s.highest, 0.1 * tile.rgba[k][3]);
-    for (const render::TilePixels& tile : s.last.tiles)
-        if (tile.lo.x <= tile.hi.x) view_->texture_changed(tile.lo, tile.hi);
+    for (const render::TilePixels& tile : s.last.tiles) view_->texture_changed(tile.boxes);
     s.last.tiles.clear();
     if (s.strokes.size() != strokes_seen_) {
         strokes_seen_ = s.strokes.size();
@@ -238,7 +236,9 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
     const render::GlSolid solid = solid_of(s.tuft, colour_in_tuft(s));
     render::GlView::Frame f{.camera = camera(), .solid = &solid, .opacity = s.view.see_through ? 0.25f : s.pressed ? 0.92f : 0.72f};
     f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)], .roughness = s.looks.roughness,
-                      .height_range = static_cast<float>(height_range(s)), .section = section_plane(s)};
+                      .section = section_plane(s)};
+    // Only where it is shown: more ink than before must not draw everything anew.
+    if (f.look.options.shading == render::Shading::height) f.look.options.height_range = static_cast<float>(height_range(s));
     f.look.light = render::make_light(s.view.rig, f.camera);
     f.look.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);
     f.look.high = dark ? Vec3f(0.40f, 0.405f, 0.415f) : Vec3f(0.80f, 0.805f, 0.815f);
@@ -259,6 +259,19 @@ void Studio::keep_picture() {
                     render::read_pixels(s.area.x, 0, s.area.width, s.area.height));
 }
 
+// While the hand draws, the ink of its newest samples shall be in this frame and not in the next:
+// the painter gets a part of the time that a frame takes, if it keeps up at all.
+void Studio::await_ink(double since_last) {
+    Session& s = session_;
+    s.painter->wait_idle(std::min(kInkWait, kInkPart * since_last));
+    poll_painter(s);
+    take_model();
+}
+
+void Studio::shown(double now) {
+    for (; !asked_.empty() && asked_.front() <= session_.last.done; asked_.pop_front()) delays_.push_back(now - asked_.front());
+}
+
 void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffer, double now) {
     Session& s = session_;
     const double dt = std::max(1e-3, now - now_);
@@ -277,7 +290,9 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     s.ui.begin_frame();
     layout(width, height);
     if (s.painter) take_model();
+    const bool keeps_up = s.painter && s.painter->idle();
     for (const Event& event : events) handle(event);
+    if (s.painter && hand_ && keeps_up && !events.empty()) await_ink(dt);
     if (s.painter) {
         watch_curve();
         watch_writing();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,8 +35,12 @@ class Studio {
     void finish();
     /// Changes a setting by its name in scripts. Throws `Error` for a name or value that is unknown.
     void set(const std::string& name, const std::string& value);
-    /// Seconds from an event to the frame that showed its ink, since the last call.
+    /// The last frame is on the screen at `now`.
+    void shown(double now);
+    /// Seconds from each sample of the hand to the moment when its ink was shown, since the last call.
     std::vector<double> take_delays() { return std::exchange(delays_, {}); }
+    /// Samples of the hand that went to the painter so far.
+    std::size_t samples() const { return samples_; }
 
   private:
     enum class Drag { none, turn, pan, zoom, atlas };
@@ -51,6 +56,7 @@ class Studio {
     void key(const Event& event);
     void perform(Act act);
     void post(std::vector<HandStep> steps, double time);
+    void await_ink(double since_last);
     int curve_point_at(const Event& event) const;
     std::optional<CurvePoint> curve_point(const Event& event) const;
     bool curve_editable() const;
@@ -109,7 +115,8 @@ class Studio {
     double now_ = 0, last_event_ = 0, last_turn_ = -1, picture_due_ = 0;
     std::size_t strokes_seen_ = 0, frames_ = 0, draw_every_ = 1;
     std::vector<double> delays_;
-    double shown_ = 0;
+    std::deque<double> asked_;                ///< when each sample was taken whose ink is not shown yet
+    std::size_t samples_ = 0;
 };
 
 /// Hair, as it is dipped into an ink of that colour (sRGB), and ferrule as triangles for drawing.

@@ -37,7 +37,11 @@ void Studio::post(std::vector<HandStep> steps, double time) {
         else if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .as_it_is = s.carry && s.palette.shown, .layer = s.layer, .mask = s.mask, .erases = s.erasing, .wet = s.wet,
                                                                                      .tip_ink = s.two_inks ? s.tip_ink : "", .tip_depth = s.tip_depth});
         else if (step.kind == HandStep::Kind::end) s.painter->post(EndStroke{});
-        else s.painter->post(ExtendStroke{std::move(step.poses), time});
+        else {
+            ++samples_;
+            asked_.push_back(time);
+            s.painter->post(ExtendStroke{std::move(step.poses), time});
+        }
     }
 }
 

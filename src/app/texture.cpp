@@ -203,21 +203,37 @@ std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> 
     }
     for (const std::uint32_t index : changed) {
         tiles.push_back(tile(index));
-        const std::uint32_t slot = model.texels.slot_of_tile[index];
-        if (slot == kNone) continue;
-        render::TilePixels& t = tiles.back();
-        t.lo = Vec3f(1e30f);
-        t.hi = Vec3f(-1e30f);
-        for (int k = 0; k < atlas::kTileTexels; ++k) {
-            if (model.texels.tiles[slot].piece[static_cast<std::size_t>(k)] == atlas::kNoPiece) continue;
-            t.lo = glm::min(t.lo, model.texels.position(slot, k));
-            t.hi = glm::max(t.hi, model.texels.position(slot, k));
-        }
-        const Vec3f margin(static_cast<float>(2 * model.texels.texel_size));
-        t.lo -= margin;
-        t.hi += margin;
+        tiles.back().boxes = boxes_of(index, model.texels);
     }
     return tiles;
+}
+
+// The coarsest level has one texel per tile, and filtering reaches half a tile beyond it. What lies there need
+// not lie together on the model: parts far from each other get boxes of their own.
+const std::vector<render::GlBox>& Texture::boxes_of(std::uint32_t index, const atlas::TexelMap& map) {
+    const auto [at, is_new] = boxes_.try_emplace(index);
+    std::vector<render::GlBox>& boxes = at->second;
+    if (!is_new) return boxes;
+    constexpr int kReach = atlas::kTile / 2;
+    const auto texel = static_cast<float>(map.texel_size);
+    const float widest = 4 * atlas::kTile * texel;
+    const int per_side = static_cast<int>(map.tiles_per_side);
+    const int x0 = static_cast<int>(index) % per_side * atlas::kTile, y0 = static_cast<int>(index) / per_side * atlas::kTile;
+    const int most = per_side * atlas::kTile;
+    for (int y = std::max(0, y0 - kReach); y < std::min(most, y0 + atlas::kTile + kReach); ++y)
+        for (int x = std::max(0, x0 - kReach); x < std::min(most, x0 + atlas::kTile + kReach); ++x) {
+            const std::uint32_t slot = map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
+            const int t = y % atlas::kTile * atlas::kTile + x % atlas::kTile;
+            if (slot == kNone || map.tiles[slot].piece[static_cast<std::size_t>(t)] == atlas::kNoPiece) continue;
+            const Vec3f lo = map.position(slot, t) - 2 * texel, hi = map.position(slot, t) + 2 * texel;
+            const auto near = std::ranges::find_if(boxes, [&](const render::GlBox& b) {
+                const Vec3f size = glm::max(b.hi, hi) - glm::min(b.lo, lo);
+                return std::max({size.x, size.y, size.z}) <= widest;
+            });
+            if (near == boxes.end()) boxes.push_back({lo, hi});
+            else *near = {glm::min(near->lo, lo), glm::max(near->hi, hi)};
+        }
+    return boxes;
 }
 
 }  // namespace tuft::app

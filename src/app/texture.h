@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "ink/composite.h"
@@ -31,6 +32,7 @@ class Texture {
     std::uint32_t padded_size() const { return padded_; }
 
   private:
+    const std::vector<render::GlBox>& boxes_of(std::uint32_t tile, const atlas::TexelMap& map);
     void refresh_heights(std::span<const std::uint32_t> slots, const stroke::Painting& painting);
     render::TilePixels tile(std::uint32_t index) const;
     void continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot, const stroke::Painting& painting) const;
@@ -40,6 +42,7 @@ class Texture {
     bool wetness_ = false;
     ink::AtlasMap<std::uint8_t> colour_;
     std::vector<std::uint8_t> height_;  ///< [size²]
+    std::unordered_map<std::uint32_t, std::vector<render::GlBox>> boxes_;  ///< by tile, of those that changed so far
     std::vector<std::uint8_t> veil_;    ///< [size²], 0–255; empty: none
 };
 

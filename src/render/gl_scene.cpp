@@ -32,7 +32,7 @@ struct Cluster {
     Vec3f lo{1e30f}, hi{-1e30f};
     std::uint32_t first = 0, count = 0;  // indices
 };
-constexpr std::size_t kClusterTriangles = 192;
+constexpr std::size_t kClusterTriangles = 192, kMostClusters = 4096;
 
 // Order of the triangles along a Z-shaped curve through space (Morton 1966).
 std::vector<std::uint32_t> spatial_order(const mesh::TriangleMesh& mesh) {
@@ -104,6 +104,9 @@ struct GlScene::State {
     GLuint mesh_array = 0, mesh_buffer = 0, mesh_index = 0;
     GLuint cluster_array = 0, cluster_index = 0;
     std::vector<Cluster> clusters;
+    std::vector<GLuint> queries;         // one per cluster: whether any of it is seen
+    std::vector<std::uint8_t> hidden;    // likewise, after the answers
+    bool asked = false;                  // the answers are still to be read
     GLuint solid_array = 0, solid_buffer = 0, solid_index = 0, empty_array = 0;
     GLuint texture = 0, colour_buffer = 0, colour_texture = 0;
     GLsizei n_indices = 0;
@@ -131,6 +134,7 @@ GlScene::~GlScene() {
         glDeleteBuffers(1, &buffer);
     glDeleteTextures(1, &s.texture);
     glDeleteTextures(1, &s.colour_texture);
+    glDeleteQueries(static_cast<GLsizei>(s.queries.size()), s.queries.data());
 }
 
 void GlScene::set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs) {
@@ -152,8 +156,11 @@ void GlScene::set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> co
     std::vector<std::uint32_t> sorted;
     sorted.reserve(indices.size());
     s.clusters.clear();
+    glDeleteQueries(static_cast<GLsizei>(s.queries.size()), s.queries.data());
+    s.queries.clear();
+    const std::size_t most = std::max(kClusterTriangles, mesh.n_triangles() / kMostClusters + 1);
     for (const std::uint32_t t : spatial_order(mesh)) {
-        if (s.clusters.empty() || s.clusters.back().count >= 3 * kClusterTriangles)
+        if (s.clusters.empty() || s.clusters.back().count >= 3 * most)
             s.clusters.push_back({.first = static_cast<std::uint32_t>(sorted.size())});
         Cluster& cluster = s.clusters.back();
         for (std::size_t k = 0; k < 3; ++k) {
@@ -222,24 +229,54 @@ void GlScene::update_tiles(std::span<const TilePixels> tiles) {
 namespace {
 
 // Mesa's software driver is not exact to the sample at the border of what is cut: it draws up to a
-// few pixels more or less. So depth is cleared for more than the backdrop covers, and the model is
-// drawn for more than that; what lies there already is as near and stays.
+// few pixels more or less. So more is drawn than is asked for; outside it stays as it was.
 constexpr int kBlock = 8;
 
-void cut_to(const PixelRect& part, int margin) {
-    const int x = std::max(0, part.x - margin), y = std::max(0, part.y - margin);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(x, y, part.x + part.width + margin - x, part.y + part.height + margin - y);
+struct Seen {
+    double nearest = 0;  // metres from the eye
+    std::uint32_t cluster = 0;
+
+    auto operator<=>(const Seen&) const = default;
+};
+
+// Clusters that reach into a part of the picture, the nearest first: always in the same order.
+std::vector<Seen> clusters_in(const std::vector<Cluster>& clusters, const GlCamera& c, const PixelRect& part) {
+    std::vector<Seen> seen;
+    for (std::uint32_t i = 0; i < clusters.size(); ++i) {
+        const Cluster& cluster = clusters[i];
+        double x0 = 1e30, y0 = 1e30, x1 = -1e30, y1 = -1e30, nearest = 1e30;
+        for (int k = 0; k < 8; ++k) {
+            const Vec3 p = picture_point(c, Vec3(k & 1 ? cluster.hi.x : cluster.lo.x, k & 2 ? cluster.hi.y : cluster.lo.y,
+                                                 k & 4 ? cluster.hi.z : cluster.lo.z));
+            nearest = std::min(nearest, p.z);
+            x0 = std::min(x0, p.x), x1 = std::max(x1, p.x), y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
+        }
+        const bool before_eye = c.parallel_height <= 0 && nearest <= c.near;
+        if (before_eye || (x1 >= part.x && x0 <= part.x + part.width && c.height - y0 >= part.y && c.height - y1 <= part.y + part.height))
+            seen.push_back({nearest, i});
+    }
+    std::sort(seen.begin(), seen.end());
+    return seen;
+}
+
+const void* start_of(const Cluster& cluster) {
+    return reinterpret_cast<const void*>(cluster.first * sizeof(std::uint32_t));
+}
+
+void end_model() {
+    glBindVertexArray(0);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_CLIP_DISTANCE0);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 }  // namespace
 
-void GlScene::draw_backdrop(const GlCamera& c, const Vec3f& low, const Vec3f& high, const PixelRect& part) {
+void GlScene::draw_backdrop(const GlCamera& c, const Vec3f& low, const Vec3f& high) {
     State& s = *state_;
     glViewport(0, 0, c.width, c.height);
-    cut_to(part, kBlock);
+    glDisable(GL_SCISSOR_TEST);
     glClear(GL_DEPTH_BUFFER_BIT);
-    cut_to(part, 0);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
@@ -249,41 +286,14 @@ void GlScene::draw_backdrop(const GlCamera& c, const Vec3f& low, const Vec3f& hi
     glBindVertexArray(s.empty_array);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindVertexArray(0);
-    glDisable(GL_SCISSOR_TEST);
 }
 
-// Draws the clusters that reach into the part of the picture, the nearest first.
-void GlScene::draw_clusters(const GlCamera& c, const PixelRect& part) {
-    State& s = *state_;
-    std::vector<std::pair<double, const Cluster*>> seen;
-    for (const Cluster& cluster : s.clusters) {
-        double x0 = 1e30, y0 = 1e30, x1 = -1e30, y1 = -1e30, nearest = 1e30;
-        for (int k = 0; k < 8; ++k) {
-            Vec3 p = picture_point(c, Vec3(k & 1 ? cluster.hi.x : cluster.lo.x, k & 2 ? cluster.hi.y : cluster.lo.y,
-                                           k & 4 ? cluster.hi.z : cluster.lo.z));
-            nearest = std::min(nearest, p.z);
-            x0 = std::min(x0, p.x), x1 = std::max(x1, p.x), y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
-        }
-        const bool before_eye = c.parallel_height <= 0 && nearest <= c.near;
-        if (before_eye || (x1 >= part.x && x0 <= part.x + part.width && c.height - y0 >= part.y && c.height - y1 <= part.y + part.height))
-            seen.emplace_back(nearest, &cluster);
-    }
-    std::sort(seen.begin(), seen.end());
-    std::vector<GLsizei> counts;
-    std::vector<const void*> starts;
-    for (const auto& [depth, cluster] : seen) {
-        counts.push_back(static_cast<GLsizei>(cluster->count));
-        starts.push_back(reinterpret_cast<const void*>(cluster->first * sizeof(std::uint32_t)));
-    }
-    glBindVertexArray(s.cluster_array);
-    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(), static_cast<GLsizei>(counts.size()));
-}
-
-void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOptions& options, const PixelRect& part) {
+void GlScene::begin_model(const GlCamera& c, const GlLight& light, const DrawOptions& options) {
     State& s = *state_;
     glViewport(0, 0, c.width, c.height);
-    cut_to(part, 2 * kBlock);
     glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);  // of surfaces in the same place the last one stays, now and when it is drawn again
+    if (options.section != Vec4f(0)) glEnable(GL_CLIP_DISTANCE0);
     set_view(s.mesh_program, c, light);
     const auto at = [&](const char* name) { return glGetUniformLocation(s.mesh_program, name); };
     glUniform1i(at("u_shading"), static_cast<int>(options.shading));
@@ -298,14 +308,63 @@ void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOpti
     glBindTexture(GL_TEXTURE_BUFFER, s.colour_texture);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, s.texture);
+    glBindVertexArray(options.shading == Shading::triangles ? s.mesh_array : s.cluster_array);
+}
+
+void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOptions& options, bool still) {
+    State& s = *state_;
+    begin_model(c, light, options);
+    s.asked = false;
+    s.hidden.assign(s.clusters.size(), 0);
     if (options.shading == Shading::triangles) {
-        glBindVertexArray(s.mesh_array);
         glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
     } else {
-        draw_clusters(c, {part.x - kBlock, part.y - kBlock, part.width + 2 * kBlock, part.height + 2 * kBlock});
+        const std::vector<Seen> seen = clusters_in(s.clusters, c, {0, 0, c.width, c.height});
+        s.asked = still;
+        if (still && s.queries.empty()) {
+            s.queries.resize(s.clusters.size());
+            glGenQueries(static_cast<GLsizei>(s.queries.size()), s.queries.data());
+        }
+        if (still) s.hidden.assign(s.clusters.size(), 1);
+        for (const Seen& one : seen) {
+            const Cluster& cluster = s.clusters[one.cluster];
+            // What is nearer is drawn already: where not a sample is seen now, none will be.
+            if (still) glBeginQuery(GL_ANY_SAMPLES_PASSED, s.queries[one.cluster]), s.hidden[one.cluster] = 0;
+            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(cluster.count), GL_UNSIGNED_INT, start_of(cluster));
+            if (still) glEndQuery(GL_ANY_SAMPLES_PASSED);
+        }
     }
-    glBindVertexArray(0);
-    glDisable(GL_SCISSOR_TEST);
+    end_model();
+}
+
+void GlScene::redraw_model(const GlCamera& c, const GlLight& light, const DrawOptions& options, const PixelRect& part,
+                           std::span<const GlBox> changed) {
+    State& s = *state_;
+    if (s.asked)
+        for (std::size_t i = 0; i < s.clusters.size(); ++i) {
+            if (s.hidden[i]) continue;
+            GLuint passed = GL_TRUE;
+            glGetQueryObjectuiv(s.queries[i], GL_QUERY_RESULT, &passed);
+            s.hidden[i] = passed == GL_FALSE;
+        }
+    s.asked = false;
+    begin_model(c, light, options);
+    const int x = std::max(0, part.x - kBlock), y = std::max(0, part.y - kBlock);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(x, y, part.x + part.width + kBlock - x, part.y + part.height + kBlock - y);
+    std::vector<GLsizei> counts;
+    std::vector<const void*> starts;
+    for (const Seen& one : clusters_in(s.clusters, c, part)) {
+        const Cluster& cluster = s.clusters[one.cluster];
+        const bool meets = std::ranges::any_of(changed, [&](const GlBox& box) {
+            return glm::all(glm::lessThanEqual(box.lo, cluster.hi)) && glm::all(glm::lessThanEqual(cluster.lo, box.hi));
+        });
+        if (s.hidden[one.cluster] || !meets) continue;
+        counts.push_back(static_cast<GLsizei>(cluster.count));
+        starts.push_back(start_of(cluster));
+    }
+    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(), static_cast<GLsizei>(counts.size()));
+    end_model();
 }
 
 void GlScene::draw_atlas(const AtlasWindow& window, const DrawOptions& options) {

@@ -28,12 +28,17 @@ struct GlSolid {
 
 inline constexpr int kTextureLevels = 5;  ///< 16 × 16 down to 1 × 1 texels of a tile
 
+/// Metres, world; its sides along the axes.
+struct GlBox {
+    Vec3f lo{0}, hi{0};
+};
+
 /// One tile of the atlas at all levels, RGBA: sRGB colour and height in units of 0.1 µm.
 struct TilePixels {
     static constexpr std::array<int, kTextureLevels + 1> kStart{0, 256, 320, 336, 340, 341};
     std::uint32_t tile = 0;  ///< row · per side + column
     std::array<std::array<std::uint8_t, 4>, 341> rgba;
-    Vec3f lo{1}, hi{-1};     ///< metres: box round its texels; empty where it has none
+    std::vector<GlBox> boxes;  ///< round all of the surface that takes colour from it, at whatever level
 };
 
 /// The whole atlas at all levels, row 0 at v = 0.
@@ -67,10 +72,15 @@ class GlScene {
     void set_texture(const MapPixels& map);
     void update_tiles(std::span<const TilePixels> tiles);
 
-    /// Clears a part of the picture to the backdrop, from sRGB colour `low` at the bottom to `high`.
-    void draw_backdrop(const GlCamera& camera, const Vec3f& low, const Vec3f& high, const PixelRect& part);
-    /// Draws what of the model may be seen in a part of the picture, nothing outside it.
-    void draw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, const PixelRect& part);
+    /// Clears the picture to the backdrop, from sRGB colour `low` at the bottom to `high`.
+    void draw_backdrop(const GlCamera& camera, const Vec3f& low, const Vec3f& high);
+    /// Draws the model. `still`: notes what is hidden, so that `redraw_model` costs less.
+    void draw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, bool still = false);
+    /// Gives the surface inside the boxes its colours anew in a part of the picture, after the texture
+    /// changed there. Camera, section and depth must be those of the last `draw_model`; the result is what that
+    /// would draw now.
+    void redraw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, const PixelRect& part,
+                      std::span<const GlBox> changed);
     /// Draws the atlas flat into a part of the picture: `centre` in uv lies in its middle,
     /// `pixels_per_side` is the whole atlas. What needs light is shown as flat colour.
     struct AtlasWindow {
@@ -83,7 +93,7 @@ class GlScene {
     void draw_solid(const GlCamera& camera, const GlLight& light, const GlSolid& solid, float opacity);
 
   private:
-    void draw_clusters(const GlCamera& camera, const PixelRect& part);
+    void begin_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options);
 
     struct State;
     std::unique_ptr<State> state_;

@@ -27,8 +27,8 @@ class GlView {
     GlView(const GlView&) = delete;
     GlView& operator=(const GlView&) = delete;
 
-    /// The texture changed on the surface inside a box, metres.
-    void texture_changed(const Vec3f& lo, const Vec3f& hi);
+    /// The texture changed on the surface inside boxes.
+    void texture_changed(std::span<const GlBox> boxes);
     /// The mesh, the whole texture or the triangle colours changed.
     void scene_changed();
 
@@ -44,6 +44,8 @@ class GlView {
     void draw(GlScene& scene, const Frame& frame);
 
   private:
+    void warm_up(GlScene& scene, const Frame& frame);
+
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -260,6 +261,28 @@ TEST_F(StudioProgram, RecolouringKeepsAllAmountsAndIsThereAgainNextTime) {
     EXPECT_EQ(ink::parse_substrate(project.shown_substrate(), "").name, "bisque");
     EXPECT_EQ(ink::parse_substrate(project.model().substrate, "").name, "porcelain");
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
+}
+
+// A hand at a thousand samples a second while all processors are busy: every sample is a pose of the stroke
+// that is kept.
+TEST_F(StudioProgram, NoSampleOfTheHandIsLostUnderLoad) {
+    std::atomic<bool> stop{false};
+    std::vector<std::thread> load;
+    for (unsigned i = 0; i < std::max(2u, std::thread::hardware_concurrency()); ++i)
+        load.emplace_back([this, &stop] {
+            while (!stop && !fs::exists(path("ready.png"))) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            while (!stop) {}
+        });
+    const Ran ran = studio(kBowl + "screenshot ready.png\npace on\nrate 1000\nstroke 42%,57% 56%,60%,0.8 44%,61% 57%,57%\nwait-ready\nexpect strokes 1\nreport\n"
+                                   "save work.tuft\nwait-ready\n", "--headless --size 1280x720");
+    stop = true;
+    for (std::thread& thread : load) thread.join();
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto samples = io::Project::open(path("work.tuft")).strokes().at(0).trace.samples;
+    EXPECT_GT(samples.size(), 1000u);  // three ways of some 100 pixels at 260 pixels a second, a sample each millisecond
+    // Each sample went to the painter as a pose; the last one is the lift, which is drawn in twelve.
+    EXPECT_EQ(samples.size(), nlohmann::json::parse(ran.out)["samples"].get<std::size_t>() - 1 + 12);
+    for (std::size_t i = 2; i + 13 < samples.size(); ++i) EXPECT_NEAR(samples[i].time - samples[i - 1].time, 1e-3, 1e-9) << i;
 }
 
 TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
