@@ -22,6 +22,17 @@ struct Piece {
     int depth = 0;
 };
 
+double stretch_of(const FlatChart& chart) {
+    return chart.l2 * chart.l2 * chart.mesh.area;
+}
+
+double difference(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now) {
+    double more = 0;
+    for (const FlatChart* c : before) more -= stretch_of(*c);
+    for (const FlatChart* c : now) more += stretch_of(*c);
+    return more;
+}
+
 bool good(const FlatCheck& check, const ChartOptions& options, int depth) {
     constexpr int kPatience = 3;  // cuts that are made for the sake of single triangles
     return check.sound() && check.l2 <= options.l2 && check.stretch_999 <= options.largest &&
@@ -107,6 +118,7 @@ bool flatten_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& pi
     if (flat.uv.empty()) return false;
     const FlatCheck check = check_flat(flat.mesh, flat.uv, options.gap);
     flat.worst = check.linf;
+    flat.l2 = check.l2;
     if (flat.mesh.faces.size() > 1 && !good(check, options, piece.depth)) return false;
     meter.finish();
     return true;
@@ -171,6 +183,29 @@ std::vector<Piece> cut_long_charts(CutMesh& cut, const ChartOptions& options) {
 }
 
 }  // namespace
+
+StretchBudget::StretchBudget(const CutMesh& cut, double l2) {
+    for (const FlatChart& c : cut.charts) {
+        used_ += stretch_of(c);
+        all_ += l2 * l2 * c.mesh.area;
+    }
+}
+
+bool StretchBudget::allows(std::span<const FlatChart* const> before,
+                           std::span<const FlatChart* const> now) const {
+    const double more = difference(before, now);
+    return more <= 0 || used_ + more <= all_;
+}
+
+void StretchBudget::spend(std::span<const FlatChart* const> before,
+                          std::span<const FlatChart* const> now) {
+    used_ += difference(before, now);
+}
+
+void number_charts(CutMesh& cut) {
+    for (FlatChart& chart : cut.charts)
+        if (chart.version == 0) chart.version = ++cut.versions;
+}
 
 std::vector<Vec2> chart_hull(const FlatChart& chart) {
     std::vector<Vec2> border;

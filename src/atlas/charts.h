@@ -7,6 +7,7 @@
 #include "atlas/atlas.h"
 #include "atlas/chart_mesh.h"
 #include "atlas/flatten.h"
+#include "atlas/refusals.h"
 #include "core/progress.h"
 
 /// The mesh cut into charts that lie flat.
@@ -15,6 +16,7 @@ namespace tuft::atlas {
 struct ChartOptions {
     double l2 = 1.0045;     ///< stretch that a chart may have on average
     double largest = 1.35;  ///< and at 99.9 % of its area
+    double l2_all = 1.0028; ///< and that all may have together, once they are merged
     double worst = 3;       ///< and anywhere, where that can be helped
     double longest = 1.35;  ///< long side of a chart's smallest rectangle, over the unit: no longer
                             ///< than a page that charts cover to a half is wide
@@ -32,7 +34,9 @@ ArapOptions trial_arap(const ChartOptions& options);
 struct FlatChart {
     ChartMesh mesh;
     std::vector<Vec2> uv;
+    double l2 = 1;     ///< stretch
     double worst = 1;  ///< largest stretch of a triangle
+    std::uint32_t version = 0;  ///< another one for every chart and change; 0: none yet
 };
 
 struct CutMesh {
@@ -40,12 +44,29 @@ struct CutMesh {
     std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges, kNone where a seam was asked for
     std::vector<std::uint32_t> glued;  ///< the same, kNone at seams
     std::vector<FlatChart> charts;
+    std::uint32_t versions = 0;  ///< that charts had so far
+    Refusals refused;
     std::vector<std::uint32_t> place;  ///< [n_triangles] room for `make_chart`
 };
 
 /// Cuts and flattens the whole mesh. Every triangle lies in one chart.
 CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options,
                         const ProgressFn& progress);
+
+/// The stretch of all charts together, L2² times area, as charts change.
+class StretchBudget {
+  public:
+    StretchBudget(const CutMesh& cut, double l2);
+    /// Whether `now` may take the place of `before`: stretches less or within the budget.
+    bool allows(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now) const;
+    void spend(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now);
+
+  private:
+    double used_ = 0, all_ = 0;
+};
+
+/// Gives charts that have none their version.
+void number_charts(CutMesh& cut);
 
 /// Hull of a chart's border in the plane.
 std::vector<Vec2> chart_hull(const FlatChart& chart);

@@ -96,12 +96,14 @@ class Merger {
           cut_(cut),
           options_(options),
           merge_(merge),
+          budget_(cut, options.l2_all),
           patch_(make_patch(mesh, cut.twin, all_triangles(mesh), cut.unit)),
           graph_(patch_, seam_flags(cut), 0),
           chart_at_(mesh.n_triangles(), kNone),
           refused_(3 * mesh.n_triangles(), 0) {
         for (std::uint32_t c = 0; c < cut.charts.size(); ++c)
             chart_at_[graph_.chart_of(cut.charts[c].mesh.triangles[0])] = c;
+        number_charts(cut);
     }
 
     void run(const ProgressFn& progress) {
@@ -154,6 +156,10 @@ class Merger {
         std::vector<Trial> all;
         for (const SeamGraph::Chain& c : chains) {
             if (c.chart_a == c.chart_b || c.closed || refused_[c.id]) continue;
+            if (Refusals::count(cut_.refused.merged, change(c.id, c.chart_a, c.chart_b)) > 0) {
+                refused_[c.id] = 1;
+                continue;
+            }
             const double area_a = graph_.moments(c.chart_a).area;
             const double area_b = graph_.moments(c.chart_b).area;
             if (area_a + area_b > merge_.largest_chart) continue;
@@ -231,6 +237,7 @@ class Merger {
         // Charts that lie one over the other stay so; only near the ends of the chain do small
         // crossings go away. That is worth a look where laying flat is dear.
         if (mesh.faces.size() > kDear && crosses_itself(mesh, t.flat.uv, 0, kNearEnds)) return;
+        scale_to_area(mesh, t.flat.uv);
         const double flat_enough = 1 + 0.1 * (options_.l2 - 1);
         FlatCheck check = check_flat(mesh, t.flat.uv, options_.gap);
         if (!check.sound() || check.l2 > flat_enough) {
@@ -244,6 +251,7 @@ class Merger {
             check.linf > std::max({options_.worst, a.worst, b.worst}))
             return;
         t.flat.worst = check.linf;
+        t.flat.l2 = check.l2;
         const std::vector<Vec2> hull = chart_hull(t.flat);
         const double parts = std::min(hull_fill(a, chart_hull(a)), hull_fill(b, chart_hull(b)));
         const bool ragged = hull_fill(t.flat, hull) < std::min(merge_.least_fill, parts);
@@ -251,15 +259,29 @@ class Merger {
         t.outcome = ragged || too_long ? Outcome::misshapen : Outcome::merged;
     }
 
+    Refusals::Change change(std::uint32_t chain, std::uint32_t a, std::uint32_t b) const {
+        std::uint32_t first = kNone;
+        for (const std::uint32_t h : graph_.half_edges(chain)) first = std::min(first, h);
+        const auto [v, w] =
+            std::minmax(cut_.charts[chart_at_[a]].version, cut_.charts[chart_at_[b]].version);
+        return {first, v, w};
+    }
+
     void conclude(Trial& t) {
-        if (t.outcome != Outcome::merged) {
+        const std::array<const FlatChart*, 2> before{&cut_.charts[chart_at_[t.a]],
+                                                     &cut_.charts[chart_at_[t.b]]};
+        const std::array<const FlatChart*, 1> now{&t.flat};
+        if (t.outcome != Outcome::merged || !budget_.allows(before, now)) {
             set_glued(t, false);
             refused_[t.chain] = 1;
+            ++cut_.refused.merged[change(t.chain, t.a, t.b)];
             return;
         }
         const std::uint32_t ca = chart_at_[t.a], cb = chart_at_[t.b];
+        budget_.spend(before, now);
         graph_.glue(t.chain);
         cut_.charts[ca] = std::move(t.flat);
+        cut_.charts[ca].version = ++cut_.versions;
         cut_.charts[cb] = {};
         chart_at_[t.a] = chart_at_[t.b] = kNone;
         chart_at_[graph_.chart_of(cut_.charts[ca].mesh.triangles[0])] = ca;
@@ -269,6 +291,7 @@ class Merger {
     CutMesh& cut_;
     const ChartOptions& options_;
     const MergeOptions& merge_;
+    StretchBudget budget_;
     Patch patch_;
     SeamGraph graph_;
     std::vector<std::uint32_t> chart_at_;  // by the triangle that stands for it in the graph

@@ -4,9 +4,8 @@
 
 namespace tuft::atlas {
 
-/// Straightens the seams between finished charts and lays every chart flat anew from
-/// where it was. Seams of charts that would no longer lie flat within `options` stay.
-void polish_charts(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options,
-                   const ProgressFn& progress);
+/// Lays finished charts flat from where they lie until they stretch no less; charts had been
+/// tried in haste. Those that do not come out sound stay as they are.
+void polish_charts(CutMesh& cut, const ChartOptions& options, const ProgressFn& progress);
 
 }  // namespace tuft::atlas

@@ -10,6 +10,7 @@
 #include "atlas/cut_to_pack.h"
 #include "atlas/file_uvs.h"
 #include "atlas/merge.h"
+#include "atlas/move_seams.h"
 #include "atlas/pack.h"
 #include "atlas/polish.h"
 #include "atlas/snap.h"
@@ -18,6 +19,7 @@ namespace tuft::atlas {
 namespace {
 
 constexpr int kMostRepairs = 24;
+constexpr int kImprovements = 2;  // rounds of moving seams and merging charts anew
 
 class Stopwatch {
   public:
@@ -161,7 +163,14 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     watch.lap(out.report, "charts");
     merge_charts(mesh, cut, chart_options, merge_options, options.progress);
     watch.lap(out.report, "merge");
-    polish_charts(mesh, cut, chart_options, options.progress);
+    for (int round = 0; round < kImprovements; ++round) {
+        const bool moved = move_seams(mesh, cut, chart_options, options.progress);
+        watch.lap(out.report, "move");
+        if (!moved) break;
+        merge_charts(mesh, cut, chart_options, merge_options, options.progress);
+        watch.lap(out.report, "merge");
+    }
+    polish_charts(cut, chart_options, options.progress);
     watch.lap(out.report, "polish");
     Atlas& atlas = out.atlas;
     atlas.gutter = options.gutter;
