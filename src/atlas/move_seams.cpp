@@ -18,6 +18,7 @@ constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
 constexpr double kLeastSaved = 0.02;  // of a seam's length, for which charts are laid anew
 constexpr double kLargest = 0.3;       // of the surface: charts do not grow beyond
 constexpr int kIterations = 8;         // from where a chart lies, most of it well
+constexpr double kLeastValue = 0.05;  // saved, over the unit, for laying all of the mesh anew
 constexpr double kMostWork = 8;       // triangles laid flat, over those of the mesh
 
 struct Trial {
@@ -57,8 +58,9 @@ class Mover {
                 Trial& t = trials[i];
                 MeterPart part(meter, double(n_triangles(t)));
                 t.good = true;
-                for (int side = 0; side < t.n_charts() && t.good; ++side)
-                    t.good = lay(t, side);
+                // The chart that grows is the one that may not lie flat.
+                const int first = t.swept[0].size() > t.swept[1].size();
+                for (int k = 0; k < t.n_charts() && t.good; ++k) t.good = lay(t, first ^ k);
                 part.finish();
             });
             for (Trial& t : trials) {
@@ -108,11 +110,13 @@ class Mover {
             t.chart = {paths_.charts()[h / 3], paths_.charts()[patch_.twin[h] / 3]};
             double length = 0;
             for (const std::uint32_t g : chain) length += patch_.length[g];
+            const double work = double(n_triangles(t)) / double(mesh_.n_triangles());
+            const double least = std::max(kLeastSaved * length, kLeastValue * work);
             t.change = {h, cut_.charts[t.chart[0]].version, cut_.charts[t.chart[1]].version};
             int& refused = cut_.refused.moved[t.change];
             for (; refused < kReaches; ++refused) {
                 t.move = paths_.shorten(chain, kReach[refused], Corners::move);
-                if (!t.move.path.empty() && t.move.saved > kLeastSaved * length) break;
+                if (t.move.saved > least) break;
             }
             if (refused < kReaches) all.push_back(std::move(t));
         }
