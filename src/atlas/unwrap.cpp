@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kMostRepairs = 24;
 constexpr int kImprovements = 2;  // rounds of moving seams and merging charts anew
+constexpr std::size_t kDear = 500000;  // triangles of a mesh that gets one such round
 
 class Stopwatch {
   public:
@@ -163,7 +164,8 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     watch.lap(out.report, "charts");
     merge_charts(mesh, cut, chart_options, merge_options, options.progress);
     watch.lap(out.report, "merge");
-    for (int round = 0; round < kImprovements; ++round) {
+    const int rounds = mesh.n_triangles() < kDear ? kImprovements : 1;
+    for (int round = 0; round < rounds; ++round) {
         const bool moved = move_seams(mesh, cut, chart_options, options.progress);
         watch.lap(out.report, "move");
         if (!moved) break;
