@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -35,7 +36,7 @@ constexpr std::array kFields = {
     Field{"shape", "tip_power", &Preset::tip_power, 1, 0.5, 4},
     Field{"shape", "tip_radius_mm", &Preset::tip_radius, kMillimetre, 0, 10},
     Field{"shape", "hardness", &Preset::hardness, 1, 0, 1},
-    Field{"bending", "stiffness_n_m2", &Preset::stiffness, 1, 1e-8, 1},
+    Field{"bending", "stiffness_n_m2", &Preset::stiffness, 1, 1e-10, 1},
     Field{"bending", "alpha", &Preset::alpha, 1, -6, 3},
     Field{"bending", "beta", &Preset::beta, 1, -0.995, 1},
     Field{"bending", "tip_stiffness", &Preset::tip_stiffness, 1, 0, 1},
@@ -49,7 +50,7 @@ constexpr std::array kFields = {
     Field{"contact", "core_start", &Preset::core_start, 1, 0, 1},
     Field{"contact", "end_give_mm", &Preset::end_give, kMillimetre, 0, 20},
     Field{"contact", "adhesion_n_m", &Preset::adhesion, 1, 0, 10},
-    Field{"contact", "adhesion_range_mm", &Preset::adhesion_range, kMillimetre, 0.01, 5},
+    Field{"contact", "adhesion_range_mm", &Preset::adhesion_range, kMillimetre, 0.01, 20},
     Field{"contact", "friction_wet", &Preset::friction_wet, 1, 0, 2},
     Field{"contact", "friction_dry", &Preset::friction_dry, 1, 0, 2},
     Field{"contact", "grain", &Preset::grain, 1, 0.1, 0.9},
@@ -65,7 +66,7 @@ constexpr std::array kFields = {
     Field{"split", "at", &Preset::split_at, 1, 0, 100},
     Field{"split", "merge_at", &Preset::merge_at, 1, 0, 100},
     Field{"split", "yaw_rad", &Preset::split_yaw, 1, 0, 0.7},
-    Field{"force", "gain", &Preset::force_gain, 1, 0, 1e4},
+    Field{"force", "gain", &Preset::force_gain, 1, 0, 1e5},
     Field{"force", "limit_n", &Preset::force_limit, 1, 0, 100},
 };
 
@@ -220,7 +221,42 @@ std::vector<std::string> list_presets() {
     return names;
 }
 
+Preset scaled(const Preset& preset, double factor) {
+    Preset p = preset;
+    for (double Preset::*length : {&Preset::length, &Preset::radius, &Preset::tip_radius, &Preset::end_give,
+                                   &Preset::adhesion_range, &Preset::adhesion})
+        p.*length *= factor;
+    p.stiffness *= std::pow(factor, 4);
+    p.force_gain /= factor * factor;
+    p.capacity *= factor * factor;
+    p.name = name_of({preset.name, factor});
+    check_preset(p, p.name);
+    return p;
+}
+
+SizedName sized_name(const std::string& name) {
+    const std::size_t star = name.rfind('*');
+    if (star == std::string::npos) return {name, 1};
+    SizedName out{name.substr(0, star), 0};
+    if (out.base.empty() || out.base.find('*') != std::string::npos) throw Error("unknown brush '" + name + "'");
+    const char* end = name.data() + name.size();
+    const auto [at, error] = std::from_chars(name.data() + star + 1, end, out.factor);
+    if (error != std::errc{} || at != end || !(out.factor >= kLeastSize && out.factor <= kMostSize))
+        throw Error("brush '" + name + "': a size from " + number(kLeastSize) + " to " + number(kMostSize) + " must follow the *");
+    return out;
+}
+
+std::string name_of(const SizedName& sized) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", std::clamp(sized.factor, kLeastSize, kMostSize));
+    return std::string_view(text) == "1" ? sized.base : sized.base + "*" + text;
+}
+
 Preset load_preset(const std::string& name_or_path) {
+    if (name_or_path.find('*') != std::string::npos) {
+        const SizedName sized = sized_name(name_or_path);
+        return scaled(load_preset(sized.base), sized.factor);
+    }
     fs::path path = name_or_path;
     if (name_or_path.find('/') == std::string::npos && path.extension() != ".toml") {
         const std::vector<std::string> names = list_presets();

@@ -83,8 +83,28 @@ struct Preset {
     SpineMethod spine = SpineMethod::rod;
 };
 
+/// The same make of another size, which draws the same strokes in that size: lengths grow by
+/// `factor`, B0 by its fourth power, adhesion (N/m) by itself, so that forces grow by its square and
+/// shapes are similar; what the tuft holds by its square, as the ground does that a stroke covers.
+/// The hand feels the same force.
+/// Throws `Error` when a value leaves its range.
+Preset scaled(const Preset& preset, double factor);
+
+/// A brush's name and how many times its size it is: "wolf-small*0.5".
+struct SizedName {
+    std::string base;
+    double factor = 1;
+};
+inline constexpr double kLeastSize = 0.1, kMostSize = 4;
+
+/// Takes a name apart; "*" without a number from kLeastSize to kMostSize after it is an `Error`.
+SizedName sized_name(const std::string& name);
+/// And puts it together: the base alone where the factor, to four digits, is 1; held to the range.
+std::string name_of(const SizedName& sized);
+
 /// Reads a preset by name from the shipped presets, or from a path to a TOML file
-/// (a name with '/' or ending in ".toml"). "wolf" alone means "wolf-medium".
+/// (a name with '/' or ending in ".toml"). "wolf" alone means "wolf-medium", "wolf*0.5" one of
+/// half its size.
 /// Throws `Error`: unknown name (with the nearest one), unreadable file with its
 /// line, unknown key, wrong type, or a value out of its range, each by name.
 Preset load_preset(const std::string& name_or_path);

@@ -162,7 +162,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
     p->add_option("MODEL", paint.model, "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project")->required();
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
-    p->add_option("--brush", paint.brush, "brush for all strokes ('tuft brush' lists them; default: what they name, else wolf-medium)");
+    p->add_option("--brush", paint.brush, "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: what they name, else wolf-medium)");
     p->add_option("--ink", paint.ink, "ink for all strokes (default: what they name, else carbon)");
     p->add_option("--mask", paint.mask, "mask of the project to keep to, for strokes that name none");
     p->add_flag_callback("--erase", [&paint] { paint.erases = true; },

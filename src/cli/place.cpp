@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "brush/preset.h"
 #include "core/units.h"
 
 namespace tuft::cli {
@@ -22,14 +23,33 @@ std::pair<Vec3, Vec3> upright(const Vec3& n, double turn) {
     return {std::cos(turn) * right - std::sin(turn) * down, std::cos(turn) * down + std::sin(turn) * right};
 }
 
+constexpr const char* kBrush = "wolf-medium";  // where nothing names one
+constexpr double kWriting = 0.06;              // metres of drawing that it suits
+
+/// Gives the drawing's brushes its scale, also for what is done with them before a stroke; the
+/// one that nobody named suits its width.
+void size_brushes(std::vector<stroke::Stroke>& strokes, const std::vector<stroke::Trace*>& drawing, double scale, double width) {
+    std::string own, sized;
+    for (auto s = strokes.rbegin(); s != strokes.rend(); ++s) {
+        stroke::Trace& trace = s->trace;
+        if (s->action == stroke::Action::stroke && s->layer != stroke::kPaletteLayer) {
+            own = sized = trace.brush;
+            if (std::find(drawing.begin(), drawing.end(), &trace) != drawing.end()) {
+                const brush::SizedName name = brush::sized_name(own.empty() ? kBrush : own);
+                sized = brush::name_of({name.base, own.empty() ? std::min(1.0, width / kWriting) : name.factor * scale});
+            }
+            trace.brush = sized;
+        } else if (trace.brush == own) {
+            trace.brush = sized;
+        }
+    }
+}
+
 double extent_along(const Box& box, const Vec3& direction) {
     return glm::dot(box.size(), glm::abs(direction));
 }
 
-}  // namespace
-
-void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a,
-                   Console& console) {
+void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, Console& console) {
     std::vector<stroke::Trace*> drawing;
     Box area;
     for (stroke::Stroke& s : strokes) {
@@ -58,13 +78,14 @@ void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& mo
         const double fill = std::max(area.size().x / extent_along(box, right), area.size().y / extent_along(box, down));
         if (fill > 1 || fill < 0.01) {
             scale = 0.6 / fill;
-            note = fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide (see --place-width)",
+            note = fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide with brushes of that scale (see --place-width, --brush)",
                                area.size().x / kMillimetre, scale * area.size().x / kMillimetre);
         }
     }
     if (a.place_mm.empty())
         console.note(fmt::format("the strokes name no place; they go to the front of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",
                                  at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre, note));
+    if (a.brush.empty()) size_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y));
     for (stroke::Trace* trace : drawing) {
         for (stroke::TraceSample& sample : trace->samples) {
             sample.position = scale * (sample.position - area.centre());
@@ -75,6 +96,15 @@ void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& mo
         trace->placement.down = down;
         trace->placed = true;
     }
+}
+
+}  // namespace
+
+void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a,
+                   Console& console) {
+    lay_drawing(strokes, model, a, console);
+    for (stroke::Stroke& s : strokes)
+        if (s.trace.brush.empty() && stroke::has_brush(s.action)) s.trace.brush = kBrush;
 }
 
 void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, const stroke::Model& model) {

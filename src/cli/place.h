@@ -14,7 +14,7 @@ namespace tuft::cli {
 /// onto the model: as one drawing, upright, its middle at the nearest point to the place, else
 /// at the model's front (-y side). Without a width given, a drawing that has no place and is
 /// larger than the model or tiny beside it is scaled to fit, with a note. Scaling keeps the
-/// hand's speed. What had no place is draped; `--laying` says how all flat strokes lie.
+/// hand's speed; the brushes that the files name grow and shrink with the drawing. What had no place is draped; `--laying` says how all flat strokes lie.
 void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
                    const Paint& arguments, Console& console);
 

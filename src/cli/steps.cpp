@@ -166,8 +166,7 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
         std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true});
         if (habit) traces = stroke::undo_habit(*habit, std::move(traces));
         for (stroke::Trace& trace : traces) {
-            if (trace.brush.empty() || !a.brush.empty())
-                trace.brush = a.brush.empty() ? "wolf-medium" : a.brush;
+            if (!a.brush.empty()) trace.brush = a.brush;
             if (trace.ink.empty() || !a.ink.empty()) trace.ink = a.ink.empty() ? "carbon" : a.ink;
             // What is done with a brush shows in the stroke after it: that goes on with this brush.
             const bool own = !trace.settings.empty();

@@ -78,6 +78,19 @@ TEST(Presets, AnUnknownNameSuggestsTheNearest) {
     EXPECT_THROW(load_preset("./no/such/brush.toml"), Error);
 }
 
+TEST(Presets, ANameCarriesItsSize) {
+    const Preset half = load_preset("wolf*0.5"), whole = load_preset("wolf-medium");
+    EXPECT_EQ(half.name, "wolf-medium*0.5");
+    EXPECT_DOUBLE_EQ(half.length, 0.5 * whole.length);
+    EXPECT_DOUBLE_EQ(half.stiffness, 0.0625 * whole.stiffness);
+    EXPECT_DOUBLE_EQ(half.capacity, 0.25 * whole.capacity);
+    EXPECT_EQ(preset_toml(parse_preset(preset_toml(half), "half.toml")), preset_toml(half));
+    EXPECT_EQ(load_preset("wolf-medium*1").name, "wolf-medium");
+    EXPECT_EQ(name_of({"wolf", 1e9}), "wolf*4");
+    for (const char* bad : {"wolf*", "wolf*0", "wolf*-1", "wolf*9", "wolf*2x", "wolf*nan", "wolf*inf", "wolf*1e400", "*2", "wolf*2*2"})
+        EXPECT_THROW(load_preset(bad), Error) << bad;
+}
+
 TEST(Presets, TipsAreFineAndBelliesRound) {
     for (const std::string& name : list_presets()) {
         const Preset p = load_preset(name);

@@ -17,6 +17,22 @@ std::string write(const std::string& name, const std::string& text) {
     return path;
 }
 
+TEST(Sweep, ABrushOfAnotherSizeDrawsTheSameLineInThatSize) {
+    for (const char* name : {"wolf-medium", "mixed-medium", "goat-medium"}) {
+        const Preset p = load_preset(name);
+        for (const double factor : {0.25, 0.5, 2.0}) {
+            const Preset q = scaled(p, factor);
+            for (const double part : {0.15, 0.3, 0.45}) {
+                const double depth = part * p.length, other = factor * depth;
+                const double width = sweep_depth(p, std::span(&depth, 1)).front().width;
+                const double of_other = sweep_depth(q, std::span(&other, 1)).front().width;
+                // Similar, but for the sweep's steps in millimetres and the damping in seconds.
+                EXPECT_NEAR(of_other, factor * width, 1e-4 * std::max(1.0, factor)) << name << " x " << factor << " at " << part;
+            }
+        }
+    }
+}
+
 TEST(Sweep, LinesWidenEvenlyWithDepth) {
     for (const char* name : {"wolf-medium", "mixed-small", "goat-large"}) {
         const Preset p = load_preset(name);

@@ -134,6 +134,26 @@ TEST_F(Place, TheUnitIsGuessedWhereNothingSaysIt) {
     EXPECT_TRUE(guessed_model == read(path("out.glb")));
 }
 
+TEST_F(Place, BrushesOfTheFileGrowWithTheDrawing) {
+    write("box.obj", box(false));
+    std::string ink = lines(0, 0, 40);
+    ink.insert(ink.find("</ink>"), "</traceGroup>");
+    ink.insert(ink.find("<trace>"), "<traceGroup><annotation type=\"tuft:brush\">goat-small</annotation>");
+    write("named.inkml", ink);
+    write("bare.inkml", lines(0, 0, 40));
+    const auto brush_of = [&](const std::string& file, const std::string& more) {
+        const Ran ran = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path(file) + " --place 0,-30,0 --project " +
+                             path("p.tuft") + " " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return json::parse(tuft("inspect " + path("p.tuft") + " --json").out)["strokes"][0]["brush"].get<std::string>();
+    };
+    EXPECT_EQ(brush_of("named.inkml", ""), "goat-small");
+    EXPECT_EQ(brush_of("named.inkml", "--place-width 20"), "goat-small*0.5");
+    EXPECT_EQ(brush_of("named.inkml", "--place-width 20 --brush wolf-small"), "wolf-small");
+    EXPECT_EQ(brush_of("bare.inkml", "--place-width 60"), "wolf-medium");
+    EXPECT_EQ(brush_of("bare.inkml", "--place-width 15"), "wolf-medium*0.25") << "60 mm of writing suit the whole brush";
+}
+
 TEST_F(Place, WhatHasNoPlaceIsDraped) {
     write("box.obj", box(false));
     write("lines.inkml", lines(0, 0, 30));
