@@ -51,8 +51,8 @@ struct AskedSeams {
     bool any() const { return groups || sharp_angle > 0; }
 };
 
-/// Whether large charts are halved so that one page of a given size is covered better: never,
-/// where less than 65 % of it would be covered, or as long as it gains much.
+/// Whether large charts are halved so that pages of a given size are covered better: never,
+/// where less than 65 % of them would be covered, or as long as it gains much.
 enum class Cutting { never, where_useful, tight };
 
 struct UnwrapOptions {

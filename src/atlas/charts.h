@@ -20,6 +20,7 @@ struct ChartOptions {
     double worst = 3;       ///< and anywhere, where that can be helped
     double longest = 1.35;  ///< long side of a chart's smallest rectangle, over the unit: no longer
                             ///< than a page that charts cover to a half is wide
+    double grown = 0.3;     ///< part of the surface that a chart may grow to as seams move
     std::uint32_t triangles = 200000;  ///< of a chart, at most: what laying it flat costs grows
                                        ///< faster than they do
     AskedSeams seams;       ///< no chart crosses these

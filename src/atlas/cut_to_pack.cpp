@@ -28,11 +28,11 @@ std::vector<Vec2> border_of(const FlatChart& chart) {
     return border;
 }
 
-/// Part of the page that charts of `area` cover.
+/// Part of the pages that charts of `area` cover.
 double use_of(const Packing& packing, double area) {
     if (!packing.fits) return 0;
     return area * packing.texels_per_unit * packing.texels_per_unit /
-           (static_cast<double>(packing.size) * packing.size);
+           (static_cast<double>(packing.size) * packing.size * packing.pages);
 }
 
 /// A chart in parts.

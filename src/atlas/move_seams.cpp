@@ -16,7 +16,6 @@ namespace {
 constexpr int kReaches = 2;
 constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
 constexpr double kLeastSaved = 0.02;  // of a seam's length, for which charts are laid anew
-constexpr double kLargest = 0.3;       // of the surface: charts do not grow beyond
 constexpr int kIterations = 8;         // from where a chart lies, most of it well
 constexpr double kLeastValue = 0.05;  // saved, over the unit, for laying all of the mesh anew
 constexpr double kMostWork = 8;       // triangles laid flat, over those of the mesh
@@ -180,7 +179,7 @@ class Mover {
             return false;
         flat.worst = check.linf;
         flat.l2 = check.l2;
-        if (flat.mesh.area > old.mesh.area && flat.mesh.area > kLargest) return false;
+        if (flat.mesh.area > old.mesh.area && flat.mesh.area > options_.grown) return false;
         const double length = smallest_rectangle(chart_hull(flat)).length;
         return length <= options_.longest ||
                length <= smallest_rectangle(chart_hull(old)).length;

@@ -30,10 +30,12 @@ constexpr int kStarts = 3;                   // searches, of which the best coun
 struct Layout {
     double excess = 0;  // sum of area × rows beyond the page, all of the strip's without a place
     std::uint32_t first_beyond = kNone;  // the first chart that reaches beyond the page
-    std::uint32_t rows = 0;              // cells, up to the highest chart
+    std::uint32_t rows = 0;              // cells, up to the highest chart of the first page
     double scale = 0;
     std::vector<Placement> placements;
     std::vector<std::uint8_t> placed;  // [n_charts]
+    std::vector<std::uint32_t> page;   // [n_charts]
+    std::uint32_t pages = 1;           // that were begun
 
     bool complete() const { return scale > 0 && first_beyond == kNone; }
     bool all_placed() const { return std::find(placed.begin(), placed.end(), 0) == placed.end(); }
@@ -50,6 +52,43 @@ struct Page {
     std::uint32_t size;   // texels per side
     std::uint32_t cell;   // texels per cell
     std::uint32_t cells;  // per side, within the margin
+};
+
+/// A place for a chart.
+struct Found {
+    const Mask* mask = nullptr;
+    Strip::Spot spot;
+    std::uint32_t top = kNone;  // rows up to its upper edge
+};
+
+/// A page as it is being filled.
+struct Filling {
+    Strip strip;
+    std::unordered_map<std::uint64_t, std::uint32_t> lowest;  // row, by the mask's hash
+
+    Filling(std::uint32_t cells, std::vector<int> reach) : strip(cells, std::move(reach)) {}
+
+    /// The lowest place of all turns of a chart.
+    Found find(const std::vector<Mask>& turned, std::uint32_t most_rows) {
+        Found best;
+        for (const Mask& mask : turned) {
+            std::uint32_t& from = lowest[mask.hash];
+            const std::uint32_t below = std::min(best.top, most_rows + 1);
+            if (from + mask.height >= below) continue;
+            const Strip::Spot s = strip.find(mask, from, below - 1);
+            if (s.y == kNone) continue;
+            from = s.y;
+            best = {&mask, s, s.y + mask.height};
+        }
+        return best;
+    }
+};
+
+/// What is filled in the search for the largest scale.
+struct Target {
+    Page page;
+    std::uint32_t pages = 1;
+    double step = 1.01;  // by which the scale is raised; 1: once it fits, it is done
 };
 
 class Packer {
@@ -77,45 +116,43 @@ class Packer {
         return page;
     }
 
-    /// Fills a strip as wide as the page, at most `limit` times as high; gives up when its
-    /// excess is beyond `hopeless`.
-    Layout fill(const Page& page, double scale, double limit,
+    /// Fills pages one after the other, each chart on the first that has room for it. The last
+    /// is a strip, at most `limit` times as high as wide; gives up when the excess there is
+    /// beyond `hopeless`.
+    Layout fill(const Page& page, double scale, double limit, std::uint32_t pages = 1,
                 double hopeless = std::numeric_limits<double>::infinity()) {
         Layout layout;
         layout.scale = scale;
         layout.placements.resize(shapes_.size());
         layout.placed.assign(shapes_.size(), 0);
-        const double cell = page.cell;
-        const auto most_rows = static_cast<std::uint32_t>(limit * page.cells);
-        Strip strip(page.cells, reach_of_gutter(page.cell));
-        std::unordered_map<std::uint64_t, std::uint32_t> lowest;  // row, by the mask's hash
+        layout.page.assign(shapes_.size(), 0);
+        std::vector<Filling> filled;
         for (const std::uint32_t i : plan_.order) {
-            const Masks& masks = masks_of(i, scale, cell);
-            const Mask* best = nullptr;
-            Strip::Spot spot;
-            std::uint32_t best_top = most_rows + 1;
-            for (const Mask& mask : masks.turned) {
-                std::uint32_t& from = lowest[mask.hash];
-                if (from + mask.height >= best_top) continue;
-                const Strip::Spot s = strip.find(mask, from, std::min(best_top - 1, most_rows));
-                if (s.y == kNone) continue;
-                from = s.y;
-                best_top = s.y + mask.height;
-                spot = s;
-                best = &mask;
+            const Masks& masks = masks_of(i, scale, page.cell);
+            Found found;
+            std::uint32_t p = 0, most_rows = page.cells;
+            for (; p < pages; ++p) {
+                if (p == filled.size()) filled.emplace_back(page.cells, reach_of_gutter(page.cell));
+                if (p + 1 == pages) most_rows = static_cast<std::uint32_t>(limit * page.cells);
+                found = filled[p].find(masks.turned, most_rows);
+                if (found.mask != nullptr) break;
             }
-            if (best == nullptr || best_top > page.cells) {
+            if (found.mask == nullptr || found.top > page.cells) {
                 if (layout.first_beyond == kNone) layout.first_beyond = i;
-                layout.excess += shapes_[i].area * (std::min(best_top, most_rows) - page.cells);
+                layout.excess += shapes_[i].area * (std::min(found.top, most_rows) - page.cells);
                 if (layout.excess > hopeless) break;
-                if (best == nullptr) continue;
+                if (found.mask == nullptr) continue;
             }
-            strip.place(*best, spot);
+            filled[p].strip.place(*found.mask, found.spot);
             layout.placed[i] = 1;
-            layout.placements[i] = {masks.chart_scale, best->c, best->s,
-                                    Vec2(spot.x, spot.y) * cell + Vec2(margin()) - best->corner};
+            layout.page[i] = p;
+            layout.placements[i] = {
+                masks.chart_scale, found.mask->c, found.mask->s,
+                Vec2(found.spot.x, found.spot.y) * double(page.cell) + Vec2(margin()) -
+                    found.mask->corner};
         }
-        layout.rows = strip.top();
+        layout.pages = static_cast<std::uint32_t>(std::max<std::size_t>(filled.size(), 1));
+        if (!filled.empty()) layout.rows = filled[0].strip.top();
         return layout;
     }
 
@@ -123,12 +160,10 @@ class Packer {
     /// search on coarse masks raises the scale step by step and looks for an order and
     /// turns that fit, three times from the same start; then the masks are refined. Not
     /// complete when nothing fits.
-    Layout largest(std::uint32_t size, Search search) {
-        const double per_chart = search == Search::full ? kTrials : kCoarseTrials;
+    Layout largest(std::uint32_t size, std::uint32_t pages, Search search) {
         const int trials =
-            std::clamp(static_cast<int>(per_chart / static_cast<double>(shapes_.size() + 1)), 9,
-                       search == Search::full ? 300 : 48);
-        const double full = size / std::sqrt(area_);
+            search == Search::full ? this->trials(kTrials, 300) : this->trials(kCoarseTrials, 48);
+        const double full = size * std::sqrt(pages / area_);
         const double least = std::sqrt(kLeastUse) * full;
         const Page coarse = page(size, kCoarseCells), fine = page(size, kCells);
         Layout best;
@@ -136,13 +171,13 @@ class Packer {
         double step = 0.97;
         for (double scale = 0.85 * full; !best.complete(); scale *= step) {
             if (scale < least) scale = least;
-            Layout layout = fill(coarse, scale, 1);
+            Layout layout = fill(coarse, scale, 1, pages);
             if (layout.complete()) best = std::move(layout);
             if (scale == least) break;
             if (scale < 0.6 * full) step = 0.9;
         }
         if (!best.complete()) {
-            best = fill(fine, least, 1);
+            best = fill(fine, least, 1, pages);
             return best;
         }
         if (search == Search::quick) return best;
@@ -153,7 +188,7 @@ class Packer {
         for (int start = 0; start < kStarts; ++start) {
             Layout layout = first;
             plan_ = first_plan;
-            climb(coarse, kStep, trials / kStarts, random, layout);
+            climb({coarse, pages, kStep}, trials / kStarts, random, layout);
             report(progress_, "pack", 0.8 * (start + 1) / kStarts);
             if (layout.scale <= best.scale) continue;
             best = std::move(layout);
@@ -162,30 +197,32 @@ class Packer {
         plan_ = best_plan;
         if (search == Search::coarse || fine.cell == coarse.cell) return best;
         for (double scale = 1.03 * best.scale; scale > best.scale; scale *= 0.996) {
-            Layout layout = fill(fine, scale, 1);
+            Layout layout = fill(fine, scale, 1, pages);
             if (!layout.complete()) continue;
             best = std::move(layout);
             break;
         }
-        climb(fine, kFineStep, trials / kFineShare, random, best);
+        climb({fine, pages, kFineStep}, trials / kFineShare, random, best);
         report(progress_, "pack", 1);
         return best;
     }
 
     /// Raises the scale of a layout step by step, looking for an order and turns that fit:
     /// fewer and smaller charts, less far beyond the page's edge.
-    void climb(const Page& page, double step, int trials, Random& random, Layout& best) {
+    void climb(const Target& target, int trials, Random& random, Layout& best) {
         double excess = std::numeric_limits<double>::infinity();
         std::uint32_t failed = kNone;
         bool climbing = true;  // the plan as it is has not failed at the target yet
         for (int trial = 0; trial < trials; ++trial) {
             const Plan before = plan_;
             if (!climbing) vary(random, failed);
-            Layout layout = fill(page, step * best.scale, kOverhang, excess);
+            Layout layout =
+                fill(target.page, target.step * best.scale, kOverhang, target.pages, excess);
             climbing = layout.complete();
             if (climbing) {
                 best = std::move(layout);
                 excess = std::numeric_limits<double>::infinity();
+                if (target.step == 1) return;
             } else if (layout.excess <= excess) {
                 excess = layout.excess;
                 failed = layout.first_beyond;
@@ -200,50 +237,36 @@ class Packer {
         return fill(page(size, kCells), scale, limit);
     }
 
-    /// Charts on as many pages as they need, up to `most`; see `Packing`.
-    Packing on_pages(std::uint32_t size, std::uint32_t most_cells, double scale,
-                     std::uint32_t most) {
-        Packing packing;
-        packing.size = size;
-        packing.texels_per_unit = scale;
-        packing.placements.resize(shapes_.size());
-        packing.page.assign(shapes_.size(), 0);
-        const std::vector<std::uint32_t> order = plan_.order;
-        std::uint32_t used = 0;
-        for (; !plan_.order.empty() && used <= most; ++used) {
-            const Layout layout = fill(page(size, most_cells), scale, 1);
-            std::vector<std::uint32_t> left;
-            for (const std::uint32_t i : plan_.order) {
-                if (!layout.placed[i]) {
-                    left.push_back(i);
-                    continue;
-                }
-                packing.placements[i] = layout.placements[i];
-                packing.page[i] = used;
-            }
-            if (left.size() == plan_.order.size()) {  // not even on a page of their own
-                packing.too_large = std::move(left);
-                std::sort(packing.too_large.begin(), packing.too_large.end());
-                break;
-            }
-            plan_.order = std::move(left);
+    /// Charts of a given scale on as many pages as they need, up to `most`; with more than area
+    /// alone asks for, an order is sought that needs one less.
+    Layout on_pages(std::uint32_t size, double scale, std::uint32_t most) {
+        constexpr double kFull = 0.8;  // of what charts cover at best
+        const Page fine = page(size, kCells);
+        Layout layout = fill(fine, scale, 1, most);
+        Random random(shapes_.size());
+        while (layout.complete() && layout.pages > 1 &&
+               area_ * scale * scale < kFull * size * double(size) * (layout.pages - 1)) {
+            Layout fewer;
+            fewer.scale = scale;
+            climb({fine, layout.pages - 1, 1}, trials(kCoarseTrials, 48), random, fewer);
+            if (!fewer.complete() || fewer.placements.empty()) break;
+            layout = std::move(fewer);
         }
-        packing.pages = std::max(used, 1u);
-        packing.fits = plan_.order.empty() && used <= most;
-        plan_.order = order;
-        return packing;
+        return layout;
     }
 
-    /// The largest scale at which all charts lie on `most` pages, by steps of 1.5 %.
-    Packing fill_pages(std::uint32_t size, std::uint32_t most, Search search) {
-        const double full = size * std::sqrt(most / area_);
-        Packing packing;
-        for (double scale = 0.92 * full; scale > std::sqrt(kLeastUse) * full; scale *= 0.985) {
-            report(progress_, "pack", std::clamp((0.92 * full / scale - 1) / 0.3, 0.0, 1.0));
-            packing = on_pages(size, search == Search::full ? kCells : kCoarseCells, scale, most);
-            if (packing.fits) break;
+    /// Charts that have no place on an empty page, ascending.
+    std::vector<std::uint32_t> too_large(std::uint32_t size, double scale) {
+        const Page fine = page(size, kCells);
+        std::vector<std::uint32_t> too_large;
+        for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
+            const std::vector<Mask>& turned = masks_of(i, scale, fine.cell).turned;
+            if (std::none_of(turned.begin(), turned.end(), [&](const Mask& m) {
+                    return m.width <= fine.cells && m.height <= fine.cells;
+                }))
+                too_large.push_back(i);
         }
-        return packing;
+        return too_large;
     }
 
   private:
@@ -252,6 +275,12 @@ class Packer {
         double scale = 0, cell = 0, turn = 0, chart_scale = 0;
         std::vector<Mask> turned;
     };
+
+    /// How many layouts are tried: fewer with many charts.
+    int trials(double charts, int most) const {
+        return std::clamp(static_cast<int>(charts / static_cast<double>(shapes_.size() + 1)), 9,
+                          most);
+    }
 
     std::uint32_t margin() const { return (gutter_ + 1) / 2; }
 
@@ -321,16 +350,17 @@ class Packer {
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options) {
     Packing packing;
     Packer packer(borders, options.gutter, options.progress);
-    if (options.pages > 1)
-        return options.texels_per_unit > 0
-                   ? packer.on_pages(options.size, kCells, options.texels_per_unit, options.pages)
-                   : packer.fill_pages(options.size, options.pages, options.search);
-    if (options.size > 0) {
-        Layout layout = packer.largest(options.size, options.search);
+    if (options.size > 0 && (options.pages == 1 || options.texels_per_unit == 0)) {
+        Layout layout = packer.largest(options.size, options.pages, options.search);
         packing.size = options.size;
         packing.fits = layout.complete();
+        packing.pages = layout.pages;
         packing.texels_per_unit = layout.scale;
         packing.placements = std::move(layout.placements);
+        if (options.pages > 1) {
+            packing.page = std::move(layout.page);
+            return packing;
+        }
         // A page too small for the gutters: grow it until charts cover their least part.
         for (double size = options.size; !packing.fits && size < 1e6; size *= 1.25) {
             packing.size = static_cast<std::uint32_t>(size * 1.25 / 16 + 1) * 16;
@@ -340,6 +370,17 @@ Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& o
         return packing;
     }
     packing.texels_per_unit = options.texels_per_unit;
+    if (options.pages > 1) {
+        packing.size = options.size;
+        packing.too_large = packer.too_large(options.size, options.texels_per_unit);
+        if (!packing.too_large.empty()) return packing;
+        Layout layout = packer.on_pages(options.size, options.texels_per_unit, options.pages);
+        packing.fits = layout.complete();
+        packing.pages = layout.pages;
+        packing.placements = std::move(layout.placements);
+        packing.page = std::move(layout.page);
+        return packing;
+    }
     double size = std::sqrt(packer.area() / 0.75) * options.texels_per_unit;
     for (int trial = 0; trial < 24; ++trial) {
         report(options.progress, "pack", trial / 24.0);

@@ -42,9 +42,9 @@ struct Packing {
 /// a texel are enlarged to that. Bit masks of all cells a chart touches, largest
 /// chart first, up to eight rotations each, at the lowest free place of a strip as
 /// wide as the page; the scale is searched until the strip is a square. Distances
-/// between charts are at least `gutter` texels, exactly. With several pages allowed, each is
-/// filled in turn by what found no place on the ones before; offsets count from the corner
-/// of the chart's own page.
+/// between charts are at least `gutter` texels, exactly. With several pages allowed, each chart
+/// comes to the first that has room for it; without a scale, the scale is searched at which all
+/// pages are filled. Offsets count from the corner of the chart's own page.
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options);
 
 }  // namespace tuft::atlas

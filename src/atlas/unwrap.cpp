@@ -150,6 +150,7 @@ Limits chart_limits(const mesh::TriangleMesh& mesh, const UnwrapOptions& options
     if (options.pages > 1) {  // charts have to fit a page, and some beside each other
         const double page = (double(options.size) - 2 * options.gutter) / texels;
         limits.chart.longest = std::min(limits.chart.longest, 0.9 * page);
+        limits.chart.grown = std::min(limits.chart.grown, 0.4 * page * page);
         limits.merge.longest = std::min(limits.merge.longest, 0.8 * page);
         limits.merge.largest_chart = std::min(limits.merge.largest_chart, 0.4 * page * page);
     }
@@ -199,7 +200,8 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
         if (roomless.empty() && coverage.twice == 0) {
             if (!quick) break;
             quick = false;
-            if (options.cutting != Cutting::never && options.pages == 1 && options.size > 0) {
+            const bool filled = options.size > 0 && (options.pages == 1 || options.texel_size == 0);
+            if (options.cutting != Cutting::never && filled) {
                 const bool tight = options.cutting == Cutting::tight;
                 made = cut_to_pack(mesh, cut, chart_options.gap, pack_options(cut, options),
                                    tight ? kTightUse : kGoodUse)

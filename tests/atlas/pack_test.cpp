@@ -115,6 +115,31 @@ TEST(Pack, SquaresFillThePage) {
     EXPECT_LE(packing.texels_per_unit, (1024 - 4 * 4) / 4.0);
 }
 
+// Nine squares fit a page best, in threes; that many pages are needed, and no more, at that scale.
+TEST(Pack, SquaresFillSeveralPages) {
+    const std::vector<Polygon> squares(36, {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    PackOptions options;
+    options.size = 512;
+    options.pages = 4;
+    const Packing full = pack(squares, options);
+    ASSERT_TRUE(full.fits);
+    EXPECT_EQ(full.pages, 4u);
+    EXPECT_GE(full.texels_per_unit, 0.98 * (512 - 4 * 3) / 3.0);
+    EXPECT_LE(full.texels_per_unit, (512 - 4 * 3) / 3.0);
+    options.pages = 10;
+    options.texels_per_unit = full.texels_per_unit;
+    const Packing needed = pack(squares, options);
+    ASSERT_TRUE(needed.fits);
+    EXPECT_EQ(needed.pages, 4u);
+    for (const Packing* packing : {&full, &needed}) {
+        std::vector<int> on_page(4, 0);
+        for (const std::uint32_t page : packing->page) ++on_page.at(page);
+        EXPECT_EQ(on_page, std::vector<int>(4, 9));
+    }
+    options.texels_per_unit = 600;
+    EXPECT_EQ(pack(squares, options).too_large.size(), 36u);
+}
+
 TEST(Pack, FindsTheSizeThatAScaleNeeds) {
     Random random(9);
     std::vector<Polygon> borders;
