@@ -161,6 +161,10 @@ void bowl(const std::filesystem::path& folder) {
     const render::View inside{.azimuth = -70 * kDegree, .elevation = 45 * kDegree};
     draw(painting, outside, folder / "bowl-outside");
     draw(painting, inside, folder / "bowl-inside");
+    render::View near{.azimuth = 60 * kDegree, .elevation = 55 * kDegree};
+    near.target = rim->frame.origin;
+    near.width_at_target = 0.03;
+    draw(painting, near, folder / "bowl-rim");
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ struct Rows {
 };
 
 /// Texel → picture, in cells, for the texels that are `mine`; see `atlas::log_map` for the formula.
-template <bool plane>
+/// The others stay as they are, or lie outside when this is the `only` frame.
+template <bool plane, bool only>
 [[gnu::always_inline]] inline void map_texels(const TexelShape& shape, const PieceFrame& f, Rows rows,
                                               const std::int32_t* __restrict mine,
                                               float* __restrict fu, float* __restrict fv) {
@@ -71,16 +72,22 @@ template <bool plane>
         const float v =
             v0 + (dx * vx + dy * vy + dz * vz) + h * (mx[t] * vx + my[t] * vy + mz[t] * vz);
         const bool seen = (mine[t] != 0) & (c > least_cos);
-        fu[t] = seen ? u : fu[t];
-        fv[t] = seen ? v : fv[t];
+        if constexpr (only) {
+            fu[t] = seen ? u : kOutside;
+            fv[t] = seen ? v : kOutside;
+        } else {
+            fu[t] = seen ? u : fu[t];
+            fv[t] = seen ? v : fv[t];
+        }
     }
 }
 
+template <bool only>
 [[gnu::always_inline]] inline void map_texels(const TexelShape& shape, const PieceFrame& f, Rows rows,
                                               bool plane, const std::int32_t* __restrict mine,
                                               float* __restrict fu, float* __restrict fv) {
-    if (plane) map_texels<true>(shape, f, rows, mine, fu, fv);
-    else map_texels<false>(shape, f, rows, mine, fu, fv);
+    if (plane) map_texels<true, only>(shape, f, rows, mine, fu, fv);
+    else map_texels<false, only>(shape, f, rows, mine, fu, fv);
 }
 
 /// Adds one to `mine` at the texels of a piece.
@@ -157,18 +164,18 @@ template <bool plane>
         if (own.full || !jobs.piecewise) mark(tile, own.piece, rows, own.full ? full : mine);
     }
     if (all.begin < all.end) {
-        for (int t = all.begin; t < all.end; ++t) fu[t] = fv[t] = kOutside;
         if (jobs.piecewise) {
+            for (int t = all.begin; t < all.end; ++t) fu[t] = fv[t] = kOutside;
             for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
                 const PieceFrame& own = jobs.frames[k];
                 if (own.full) continue;
                 const Rows rows = rows_of(own);
                 std::fill(mine + rows.begin, mine + rows.end, 0);
                 mark(tile, own.piece, rows, mine);
-                map_texels(shape, own, rows, plane, mine, fu, fv);
+                map_texels<false>(shape, own, rows, plane, mine, fu, fv);
             }
         } else {
-            map_texels(shape, jobs.stamp_frame, all, plane, mine, fu, fv);
+            map_texels<true>(shape, jobs.stamp_frame, all, plane, mine, fu, fv);
         }
         const Rows hit = rows_in_picture(jobs, all, fu, fv);
         for (const SubPose& pose : jobs.sub_poses) gather(jobs, pose, hit, fu, fv, sum);
