@@ -36,6 +36,8 @@ constexpr std::array<Shipped, static_cast<std::size_t>(Act::count)> kShipped{{
     {"mask", "Mask", {GLFW_KEY_M, 0}},
     {"lighter", "Press less", {GLFW_KEY_LEFT_BRACKET, 0}},
     {"heavier", "Press more", {GLFW_KEY_RIGHT_BRACKET, 0}},
+    {"smaller", "Smaller brush", {GLFW_KEY_LEFT_BRACKET, kShift}},
+    {"larger", "Larger brush", {GLFW_KEY_RIGHT_BRACKET, kShift}},
     {"lean-left", "Lean to the left", {GLFW_KEY_LEFT, 0}},
     {"lean-right", "Lean to the right", {GLFW_KEY_RIGHT, 0}},
     {"lean-away", "Lean away", {GLFW_KEY_UP, 0}},

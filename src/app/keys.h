@@ -12,7 +12,7 @@ enum class Act {
     open, save, export_to, quit, keys,
     undo, redo, delete_stroke,
     brush, line, curve, writing, eraser, fill, pick, mask,
-    lighter, heavier, lean_left, lean_right, lean_away, lean_near, upright,
+    lighter, heavier, smaller, larger, lean_left, lean_right, lean_away, lean_near, upright,
     frame_all, frame_cursor, front, back, right, left, top, bottom, parallel,
     see_through, atlas, palette, next_shading,
     count

@@ -60,7 +60,7 @@ const brush::Preset& preset_of(const std::string& name) {
 
 void brush_cell(Session& s, const std::string& name, const std::string& sort, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const bool chosen = name == s.brush;
+    const bool chosen = name == brush::sized_name(s.brush).base;
     const float height = s.ui.px(kRackHeight);
     if (ImGui::InvisibleButton(name.c_str(), ImVec2(width, height))) s.brush = name;
     s.ui.mark(name);
@@ -103,7 +103,12 @@ void brush_rack(Session& s) {
     for (const auto& [sort, names] : sorts)
         if (names.size() > 1) row(sort.c_str(), names);
     if (!single.empty()) row("other", single);
-    ImGui::TextUnformatted(s.ui.tr(s.brush.c_str()));
+    brush::SizedName sized = brush::sized_name(s.brush);
+    const double thick = 2 * preset_of(sized.base).radius;
+    ImGui::TextUnformatted(s.ui.tr(sized.base.c_str()));
+    double now = thick * sized.factor;
+    if (s.ui.slider("Tuft size", now, thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm", "How thick it is; its length goes with it", kMillimetre))
+        size_brush(s, now / thick);
 }
 
 // The curve from a pen's pressure to the brush's depth; its ends and its middle can be dragged. The dot

@@ -22,7 +22,7 @@
 ///   type TEXT
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
-///   set NAME VALUE          texels (of the model asked about), brush, ink, shading, light, parallel, azimuth, elevation, zoom,
+///   set NAME VALUE          texels (of the model asked about), brush, brush-size, ink, shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
 ///                           export-picture-width, pressure, writing-width (mm), string, radial, mirror, carry, tool, language, theme, scale, section,
 ///                           see-through, atlas, draw-every (frames of which one is drawn, for tests)

@@ -1,12 +1,14 @@
 #include "app/session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
 
+#include "brush/preset.h"
 #include "core/files.h"
 #include "core/units.h"
 
@@ -95,6 +97,10 @@ const ink::Ink* find_ink(const Session& s, const std::string& name) {
         // Whoever paints with it hears why.
     }
     return at->second ? &*at->second : nullptr;
+}
+
+void size_brush(Session& s, double factor) {
+    s.brush = brush::name_of({brush::sized_name(s.brush).base, std::round(1e3 * factor) / 1e3});
 }
 
 void show_palette(Session& s, bool on) {

@@ -181,6 +181,8 @@ void save_ink(Session& s, const std::filesystem::path& path);
 const ink::Ink* find_ink(const Session& s, const std::string& name);
 /// Shows the palette or puts it away. With it out, the brush keeps what is in it.
 void show_palette(Session& s, bool on);
+/// Takes the brush in hand in another size, times that of its make, within what there is.
+void size_brush(Session& s, double factor);
 /// Keeps strokes to a mask and veils what it leaves out; 0: none.
 void choose_mask(Session& s, std::uint32_t id);
 /// Looks at a model that shall take the place of the one in work, with its strokes.

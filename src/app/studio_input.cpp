@@ -205,6 +205,8 @@ void Studio::perform(Act act) {
         case Act::parallel: o.parallel = !o.parallel; break;
         case Act::lighter: s.hand.pressure = std::max(0.02, s.hand.pressure - 0.05); break;
         case Act::heavier: s.hand.pressure = std::min(1.0, s.hand.pressure + 0.05); break;
+        case Act::smaller: size_brush(s, brush::sized_name(s.brush).factor / 1.1); break;
+        case Act::larger: size_brush(s, brush::sized_name(s.brush).factor * 1.1); break;
         case Act::lean_left: tilt(-1, 0); break;
         case Act::lean_right: tilt(1, 0); break;
         case Act::lean_away: tilt(0, 1); break;

@@ -18,6 +18,7 @@ void Studio::set(const std::string& name, const std::string& value) {
         throw Error("unknown " + name + " '" + value + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
     };
     if (name == "brush") s.brush = s.brushes[static_cast<std::size_t>(one_of(s.brushes))];
+    else if (name == "brush-size") size_brush(s, number);
     else if (name == "ink" || name == "tip-ink") {
         std::vector<std::string> names = s.inks;
         for (const ink::Ink& ink : s.own_inks) names.push_back(ink.name);

@@ -74,7 +74,7 @@ constexpr std::pair<const char*, const char*> kTexts[] = {
     {"Pen: from its force to the brush's depth", "笔：由压力到下笔深度"}, {"Drag its ends and its middle; a double click makes it straight", "拖动两端与中点；双击复原"},
     {"Keys...", "按键…"}, {"Mouse", "鼠标"}, {"Keys", "按键"}, {"Click a key to change it.", "单击按键即可更改。"}, {"press a key...", "请按键…"}, {"As shipped", "恢复默认"},
     {" has no key now.", " 现在没有按键。"}, {"Save as", "另存为"}, {"Delete the chosen stroke", "删除所选笔画"}, {"Place writing", "摆放字画"},
-    {"Press less", "轻一点"}, {"Press more", "重一点"}, {"Lean to the left", "向左倾"}, {"Lean to the right", "向右倾"}, {"Lean away", "向外倾"}, {"Lean nearer", "向内倾"},
+    {"Press less", "轻一点"}, {"Press more", "重一点"}, {"Smaller brush", "笔小一点"}, {"Tuft size", "笔径"}, {"How thick it is; its length goes with it", "笔肚的粗细；笔毫长度随之变化"}, {"Larger brush", "笔大一点"}, {"Lean to the left", "向左倾"}, {"Lean to the right", "向右倾"}, {"Lean away", "向外倾"}, {"Lean nearer", "向内倾"},
     {"Hold it upright", "扶正"}, {"Frame the cursor", "移到光标处"}, {"Next way of showing the model", "下一种显示方式"},
     {"Curve: paint it, remove a point, drop it", "曲线：绘制、去点、放弃"}, {"Maps", "贴图"}, {"Pictures", "图片"}, {"As painted", "与绘制时相同"}, {"None", "无"},
     {"One, as seen now", "一张，现在所见"}, {"24 all round", "环绕 24 张"}, {"72 all round", "环绕 72 张"}, {"Taking pictures", "正在拍照"},

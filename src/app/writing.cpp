@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/preset.h"
 #include "core/error.h"
 #include "io/svg.h"
 #include "stroke/placement.h"
@@ -62,6 +63,10 @@ std::vector<stroke::Trace> placed_traces(const Writing& w, const stroke::Placeme
         trace.placement = placement;
         trace.placed = true;
         trace.before.clear();
+        if (!trace.brush.empty()) {
+            const brush::SizedName own = brush::sized_name(trace.brush);
+            trace.brush = brush::name_of({own.base, own.factor * w.scale});
+        }
         for (stroke::TraceSample& s : trace.samples) {
             s.position *= w.scale;
             s.time *= std::max(0.2, w.scale);  // the same pace for larger letters
