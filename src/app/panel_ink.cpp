@@ -110,9 +110,9 @@ void ink_section(Session& s) {
     if (ui.choice("Palette", s.palette.shown, "A plate on which brushes mix inks (P)", part_of_row(s, 1))) show_palette(s, !s.palette.shown);
     ui.toggle("Wet ink", s.wet, "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.wet || s.last.wet) {
-        if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", half)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
+        if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
         ImGui::SameLine();
-        if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", half)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush});
+        if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1))) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush});
     }
     ui.toggle("Carry ink over", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
     if (s.carry) care(s);

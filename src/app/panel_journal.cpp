@@ -17,9 +17,11 @@ void draw_way(const Session& s, const StrokeLine& line, ImVec2 at, float size) {
         return;
     }
     draw->AddRectFilled(at, ImVec2(at.x + size, at.y + size), IM_COL32(238, 236, 230, line.hidden ? 70 : 255), 3);
+    draw->AddRect(at, ImVec2(at.x + size, at.y + size), IM_COL32(128, 128, 128, 110), 3);
     const float pad = 0.16f * size, inner = size - 2 * pad;
     const unsigned colour = (ink_colour(s, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
-    for (std::size_t i = 1; i < line.way.size(); ++i) {
+    if (line.length < 1e-3) draw->AddCircleFilled(middle, 0.07f * size, colour, 16);  // a touch, no way
+    else for (std::size_t i = 1; i < line.way.size(); ++i) {
         const Vec3f &a = line.way[i - 1], &b = line.way[i];
         draw->AddLine(ImVec2(at.x + pad + a.x * inner, at.y + pad + a.y * inner),
                       ImVec2(at.x + pad + b.x * inner, at.y + pad + b.y * inner), colour, 1.0f + 0.055f * size * (a.z + b.z));

@@ -76,7 +76,7 @@ void layers_section(Session& s) {
         ui.hint("Seen or not");
         ImGui::SameLine();
         const bool chosen = layer.id == s.layer;
-        const std::string text = layer.name + (layer.locked ? std::string("  (") + ui.tr("locked") + ")" : "");
+        const std::string text = ui.tr_sentence(layer.name) + (layer.locked ? std::string("  (") + ui.tr("locked") + ")" : "");
         if (ImGui::Selectable(text.c_str(), chosen, 0, ImVec2(0, ImGui::GetFrameHeight() - ui.px(4)))) {
             s.layer_details = chosen ? !s.layer_details : true;
             s.layer = layer.id;

@@ -23,7 +23,7 @@ void status_bar(Session& s, float top) {
         ImGui::Text("%s: %s", s.ui.tr("Not kept on disk"), s.last.trouble.c_str());
         ImGui::PopStyleColor();
     } else if (!s.message.empty() && s.message_time < 12) {
-        ImGui::TextUnformatted(s.ui.tr(s.message.c_str()));
+        ImGui::TextUnformatted(s.ui.tr_sentence(s.message).c_str());
     } else {
         ImGui::TextDisabled("%s", s.ui.tr(s.keymap == Keymap::blender
                                               ? "Left: paint    Middle or right: turn    Shift+middle: move    Wheel: nearer    F1: all keys"
@@ -33,8 +33,11 @@ void status_bar(Session& s, float top) {
         char text[160];
         const stroke::Model& m = s.painter->model();
         std::snprintf(text, sizeof text, "%u \xc3\x97 %u   %.2f mm/texel", m.atlas.size, m.atlas.size, m.atlas.texel_size * 1e3);
-        ImGui::SameLine(screen.x - ImGui::CalcTextSize(text).x - s.ui.px(14));
-        ImGui::TextDisabled("%s", text);
+        const float x = screen.x - ImGui::CalcTextSize(text).x - s.ui.px(14);
+        if (ImGui::GetItemRectMax().x + s.ui.px(24) < x) {
+            ImGui::SameLine(x);
+            ImGui::TextDisabled("%s", text);
+        }
     }
     ImGui::End();
     ImGui::PopStyleVar(3);
@@ -101,6 +104,7 @@ void tuft_inset(Session& s) {
     if (!s.view.inset || !s.painter || s.tuft.branches.empty()) return;
     Ui& ui = s.ui;
     const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
+    if (static_cast<float>(s.area.width) < 2 * width || static_cast<float>(s.area.height) < 2 * height) return;  // the model needs the room
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y + s.area.height) - height - pad));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     ImGui::SetNextWindowBgAlpha(0.82f);

@@ -227,7 +227,7 @@ void fill_section(Session& s) {
     Ui& ui = s.ui;
     ui.heading("Fill");
     static constexpr std::pair<stroke::Region, const char*> regions[] = {
-        {stroke::Region::all, "Everything"}, {stroke::Region::part, "Part"}, {stroke::Region::chart, "Chart"}};
+        {stroke::Region::all, "All"}, {stroke::Region::part, "Part"}, {stroke::Region::chart, "Chart"}};
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     for (const auto& [region, name] : regions) {
         if (region != stroke::Region::all) ImGui::SameLine();

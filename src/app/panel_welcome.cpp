@@ -77,7 +77,7 @@ void welcome(Session& s) {
     if (!s.message.empty()) {
         ImGui::SameLine();
         ImGui::AlignTextToFramePadding();
-        ui.wrapped(ui.tr(s.message.c_str()));
+        ui.wrapped(ui.tr_sentence(s.message));
     }
     fs::path chosen;
     const float width_all = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;

@@ -20,7 +20,7 @@ namespace {
 constexpr double kTurnPause = 0.25;    // seconds without a turn of the wheel after which the view is still
 constexpr double kStillAfter = 0.4;    // seconds after the last event
 constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
-constexpr double kInkWait = 0.02, kInkPart = 0.5;  // seconds, and part of a frame's time, that the newest ink is waited for
+constexpr double kInkWait = 0.02, kInkPart = 0.2;  // seconds, and part of a frame's time, that the newest ink is waited for
 constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
 
 }  // namespace
@@ -173,8 +173,9 @@ void Studio::take_model() {
         for (std::size_t k = 0; k < 256; ++k) s.highest = std::max(s.highest, 0.1 * tile.rgba[k][3]);
     for (const render::TilePixels& tile : s.last.tiles) view_->texture_changed(tile.boxes);
     s.last.tiles.clear();
-    if (s.strokes.size() != strokes_seen_) {
+    if (s.strokes.size() != strokes_seen_ || (s.last.project != pictured_ && !s.strokes.empty())) {
         strokes_seen_ = s.strokes.size();
+        pictured_ = s.last.project;
         picture_due_ = now_ + kPictureAfter;
     }
 }

@@ -115,6 +115,7 @@ class Studio {
     double now_ = 0, last_event_ = 0, last_turn_ = -1, picture_due_ = 0;
     std::size_t strokes_seen_ = 0, frames_ = 0, draw_every_ = 1;
     std::vector<double> delays_;
+    std::filesystem::path pictured_;          ///< project whose picture is due, or kept
     std::deque<double> asked_;                ///< when each sample was taken whose ink is not shown yet
     std::size_t samples_ = 0;
 };

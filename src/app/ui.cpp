@@ -129,6 +129,31 @@ const char* Ui::tr(const char* english) const {
     return text ? text : english;
 }
 
+std::string Ui::tr_sentence(const std::string& english) const {
+    if (settings_.language == Language::english) return english;
+    if (const char* text = chinese_text(english.c_str())) return text;
+    for (const char* beginning : {"Saved as ", "Exported "})
+        if (english.starts_with(beginning)) return tr(beginning) + english.substr(std::strlen(beginning));
+    std::string pattern;
+    std::vector<std::string> numbers;
+    for (std::size_t i = 0; i < english.size();) {
+        const std::size_t end = std::min(english.find_first_not_of("0123456789", i), english.size());
+        if (end == i) {
+            pattern += english[i++];
+            continue;
+        }
+        numbers.push_back(english.substr(i, end - i));
+        pattern += '#';
+        i = end;
+    }
+    const char* text = chinese_text(pattern.c_str());
+    if (!text) return english;
+    std::string out;
+    std::size_t n = 0;
+    for (const char* c = text; *c; ++c) *c == '#' && n < numbers.size() ? out += numbers[n++] : out += *c;
+    return out;
+}
+
 std::string Ui::id(const char* label) const { return std::string(tr(label)) + "##" + label; }
 
 void Ui::begin_frame() {

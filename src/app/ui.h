@@ -31,6 +31,8 @@ class Ui {
 
     /// The text in the chosen language.
     const char* tr(const char* english) const;
+    /// A sentence with numbers or a name in it: its table has # for each number, or only its beginning.
+    std::string tr_sentence(const std::string& english) const;
     /// Pixels of a length given for a scale of 1.
     float px(float length) const { return length * settings_.scale; }
 
