@@ -28,7 +28,11 @@ inline constexpr int kSoakedFilm = 0, kFirstDryFilm = 1, kOpenFilm = kFilms - 1;
 enum class Liquid : std::uint8_t { film, pores };
 
 /// Amounts of one pigment (or of liquid) on one tile, film units, texel t = row * 16 + column.
-struct alignas(64) Plane : std::array<float, atlas::kTileTexels> {};
+struct alignas(64) Plane : std::array<float, atlas::kTileTexels> {
+    /// From a pool of large pages (plane_pool.cpp); any thread.
+    static void* operator new(std::size_t bytes);
+    static void operator delete(void* plane, std::size_t bytes);
+};
 
 /// Planes of a film below the open one in a snapshot, or of the liquid (`film` = kFilms,
 /// bit 0 the open film's, bit 1 the pores').

@@ -38,7 +38,7 @@ struct Active {
     PlanePtr w, s;                          ///< of the step's end; between steps: spare
     std::array<PlanePtr, kMaxPigments> p;
     std::uint32_t pigments = 0;             ///< bits: those computed
-    std::array<std::uint8_t, kTexels> closing{};
+    std::unique_ptr<std::array<std::uint8_t, kTexels>> closing;  ///< where outcome.closing
 
     bool wet() const { return outcome.most_w + outcome.most_s > 0; }
 };
@@ -48,33 +48,19 @@ struct Active {
 template <class PlaneOf>
 bool load(Field& field, const std::vector<Active>& list, const std::array<std::uint32_t, 9>& around,
           PlaneOf&& plane_of) {
-    std::array<const Plane*, 9> planes;
+    static constexpr Plane kDry{};
+    std::array<const float*, 9> planes;
     bool any = false;
     for (int i = 0; i < 9; ++i) {
-        planes[i] = around[i] == kNone ? nullptr : plane_of(list[around[i]]);
-        any |= planes[i] != nullptr;
+        const Plane* plane = around[i] == kNone ? nullptr : plane_of(list[around[i]]);
+        any |= plane != nullptr;
+        planes[i] = (plane ? plane : &kDry)->data();
     }
-    if (!any) return false;
-    const auto row_from = [&](int field_row, int tiles, int row) {
-        float* to = &field[field_row * kRow];
-        const Plane *left = planes[tiles], *here = planes[tiles + 1], *right = planes[tiles + 2];
-        to[0] = left ? (*left)[row * kSide + kSide - 1] : 0;
-        if (here) std::copy_n(&(*here)[row * kSide], kSide, to + 1);
-        else std::fill_n(to + 1, kSide, 0.0f);
-        to[kSide + 1] = right ? (*right)[row * kSide] : 0;
-    };
-    row_from(0, 0, kSide - 1);
-    for (int row = 0; row < kSide; ++row) row_from(row + 1, 3, row);
-    row_from(kSide + 1, 6, 0);
-    return true;
+    if (any) gather(field, planes);
+    return any;
 }
 
 float at(const Plane* plane, int t) { return plane ? (*plane)[t] : 0; }
-
-float* room(PlanePtr& plane) {
-    if (!plane) plane = std::make_unique<Plane>();
-    return plane->data();
-}
 
 bool all_zero(const Plane& plane) {
     return std::all_of(plane.begin(), plane.end(), [](float v) { return v == 0.0f; });
@@ -110,6 +96,7 @@ struct WetFilm::State {
     Vec3 down{0};
     std::vector<Active> list;
     std::vector<std::uint8_t> told;
+    std::vector<PlanePtr> spare;  ///< planes for tiles to come: making them costs as much as a step
 
     State(const atlas::TexelMap& m, atlas::SeamLinks s)
         : map(m), seams(std::move(s)), geometry(m.n_slots()), slopes(m.n_slots()), mark(m.n_slots(), 0), place(m.n_slots(), kNone) {
@@ -158,19 +145,19 @@ struct WetFilm::State {
 
     void begin(const Canvas& canvas) {
         told.assign(map.n_slots(), 0);
+        const std::vector<std::uint32_t> wet = canvas.wet_slots();
         list.clear();
-        for (const std::uint32_t slot : canvas.wet_slots()) {
-            Active tile;
-            tile.slot = slot;
-            tile.outcome.sides = 15;
-            tile.seam_wet = true;
-            const Plane *w = canvas.liquid(slot, Liquid::film), *s = canvas.liquid(slot, Liquid::pores);
-            for (int t = 0; t < kTexels; ++t) {
-                tile.outcome.most_w = std::max(tile.outcome.most_w, at(w, t));
-                tile.outcome.most_s = std::max(tile.outcome.most_s, at(s, t));
+        list.resize(wet.size());
+        parallel_for(wet.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                Active& tile = list[i];
+                tile.slot = wet[i];
+                tile.outcome.sides = 15;
+                tile.seam_wet = true;
+                if (const Plane* w = canvas.liquid(wet[i], Liquid::film)) tile.outcome.most_w = greatest(w->data());
+                if (const Plane* s = canvas.liquid(wet[i], Liquid::pores)) tile.outcome.most_s = greatest(s->data());
             }
-            list.push_back(std::move(tile));
-        }
+        });
         spread();
     }
 
@@ -214,6 +201,38 @@ struct WetFilm::State {
                 if (others[i].empty() || others[i].back().first != l.other_slot)
                     others[i].push_back({l.other_slot, place[l.other_slot]});
         for (const Active& tile : list) place[tile.slot] = kNone;
+    }
+
+    /// Gives the tiles planes for the results of a step, those of the same places as far as there are any.
+    void equip(const Canvas& canvas) {
+        const int pigments = static_cast<int>(canvas.pigments().size());
+        const auto give = [&](PlanePtr& plane) {
+            if (plane) return;
+            if (spare.empty()) {
+                plane = std::make_unique<Plane>();
+            } else {
+                plane = std::move(spare.back());
+                spare.pop_back();
+            }
+        };
+        for (Active& tile : list) {
+            give(tile.w);
+            give(tile.s);
+            for (int p = 0; p < pigments; ++p) give(tile.p[p]);
+        }
+    }
+
+    void keep_spare(const Canvas& canvas) {
+        const auto take = [&](PlanePtr& plane) {
+            if (plane) spare.push_back(std::move(plane));
+        };
+        for (std::size_t i = list.size(); i-- > 0;) {
+            for (int p = kMaxPigments; p-- > 0;) take(list[i].p[p]);
+            take(list[i].s);
+            take(list[i].w);
+        }
+        list.clear();
+        if (!canvas.wet()) spare.clear();
     }
 
     /// Whether other tiles may be reached after this step than before it.
@@ -283,7 +302,7 @@ struct WetFilm::State {
         std::uint8_t texel, other_texel;
         const Active* other;
         float out, in;  ///< dp = −out c(texel) + in c(other)
-        float other_total;
+        float other_rate;
     };
     void seam_fluxes(std::size_t index, const Step& step, Work& work, std::vector<Carried>& carried) const {
         const Active& tile = list[index];
@@ -315,7 +334,7 @@ struct WetFilm::State {
             const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
             work.dw[l.texel] += sign * f.w * inverse;
             work.ds[l.texel] += sign * f.s * inverse;
-            carried.push_back({l.texel, l.other_texel, other, first ? f.a : -f.b, first ? -f.b : f.a, u});
+            carried.push_back({l.texel, l.other_texel, other, first ? f.a : -f.b, first ? -f.b : f.a, u > 0 ? 1 / u : 0});
         }
     }
 
@@ -328,7 +347,7 @@ struct WetFilm::State {
         const bool any_s = load(work.s, list, tile.around, [](const Active& a) { return a.liquid[1]; });
         if (!any_s) work.s.fill(0);
         fluxes(work, g, slopes[tile.slot].get(), step);
-        liquid_changes(work, g);
+        liquid_changes(work, g, step);
         seam_fluxes(index, step, work, carried);
         // From what is there and nothing else: the same whenever this journal is painted.
         const std::uint64_t seed =
@@ -340,25 +359,29 @@ struct WetFilm::State {
         tile.pigments = 0;
         tile.idle = !any_w && !any_s && carried.empty();
         if (tile.idle) return;
-        tile.outcome = local_step(room(tile.w), room(tile.s), work, g, step, seed, tile.closing.data());
+        std::array<std::uint8_t, kTexels> closing;
+        tile.outcome = local_step(tile.w->data(), tile.s->data(), work, g, step, seed, closing);
+        if (tile.outcome.closing) {
+            if (!tile.closing) tile.closing = std::make_unique<std::array<std::uint8_t, kTexels>>();
+            *tile.closing = closing;
+        }
         tile.seam_wet = false;
         for (const atlas::SeamLink& l : tile.links)
             tile.seam_wet = tile.seam_wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
         tile.spreads = before.sides != tile.outcome.sides || seam_was != tile.seam_wet ||
                        (before.most_w + before.most_s > 0) != tile.wet();
-        alignas(64) Field field{};
         for (int p = 0; p < pigments; ++p) {
-            bool any = load(field, list, tile.around, [p](const Active& a) { return a.open[p]; });
-            if (!any) field.fill(0);
+            bool any = load(work.p, list, tile.around, [p](const Active& a) { return a.open[p]; });
+            if (!any) work.p.fill(0);
             for (const Carried& c : carried) any = any || c.other->open[p];
             if (!any) continue;
-            concentrations(work, field);
-            pigment_changes(work, g);
+            if (!carried.empty()) work.dp.fill(0);
             for (const Carried& c : carried) {
-                const float there = c.other_total > 0 ? at(c.other->open[p], c.other_texel) / c.other_total : 0;
-                work.dp[c.texel] += (c.in * there - c.out * work.c[field_of(c.texel)]) * g.inverse[c.texel];
+                const int k = field_of(c.texel);
+                const float there = at(c.other->open[p], c.other_texel) * c.other_rate;
+                work.dp[c.texel] += (c.in * there - c.out * (work.p[k] * work.rate[k])) * g.inverse[c.texel];
             }
-            add_pigment(room(tile.p[p]), work, field, seed + 1 + static_cast<std::uint64_t>(p));
+            pigment_step(tile.p[p]->data(), work, g, !carried.empty(), seed + 1 + static_cast<std::uint64_t>(p));
             tile.pigments |= 1u << p;
         }
     }
@@ -395,7 +418,7 @@ struct WetFilm::State {
         for (int p = 0; p < kMaxPigments; ++p)
             if (tile.pigments >> p & 1 && (canvas.plane(tile.slot, p) || !all_zero(*tile.p[p])))
                 canvas.swap_open(tile.slot, p, tile.p[p]);
-        if (tile.outcome.closing) close_films(canvas, tile.slot, tile.closing, stain);
+        if (tile.outcome.closing) close_films(canvas, tile.slot, *tile.closing, stain);
     }
 
     void step(Canvas& canvas, const FilmParams& params, const Step& rates, FilmReport& report) {
@@ -433,6 +456,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.begin(canvas);
     for (double left = seconds; left > 0 && !s.list.empty();) {
         s.prepare(params.down);
+        s.equip(canvas);
         if (before)
             for (const Active& tile : s.list)
                 if (!s.told[tile.slot]) {
@@ -445,7 +469,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
         if (s.changed()) s.spread();
     }
-    s.list.clear();
+    s.keep_spare(canvas);
     return report;
 }
 

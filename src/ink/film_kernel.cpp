@@ -6,210 +6,264 @@
 #include "ink/film_tile.h"
 #include "ink/simd.h"
 
-// One flat loop per quantity over the whole field, so that they vectorise; faces that are none
-// have conductance 0.
+// Loops over rows of sixteen that vectorise; faces that are none have conductance 0.
+#define TUFT_INLINE inline __attribute__((always_inline))
+
 namespace tuft::ink::wet {
 namespace {
 
-constexpr int kLanes = 16;
+constexpr int kLanes = kSide;
 
-inline float larger(float a, float b) { return a > b ? a : b; }
-inline float smaller(float a, float b) { return a < b ? a : b; }
-inline float positive(float a) { return a > 0 ? a : 0; }
+TUFT_INLINE float larger(float a, float b) { return a > b ? a : b; }
+TUFT_INLINE float smaller(float a, float b) { return a < b ? a : b; }
+TUFT_INLINE float positive(float a) { return a > 0 ? a : 0; }
 
-/// Flux of liquid on the surface between two texels, film units · mean area.
-inline float film_flux(float g, float w0, float w1, float t0, float t1, float grain0, float grain1,
-                       const Step& p) {
-    const float onto0 = t0 > 0 ? 0 : p.pin * grain0, onto1 = t1 > 0 ? 0 : p.pin * grain1;
-    const float held = p.threshold + (onto0 + onto1);
-    const float above = 0.5f * (positive(w0 - held) + positive(w1 - held));
-    const float free = 0.5f * (positive(w0 - p.hold) + positive(w1 - p.hold));
-    return g * smaller(p.flow * above + (above > 0 ? p.levelling * free : 0), p.limit) * (w0 - w1);
+/// One end of a face.
+struct End {
+    float w, s, t, rate, grain;
+};
+/// Rows of them.
+struct Ends {
+    const float *w, *s, *t, *rate, *grain;
+
+    TUFT_INLINE End at(int x) const { return {w[x], s[x], t[x], rate[x], grain[x]}; }
+};
+TUFT_INLINE Ends ends(const Work& o, const Geometry& g, int k) {
+    return {&o.w[k], &o.s[k], &o.total[k], &o.rate[k], &g.grain[k]};
 }
 
-inline float pore_flux(float g, float s0, float s1, const Step& p) {
-    return g * smaller(p.flow * (0.5f * (s0 + s1)), p.limit) * (s0 - s1);
-}
+/// What differs between tiles; all give the same numbers where they apply.
+template <bool kPores, bool kWeight, bool kDry>
+struct Law {
+    static constexpr bool pores = kPores, weight = kWeight;
 
-/// Of weight: upwind, cubic in the thickness.
-inline float weight_flux(float slope, float w0, float w1, float t0, float t1, float grain0,
-                         float grain1, const Step& p) {
-    const float from = slope > 0 ? w0 : w1;
-    const float onto = (slope > 0 ? t1 : t0) > 0 ? 0 : 2 * p.pin * (slope > 0 ? grain1 : grain0);
-    const float free = positive(from - (p.hold + onto));
-    const float speed = p.weight * (free * free) * slope;
-    return (speed > p.run ? p.run : (speed < -p.run ? -p.run : speed)) * from;
-}
+    /// Flux of liquid on the surface between two texels, film units · mean area.
+    static TUFT_INLINE float film_flux(float g, const End& e0, const End& e1, const Step& p) {
+        float held = p.threshold;
+        if constexpr (kDry) {
+            const float onto0 = e0.t > 0 ? 0 : p.pin * e0.grain, onto1 = e1.t > 0 ? 0 : p.pin * e1.grain;
+            held = held + (onto0 + onto1);
+        }
+        const float above = 0.5f * (positive(e0.w - held) + positive(e1.w - held));
+        const float free = 0.5f * (positive(e0.w - p.hold) + positive(e1.w - p.hold));
+        return g * smaller(p.flow * above + (above > 0 ? p.levelling * free : 0), p.limit) * (e0.w - e1.w);
+    }
+
+    static TUFT_INLINE float pore_flux(float g, const End& e0, const End& e1, const Step& p) {
+        return g * smaller(p.flow * (0.5f * (e0.s + e1.s)), p.limit) * (e0.s - e1.s);
+    }
+
+    /// Of weight: upwind, cubic in the thickness.
+    static TUFT_INLINE float weight_flux(float slope, const End& e0, const End& e1, const Step& p) {
+        const float from = slope > 0 ? e0.w : e1.w;
+        const float onto = (slope > 0 ? e1.t : e0.t) > 0 ? 0 : 2 * p.pin * (slope > 0 ? e1.grain : e0.grain);
+        const float free = positive(from - (p.hold + onto));
+        const float speed = p.weight * (free * free) * slope;
+        return (speed > p.run ? p.run : (speed < -p.run ? -p.run : speed)) * from;
+    }
+};
 
 struct Carriers {
     float a, b;
 };
-inline Carriers carriers(float g, float flux, float t0, float t1, const Step& p) {
+TUFT_INLINE Carriers carriers(float g, float flux, float t0, float t1, const Step& p) {
     const float exchange = p.mixing * g * smaller(t0, t1);
     return {positive(flux) + exchange, -positive(-flux) - exchange};
 }
 
-TUFT_CLONES void totals(float* __restrict t, const float* __restrict w, const float* __restrict s) {
-    for (int k = 0; k < kPadded; ++k) t[k] = w[k] + s[k];
-}
-
-template <int kStep>
-inline __attribute__((always_inline)) void film_faces(float* __restrict f, const float* __restrict g,
-                                                      const float* __restrict w,
-                                                      const float* __restrict t,
-                                                      const float* __restrict grain, const Step& p) {
-    for (int k = 0; k < kField; ++k)
-        f[k] = film_flux(g[k], w[k], w[k + kStep], t[k], t[k + kStep], grain[k], grain[k + kStep], p);
-}
-template <int kStep>
-inline __attribute__((always_inline)) void pore_faces(float* __restrict f, const float* __restrict g,
-                                                      const float* __restrict s, const Step& p) {
-    for (int k = 0; k < kField; ++k) f[k] = pore_flux(g[k], s[k], s[k + kStep], p);
-}
-template <int kStep>
-inline __attribute__((always_inline)) void weight_faces(float* __restrict f, const float* __restrict slope,
-                                                        const float* __restrict w,
-                                                        const float* __restrict t,
-                                                        const float* __restrict grain, const Step& p) {
-    for (int k = 0; k < kField; ++k)
-        f[k] += weight_flux(slope[k], w[k], w[k + kStep], t[k], t[k + kStep], grain[k], grain[k + kStep], p);
-}
-template <int kStep>
-inline __attribute__((always_inline)) void carrier_faces(float* __restrict a, float* __restrict b,
-                                                         const float* __restrict g,
-                                                         const float* __restrict fw,
-                                                         const float* __restrict fs,
-                                                         const float* __restrict t, const Step& p) {
-    for (int k = 0; k < kField; ++k) {
-        const Carriers c = carriers(g[k], fw[k] + fs[k], t[k], t[k + kStep], p);
-        a[k] = c.a;
-        b[k] = c.b;
+/// Sixteen faces.
+template <class Law>
+TUFT_INLINE void faces(float* w, float* s, float* a, float* b, const float* g, const float* slope,
+                       const Ends& from, const Ends& to, const Step& p) {
+#pragma GCC ivdep
+    for (int x = 0; x < kSide; ++x) {
+        const End e0 = from.at(x), e1 = to.at(x);
+        float fw = Law::film_flux(g[x], e0, e1, p);
+        if constexpr (Law::weight) fw += Law::weight_flux(slope[x], e0, e1, p);
+        float all = fw;
+        if constexpr (Law::pores) {
+            const float fs = Law::pore_flux(g[x], e0, e1, p);
+            s[x] = fs;
+            all = fw + fs;
+        }
+        const Carriers c = carriers(g[x], all, e0.t, e1.t, p);
+        w[x] = fw;
+        a[x] = c.a * e0.rate;
+        b[x] = c.b * e1.rate;
     }
 }
 
-TUFT_CLONES void faces_x(Work& o, const Geometry& g, const Step& p) {
-    film_faces<1>(o.fw_x.data(), g.gx.data(), o.w.data(), o.total.data(), g.grain.data(), p);
-}
-TUFT_CLONES void faces_y(Work& o, const Geometry& g, const Step& p) {
-    film_faces<kRow>(o.fw_y.data(), g.gy.data(), o.w.data(), o.total.data(), g.grain.data(), p);
-}
-TUFT_CLONES void pores_xy(Work& o, const Geometry& g, const Step& p) {
-    pore_faces<1>(o.fs_x.data(), g.gx.data(), o.s.data(), p);
-    pore_faces<kRow>(o.fs_y.data(), g.gy.data(), o.s.data(), p);
-}
-TUFT_CLONES void weight_x(Work& o, const Geometry& g, const Slopes& slopes, const Step& p) {
-    weight_faces<1>(o.fw_x.data(), slopes.x.data(), o.w.data(), o.total.data(), g.grain.data(), p);
-}
-TUFT_CLONES void weight_y(Work& o, const Geometry& g, const Slopes& slopes, const Step& p) {
-    weight_faces<kRow>(o.fw_y.data(), slopes.y.data(), o.w.data(), o.total.data(), g.grain.data(), p);
-}
-TUFT_CLONES void carriers_xy(Work& o, const Geometry& g, const Step& p) {
-    carrier_faces<1>(o.ax.data(), o.bx.data(), g.gx.data(), o.fw_x.data(), o.fs_x.data(), o.total.data(), p);
-    carrier_faces<kRow>(o.ay.data(), o.by.data(), g.gy.data(), o.fw_y.data(), o.fs_y.data(), o.total.data(), p);
-}
-
-/// A square has one diagonal at most: from k to k + 19 where gd > 0, else from k + 1 to k + 18.
-TUFT_CLONES void diagonals(float* __restrict fw, float* __restrict fs, float* __restrict a,
-                           float* __restrict b, const float* __restrict gd,
-                           const float* __restrict w, const float* __restrict s,
-                           const float* __restrict t, const float* __restrict grain, const Step& p) {
-    for (int k = 0; k < kField; ++k) {
-        const bool up = gd[k] > 0;
-        const float g = up ? gd[k] : -gd[k];
-        const float w0 = up ? w[k] : w[k + 1], w1 = up ? w[k + kRow + 1] : w[k + kRow];
-        const float s0 = up ? s[k] : s[k + 1], s1 = up ? s[k + kRow + 1] : s[k + kRow];
-        const float t0 = up ? t[k] : t[k + 1], t1 = up ? t[k + kRow + 1] : t[k + kRow];
-        const float n0 = up ? grain[k] : grain[k + 1], n1 = up ? grain[k + kRow + 1] : grain[k + kRow];
-        fw[k] = film_flux(g, w0, w1, t0, t1, n0, n1, p);
-        fs[k] = pore_flux(g, s0, s1, p);
-        const Carriers c = carriers(g, fw[k] + fs[k], t0, t1, p);
-        a[k] = c.a;
-        b[k] = c.b;
+/// The left sides of the first column, as one row.
+template <class Law>
+TUFT_INLINE void left_faces(Faces& f, const Work& o, const Geometry& g, const float* slope, const Step& p) {
+    alignas(64) float in[2][5][kSide], out[4][kSide];
+    for (int side = 0; side < 2; ++side)
+        for (int row = 0; row < kSide; ++row) {
+            const int k = field_at(side - 1, row);
+            in[side][0][row] = o.w[k];
+            in[side][1][row] = o.s[k];
+            in[side][2][row] = o.total[k];
+            in[side][3][row] = o.rate[k];
+            in[side][4][row] = g.grain[k];
+        }
+    const auto& [l, r] = in;
+    faces<Law>(out[0], out[1], out[2], out[3], g.gx_left.data(), slope, {l[0], l[1], l[2], l[3], l[4]},
+               {r[0], r[1], r[2], r[3], r[4]}, p);
+    for (int row = 0; row < kSide; ++row) {
+        const int k = field_at(-1, row);
+        f.w[k] = out[0][row];
+        if constexpr (Law::pores) f.s[k] = out[1][row];
+        f.a[k] = out[2][row];
+        f.b[k] = out[3][row];
     }
 }
 
-TUFT_CLONES void divergence(float* __restrict d, const float* __restrict fx, const float* __restrict fy,
+template <class Law>
+TUFT_INLINE void straight_faces(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
+    left_faces<Law>(o.x, o, g, Law::weight ? slopes->x_left.data() : nullptr, p);
+    for (int row = 0; row < kSide; ++row) {
+        const int k = field_at(0, row), i = row * kSide;
+        faces<Law>(&o.x.w[k], &o.x.s[k], &o.x.a[k], &o.x.b[k], &g.gx[i], Law::weight ? &slopes->x[i] : nullptr,
+                   ends(o, g, k), ends(o, g, k + 1), p);
+    }
+    for (int row = -1; row < kSide; ++row) {
+        const int k = field_at(0, row), i = (row + 1) * kSide;
+        faces<Law>(&o.y.w[k], &o.y.s[k], &o.y.a[k], &o.y.b[k], &g.gy[i], Law::weight ? &slopes->y[i] : nullptr,
+                   ends(o, g, k), ends(o, g, k + kRow), p);
+    }
+}
+
+/// A square has one diagonal at most: from k to k + 25 where gd > 0, else from k + 1 to k + 24.
+template <class Law>
+TUFT_INLINE void diagonal_faces(Work& o, const Geometry& g, const Step& p) {
+    const float* gd = g.gd->data();
+    for (int row = -1; row < kSide; ++row) {
+        const int k0 = field_at(-1, row);
+        const Ends low = ends(o, g, k0), right = ends(o, g, k0 + 1), left = ends(o, g, k0 + kRow),
+                   high = ends(o, g, k0 + kRow + 1);
+#pragma GCC ivdep
+        for (int x = 0; x < kRow; ++x) {
+            const float d = gd[k0 + x];
+            const bool up = d > 0;
+            const auto one = [up](float a, float b) __attribute__((always_inline)) { return up ? a : b; };
+            const End l = low.at(x), r = right.at(x), u = left.at(x), h = high.at(x);
+            const End e0{one(l.w, r.w), one(l.s, r.s), one(l.t, r.t), one(l.rate, r.rate), one(l.grain, r.grain)};
+            const End e1{one(h.w, u.w), one(h.s, u.s), one(h.t, u.t), one(h.rate, u.rate), one(h.grain, u.grain)};
+            const float size = up ? d : -d;
+            const float fw = Law::film_flux(size, e0, e1, p);
+            float all = fw;
+            if constexpr (Law::pores) {
+                const float fs = Law::pore_flux(size, e0, e1, p);
+                o.up.s[k0 + x] = up ? fs : 0;
+                o.down.s[k0 + x] = up ? 0 : fs;
+                all = fw + fs;
+            }
+            const Carriers c = carriers(size, all, e0.t, e1.t, p);
+            const float a = c.a * e0.rate, b = c.b * e1.rate;
+            o.up.w[k0 + x] = up ? fw : 0;
+            o.down.w[k0 + x] = up ? 0 : fw;
+            o.up.a[k0 + x] = up ? a : 0;
+            o.down.a[k0 + x] = up ? 0 : a;
+            o.up.b[k0 + x] = up ? b : 0;
+            o.down.b[k0 + x] = up ? 0 : b;
+        }
+    }
+}
+
+template <bool kPores, bool kDry>
+TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
+    if (slopes) straight_faces<Law<kPores, true, kDry>>(o, g, slopes, p);
+    else straight_faces<Law<kPores, false, kDry>>(o, g, nullptr, p);
+    if (g.gd) diagonal_faces<Law<kPores, false, kDry>>(o, g, p);
+}
+TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
+    all_faces<false, false>(o, g, slopes, p);
+}
+TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
+    all_faces<false, true>(o, g, slopes, p);
+}
+TUFT_CLONES void faces_wet_pores(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
+    all_faces<true, false>(o, g, slopes, p);
+}
+TUFT_CLONES void faces_dry_pores(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
+    all_faces<true, true>(o, g, slopes, p);
+}
+
+/// total and rate; whether a texel of a chart is dry.
+TUFT_CLONES bool totals(Work& o, const Geometry& g) {
+#pragma GCC ivdep
+    for (int k = 7; k < kField; ++k) {
+        const float t = o.w[k] + o.s[k];
+        o.total[k] = t;
+        o.rate[k] = t > 0 ? 1 / (t > 0 ? t : 1) : 0;
+    }
+    for (int row = -1; row <= kSide; ++row) {
+        std::uint32_t wet = 0;
+        const int k = field_at(-1, row);
+        for (int x = 0; x < kSide + 2; ++x) wet |= static_cast<std::uint32_t>(o.total[k + x] > 0) << x;
+        if (g.valid[static_cast<std::size_t>(row + 1)] & ~wet) return true;
+    }
+    return false;
+}
+
+/// Into texel k by the four sides, and by the diagonals.
+TUFT_INLINE float into(const float* x, const float* y, int k) {
+    return (x[k - 1] - x[k]) + (y[k - kRow] - y[k]);
+}
+TUFT_INLINE float into_askew(const float* up, const float* down, int k) {
+    return (up[k - kRow - 1] - up[k]) + (down[k - kRow] - down[k - 1]);
+}
+
+TUFT_CLONES void divergence(float* __restrict d, const float* __restrict x, const float* __restrict y,
                             const float* __restrict inverse) {
-    for (int row = 0; row < kSide; ++row) {
-        const int k0 = (row + 1) * kRow + 1;
-        for (int x = 0; x < kSide; ++x) {
-            const int k = k0 + x;
-            d[row * kSide + x] = ((fx[k - 1] - fx[k]) + (fy[k - kRow] - fy[k])) * inverse[row * kSide + x];
+    for (int row = 0; row < kSide; ++row)
+        for (int c = 0; c < kSide; ++c)
+            d[row * kSide + c] = into(x, y, field_at(c, row)) * inverse[row * kSide + c];
+}
+TUFT_CLONES void divergence_askew(float* __restrict d, const float* __restrict x, const float* __restrict y,
+                                  const float* __restrict up, const float* __restrict down,
+                                  const float* __restrict inverse) {
+    for (int row = 0; row < kSide; ++row)
+        for (int c = 0; c < kSide; ++c) {
+            const int k = field_at(c, row);
+            d[row * kSide + c] = (into(x, y, k) + into_askew(up, down, k)) * inverse[row * kSide + c];
         }
-    }
 }
 
-/// What diagonals bring: out of k and into k + 19, or out of k + 1 and into k + 18.
-TUFT_CLONES void diagonal_divergence(float* __restrict d, const float* __restrict f,
-                                     const float* __restrict gd, const float* __restrict inverse) {
-    for (int row = 0; row < kSide; ++row) {
-        const int k0 = (row + 1) * kRow + 1;
+TUFT_CLONES void count_dry(float* __restrict n, const float* __restrict t, const Geometry& g) {
+    alignas(64) float left_side[kTexels + 1];
+    for (int i = 0; i < kTexels; ++i) left_side[i + 1] = g.gx[i];
+    for (int row = 0; row < kSide; ++row) left_side[row * kSide] = g.gx_left[row];
+    for (int row = 0; row < kSide; ++row)
         for (int x = 0; x < kSide; ++x) {
-            const int k = k0 + x;
-            const float low = gd[k] > 0 ? -f[k] : 0, high = gd[k - kRow - 1] > 0 ? f[k - kRow - 1] : 0;
-            const float right = gd[k - 1] < 0 ? -f[k - 1] : 0, left = gd[k - kRow] < 0 ? f[k - kRow] : 0;
-            d[row * kSide + x] += ((low + high) + (right + left)) * inverse[row * kSide + x];
+            const int k = field_at(x, row), i = row * kSide + x;
+            const float right = t[k + 1] > 0 || !(g.gx[i] > 0) ? 0.0f : 1.0f;
+            const float left = t[k - 1] > 0 || !(left_side[i] > 0) ? 0.0f : 1.0f;
+            const float up = t[k + kRow] > 0 || !(g.gy[i + kSide] > 0) ? 0.0f : 1.0f;
+            const float down = t[k - kRow] > 0 || !(g.gy[i] > 0) ? 0.0f : 1.0f;
+            n[i] = (right + left) + (up + down);
         }
-    }
-}
-
-TUFT_CLONES void count_dry(float* __restrict n, const float* __restrict t, const float* __restrict gx,
-                           const float* __restrict gy) {
-    for (int row = 0; row < kSide; ++row) {
-        const int k0 = (row + 1) * kRow + 1;
-        for (int x = 0; x < kSide; ++x) {
-            const int k = k0 + x;
-            const float right = t[k + 1] > 0 || !(gx[k] > 0) ? 0.0f : 1.0f;
-            const float left = t[k - 1] > 0 || !(gx[k - 1] > 0) ? 0.0f : 1.0f;
-            const float up = t[k + kRow] > 0 || !(gy[k] > 0) ? 0.0f : 1.0f;
-            const float down = t[k - kRow] > 0 || !(gy[k - kRow] > 0) ? 0.0f : 1.0f;
-            n[row * kSide + x] = (right + left) + (up + down);
-        }
-    }
-}
-
-TUFT_CLONES void divide(float* __restrict c, const float* __restrict p, const float* __restrict t) {
-    for (int k = 0; k < kPadded; ++k) {
-        const float whole = t[k] > 0 ? t[k] : 1;
-        c[k] = t[k] > 0 ? p[k] / whole : 0;
-    }
-}
-
-template <int kStep>
-inline __attribute__((always_inline)) void carried(float* __restrict f, const float* __restrict a,
-                                                   const float* __restrict b, const float* __restrict c) {
-    for (int k = 0; k < kField; ++k) f[k] = a[k] * c[k] + b[k] * c[k + kStep];
-}
-TUFT_CLONES void carried_xy(float* __restrict x, float* __restrict y, const Work& o) {
-    carried<1>(x, o.ax.data(), o.bx.data(), o.c.data());
-    carried<kRow>(y, o.ay.data(), o.by.data(), o.c.data());
-}
-TUFT_CLONES void carried_d(float* __restrict f, const float* __restrict a, const float* __restrict b,
-                           const float* __restrict c, const float* __restrict gd) {
-    for (int k = 0; k < kField; ++k) {
-        const float c0 = gd[k] > 0 ? c[k] : c[k + 1], c1 = gd[k] > 0 ? c[k + kRow + 1] : c[k + kRow];
-        f[k] = a[k] * c0 + b[k] * c1;
-    }
 }
 
 /// a + d, rounded up or down by chance; never below 0.
-inline float sum_of(float a, float d, float noise) {
+TUFT_INLINE float sum_of(float a, float d, float noise) {
     const float scale = std::bit_cast<float>(std::bit_cast<std::uint32_t>(a) & 0x7f800000u);
     return positive(a + (d + noise * (scale * 0x1p-23f)));
 }
 
-/// A texel's new liquid, soaking and drying; `air`: what went into the air.
+/// A texel's new liquid, soaking and drying; `air`: what went into the air; `closed`: 1 for texels
+/// that had liquid and have none. Returns in `most` the greatest w, s and closed.
 TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restrict air,
-                        const float* __restrict w_field, const float* __restrict s_field,
-                        const float* __restrict dw, const float* __restrict ds,
-                        const float* __restrict dry, const float* __restrict inverse,
-                        const float* __restrict noise, const Step& step) {
+                        float* __restrict closed, float* __restrict most, const Work& o,
+                        const float* __restrict inverse, const float* __restrict noise, const Step& step) {
     const float soak = step.soak, pores = step.pores, per_pores = pores > 0 ? 1 / pores : 0;
     const float evaporation = step.evaporation, rim = step.rim;
-    for (int row = 0; row < kSide; ++row)
+    alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, any[kLanes] = {};
+    for (int row = 0; row < kSide; ++row) {
+#pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
-            const int i = row * kSide + x, k = (row + 1) * kRow + 1 + x;
-            float w1 = sum_of(w_field[k], dw[i], noise[i]), s1 = sum_of(s_field[k], ds[i], noise[i]);
+            const int i = row * kSide + x, k = field_at(x, row);
+            float w1 = sum_of(o.w[k], o.dw[i], noise[i]), s1 = sum_of(o.s[k], o.ds[i], noise[i]);
             const float room = positive(pores - s1);
             float in = w1 * soak * (room * per_pores);
             // In units of the last place of the larger one, so that both sums are exact.
@@ -220,12 +274,24 @@ TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restr
             const float over = positive(s1 - pores);  // by rounding
             s1 -= over;
             w1 += over;
-            const float all = evaporation + rim * dry[i] * inverse[i];
+            const float all = evaporation + rim * o.dry_neighbours[i] * inverse[i];
             const float from_w = smaller(w1, all), from_s = smaller(s1, all - from_w);
-            w[i] = w1 - from_w;
-            s[i] = s1 - from_s;
+            w1 -= from_w;
+            s1 -= from_s;
+            w[i] = w1;
+            s[i] = s1;
             air[i] = from_w + from_s;
+            closed[i] = o.total[k] > 0 && !(w1 + s1 > 0) ? 1.0f : 0.0f;
+            most_w[x] = larger(most_w[x], w1);
+            most_s[x] = larger(most_s[x], s1);
+            any[x] = larger(any[x], closed[i]);
         }
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+        most[0] = larger(most[0], most_w[lane]);
+        most[1] = larger(most[1], most_s[lane]);
+        most[2] = larger(most[2], any[lane]);
+    }
 }
 
 TUFT_CLONES double integral(const float* __restrict air, const float* __restrict inverse) {
@@ -240,106 +306,125 @@ TUFT_CLONES double integral(const float* __restrict air, const float* __restrict
     return sum;
 }
 
-/// Greatest liquids, and in `closed` 1 for texels that had liquid and have none.
-TUFT_CLONES void extremes(float* __restrict most, const float* __restrict w, const float* __restrict s,
-                          const float* __restrict total, float* __restrict closed) {
-    float most_w[kLanes] = {}, most_s[kLanes] = {}, any[kLanes] = {};
-    for (int row = 0; row < kSide; ++row)
-        for (int x = 0; x < kSide; ++x) {
-            const int i = row * kSide + x;
-            most_w[x] = larger(most_w[x], w[i]);
-            most_s[x] = larger(most_s[x], s[i]);
-            const float was = total[(row + 1) * kRow + 1 + x] > 0 ? 1.0f : 0.0f;
-            const float is = w[i] + s[i] > 0 ? 1.0f : 0.0f;
-            closed[i] = was * (1 - is);
-            any[x] = larger(any[x], closed[i]);
-        }
-    for (int lane = 0; lane < kLanes; ++lane) {
-        most[0] = larger(most[0], most_w[lane]);
-        most[1] = larger(most[1], most_s[lane]);
-        most[2] = larger(most[2], any[lane]);
-    }
+TUFT_INLINE float carried(const float* a, const float* b, const float* p, int k, int from, int to) {
+    return a[k] * p[from] + b[k] * p[to];
 }
 
-TUFT_CLONES void add_dithered(float* __restrict p, const float* __restrict field, const float* __restrict dp,
-                              const float* __restrict noise) {
-    for (int row = 0; row < kSide; ++row)
+/// Each flux is computed for both its texels, from the same numbers.
+template <bool kAskew, bool kSeams>
+TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse,
+                       const float* __restrict noise) {
+    const float* p = o.p.data();
+    const auto side = [p](const Faces& f, int k, int from, int to) __attribute__((always_inline)) {
+        return carried(f.a.data(), f.b.data(), p, k, from, to);
+    };
+    for (int row = 0; row < kSide; ++row) {
+#pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
-            const int i = row * kSide + x;
-            p[i] = sum_of(field[(row + 1) * kRow + 1 + x], dp[i], noise[i]);
+            const int k = field_at(x, row), i = row * kSide + x;
+            float d = (side(o.x, k - 1, k - 1, k) - side(o.x, k, k, k + 1)) +
+                      (side(o.y, k - kRow, k - kRow, k) - side(o.y, k, k, k + kRow));
+            if constexpr (kAskew)
+                d += (side(o.up, k - kRow - 1, k - kRow - 1, k) - side(o.up, k, k, k + kRow + 1)) +
+                     (side(o.down, k - kRow, k - kRow + 1, k) - side(o.down, k - 1, k, k + kRow - 1));
+            d *= inverse[i];
+            if constexpr (kSeams) d += o.dp[i];
+            out[i] = sum_of(p[k], d, noise[i]);
         }
+    }
+}
+TUFT_CLONES void carry_straight(float* __restrict out, const Work& o, const float* __restrict inverse,
+                                const float* __restrict noise, bool seams) {
+    if (seams) carry<false, true>(out, o, inverse, noise);
+    else carry<false, false>(out, o, inverse, noise);
+}
+TUFT_CLONES void carry_askew(float* __restrict out, const Work& o, const float* __restrict inverse,
+                             const float* __restrict noise, bool seams) {
+    if (seams) carry<true, true>(out, o, inverse, noise);
+    else carry<true, false>(out, o, inverse, noise);
+}
+
+TUFT_CLONES void gather_rows(float* __restrict to, const float* above, const float* __restrict here,
+                             const float* below) {
+    const auto row = [to](int r, const float* from) __attribute__((always_inline)) {
+        for (int x = 0; x < kSide; ++x) to[field_at(0, r) + x] = from[x];
+    };
+    row(-1, above + kTexels - kSide);
+    for (int r = 0; r < kSide; ++r) row(r, here + r * kSide);
+    row(kSide, below);
 }
 
 }  // namespace
 
+void gather(Field& field, const std::array<const float*, 9>& planes) {
+    gather_rows(field.data(), planes[1], planes[4], planes[7]);
+    constexpr int end = kTexels - kSide;
+    field[field_at(-1, -1)] = planes[0][kTexels - 1];
+    field[field_at(kSide, -1)] = planes[2][end];
+    field[field_at(-1, kSide)] = planes[6][kSide - 1];
+    field[field_at(kSide, kSide)] = planes[8][0];
+    for (int row = 0; row < kSide; ++row) {
+        field[field_at(-1, row)] = planes[3][row * kSide + kSide - 1];
+        field[field_at(kSide, row)] = planes[5][row * kSide];
+    }
+}
+
 void fluxes(Work& work, const Geometry& g, const Slopes* slopes, const Step& step) {
-    totals(work.total.data(), work.w.data(), work.s.data());
-    faces_x(work, g, step);
-    faces_y(work, g, step);
-    if (step.pores > 0) {
-        pores_xy(work, g, step);
-    } else {
-        work.fs_x.fill(0);
-        work.fs_y.fill(0);
-    }
-    if (slopes) {
-        weight_x(work, g, *slopes, step);
-        weight_y(work, g, *slopes, step);
-    }
-    carriers_xy(work, g, step);
-    if (g.diagonals)
-        diagonals(work.fw_d.data(), work.fs_d.data(), work.ad.data(), work.bd.data(), g.gd.data(),
-                  work.w.data(), work.s.data(), work.total.data(), g.grain.data(), step);
+    const bool dry = totals(work, g);
+    if (step.pores > 0) (dry ? faces_dry_pores : faces_wet_pores)(work, g, slopes, step);
+    else (dry ? faces_dry : faces_wet)(work, g, slopes, step);
+    if (dry) count_dry(work.dry_neighbours.data(), work.total.data(), g);
+    else work.dry_neighbours.fill(0);
 }
 
-void liquid_changes(Work& work, const Geometry& g) {
-    divergence(work.dw.data(), work.fw_x.data(), work.fw_y.data(), g.inverse.data());
-    divergence(work.ds.data(), work.fs_x.data(), work.fs_y.data(), g.inverse.data());
-    if (g.diagonals) {
-        diagonal_divergence(work.dw.data(), work.fw_d.data(), g.gd.data(), g.inverse.data());
-        diagonal_divergence(work.ds.data(), work.fs_d.data(), g.gd.data(), g.inverse.data());
-    }
-    count_dry(work.dry_neighbours.data(), work.total.data(), g.gx.data(), g.gy.data());
+void liquid_changes(Work& work, const Geometry& g, const Step& step) {
+    const float* inverse = g.inverse.data();
+    const auto change = [&](std::array<float, kTexels>& d, Field Faces::*f) {
+        if (g.gd)
+            divergence_askew(d.data(), (work.x.*f).data(), (work.y.*f).data(), (work.up.*f).data(),
+                             (work.down.*f).data(), inverse);
+        else divergence(d.data(), (work.x.*f).data(), (work.y.*f).data(), inverse);
+    };
+    change(work.dw, &Faces::w);
+    if (step.pores > 0) change(work.ds, &Faces::s);
+    else work.ds.fill(0);
 }
 
-void concentrations(Work& work, const Field& p) { divide(work.c.data(), p.data(), work.total.data()); }
-
-void pigment_changes(Work& work, const Geometry& g) {
-    alignas(64) Field x, y;
-    carried_xy(x.data(), y.data(), work);
-    divergence(work.dp.data(), x.data(), y.data(), g.inverse.data());
-    if (g.diagonals) {
-        carried_d(x.data(), work.ad.data(), work.bd.data(), work.c.data(), g.gd.data());
-        diagonal_divergence(work.dp.data(), x.data(), g.gd.data(), g.inverse.data());
-    }
+void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std::uint64_t seed) {
+    (g.gd ? carry_askew : carry_straight)(p, work, g.inverse.data(), dither(seed), seams);
 }
 
 Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
-                   std::uint64_t seed, std::uint8_t* closing) {
+                   std::uint64_t seed, std::array<std::uint8_t, kTexels>& closing) {
     Outcome out;
     alignas(64) std::array<float, kTexels> air, closed;
-    settle(w, s, air.data(), work.w.data(), work.s.data(), work.dw.data(), work.ds.data(),
-           work.dry_neighbours.data(), g.inverse.data(), dither(seed), step);
-    out.evaporated = integral(air.data(), g.inverse.data());
     std::array<float, 3> most{};
-    extremes(most.data(), w, s, work.total.data(), closed.data());
+    settle(w, s, air.data(), closed.data(), most.data(), work, g.inverse.data(), dither(seed), step);
+    if (step.evaporation > 0 || step.rim > 0) out.evaporated = integral(air.data(), g.inverse.data());
     out.most_w = most[0];
     out.most_s = most[1];
     out.closing = most[2] > 0;
     if (out.closing)
         for (int t = 0; t < kTexels; ++t) closing[t] = closed[t] > 0;
+    bool first = false, last = false, left = false, right = false;
     for (int i = 0; i < kSide; ++i) {
-        const int last = kTexels - kSide;
-        out.sides |= w[i] + s[i] > 0 ? 1 : 0;
-        out.sides |= w[last + i] + s[last + i] > 0 ? 2 : 0;
-        out.sides |= w[i * kSide] + s[i * kSide] > 0 ? 4 : 0;
-        out.sides |= w[i * kSide + kSide - 1] + s[i * kSide + kSide - 1] > 0 ? 8 : 0;
+        const int end = kTexels - kSide;
+        first |= w[i] + s[i] > 0;
+        last |= w[end + i] + s[end + i] > 0;
+        left |= w[i * kSide] + s[i * kSide] > 0;
+        right |= w[i * kSide + kSide - 1] + s[i * kSide + kSide - 1] > 0;
     }
+    out.sides = static_cast<std::uint8_t>(first | last << 1 | left << 2 | right << 3);
     return out;
 }
 
-void add_pigment(float* p, const Work& work, const Field& before, std::uint64_t seed) {
-    add_dithered(p, before.data(), work.dp.data(), dither(seed));
+TUFT_CLONES float greatest(const float* plane) {
+    float most[kLanes] = {};
+    for (int t = 0; t < kTexels; t += kLanes)
+        for (int lane = 0; lane < kLanes; ++lane) most[lane] = larger(plane[t + lane], most[lane]);
+    float all = 0;
+    for (const float m : most) all = larger(m, all);
+    return all;
 }
 
 const float* dither(std::uint64_t seed) {
@@ -359,12 +444,13 @@ const float* dither(std::uint64_t seed) {
 SeamFlux seam_flux(float weight, float slope, const std::array<float, 2>& w,
                    const std::array<float, 2>& s, const std::array<float, 2>& grain,
                    const Step& step) {
-    const float t0 = w[0] + s[0], t1 = w[1] + s[1];
+    using Any = Law<true, true, true>;
+    const End e0{w[0], s[0], w[0] + s[0], 0, grain[0]}, e1{w[1], s[1], w[1] + s[1], 0, grain[1]};
     SeamFlux out;
-    out.w = film_flux(weight, w[0], w[1], t0, t1, grain[0], grain[1], step);
-    if (slope != 0) out.w += weight_flux(slope, w[0], w[1], t0, t1, grain[0], grain[1], step);
-    if (step.pores > 0) out.s = pore_flux(weight, s[0], s[1], step);
-    const Carriers c = carriers(weight, out.w + out.s, t0, t1, step);
+    out.w = Any::film_flux(weight, e0, e1, step);
+    if (slope != 0) out.w += Any::weight_flux(slope, e0, e1, step);
+    if (step.pores > 0) out.s = Any::pore_flux(weight, e0, e1, step);
+    const Carriers c = carriers(weight, out.w + out.s, e0.t, e1.t, step);
     out.a = c.a;
     out.b = c.b;
     return out;

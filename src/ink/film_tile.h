@@ -2,42 +2,49 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "atlas/seam_links.h"
 #include "ink/film.h"
 
 /// One tile of the wet film with a border of one texel, as its kernels see it; inside `ink`
-/// only. Field k = (row + 1) * 18 + column + 1; faces: between k and k + 1, k and k + 18, and the
-/// diagonals of the square k, k + 1, k + 18, k + 19.
+/// only. Field k = (row + 1) * 24 + 8 + column, so that rows begin on 32 bytes; faces: between k
+/// and k + 1, k and k + 24, and the diagonals of the square k, k + 1, k + 24, k + 25.
 namespace tuft::ink::wet {
 
 inline constexpr int kTexels = atlas::kTileTexels;
 inline constexpr int kSide = atlas::kTile;
-inline constexpr int kRow = kSide + 2;
-inline constexpr int kField = kRow * kRow;      // 324
-inline constexpr int kPadded = kField + kRow + 14;  // so that k + kRow + 1 may be read
+inline constexpr int kRow = kSide + 8;
+inline constexpr int kField = (kSide + 2) * kRow + 8;
 
-using Field = std::array<float, kPadded>;
+struct alignas(64) Field : std::array<float, kField> {};
 
-inline constexpr int field_of(int texel) { return (texel / kSide + 1) * kRow + texel % kSide + 1; }
+inline constexpr int field_at(int column, int row) { return (row + 1) * kRow + 8 + column; }
+inline constexpr int field_of(int texel) { return field_at(texel % kSide, texel / kSide); }
 
 /// What the metric says of a tile: made once, never changed.
 struct alignas(64) Geometry {
-    Field gx{}, gy{};       ///< length over distance of a face, at most 4 times the smaller area
-    Field gd{};             ///< of a diagonal: > 0 from k to k + 19, < 0 (its size) from k + 1 to k + 18
-    Field inverse_area{};   ///< mean texel's area over the texel's; 0 outside the charts
-    Field grain{};          ///< pin of the place, over the mean
-    std::array<float, kTexels> inverse{};  ///< inverse_area without the border
-    float stiffness = 0;    ///< greatest Σ conductances over area
-    float smallest = 1;     ///< area, over the mean
-    bool diagonals = false;
+    /// Length over distance of faces, at most 4 times the smaller area: of texels' right sides,
+    /// of the left sides of the first column, and of the sides below rows 0 to 16.
+    std::array<float, kTexels> gx{};
+    std::array<float, kSide> gx_left{};
+    std::array<float, kTexels + kSide> gy{};
+    std::array<float, kTexels> inverse{};  ///< mean texel's area over the texel's; 0 outside the charts
+    std::array<std::uint32_t, kSide + 2> valid{};  ///< bit column + 1: a texel of a chart
+    float stiffness = 0;                   ///< greatest Σ conductances over area
+    float smallest = 1;                    ///< area, over the mean
+    /// Of diagonals: > 0 from k to k + 25, < 0 (its size) from k + 1 to k + 24; null: none.
+    std::unique_ptr<Field> gd;
+    Field grain{};                         ///< pin of the place, over the mean
 };
 Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot);
 
 /// Downhill of each face for one direction of weight: conductance × (height of the one end
-/// less that of the other) over a texel's length.
+/// less that of the other) over a texel's length; as `Geometry::gx`, `gx_left`, `gy`.
 struct alignas(64) Slopes {
-    Field x{}, y{};
+    std::array<float, kTexels> x{};
+    std::array<float, kSide> x_left{};
+    std::array<float, kTexels + kSide> y{};
     float steepest = 0;     ///< greatest size of them
 };
 Slopes make_slopes(const atlas::TexelMap& map, std::uint32_t slot, const Geometry& geometry,
@@ -59,24 +66,28 @@ struct Step {
     float run = 0;         ///< part of a texel's liquid that weight may take through a face, at most
 };
 
+/// Through faces: fluxes of w and s, film units · mean area, and the carriers of pigments,
+/// flux = a p(one end) + b p(other end).
+struct alignas(64) Faces {
+    Field w, s, a, b;
+};
+
 /// The fields of a tile in work.
 struct alignas(64) Work {
     Field w{}, s{}, total{};       ///< liquid
-    Field fw_x, fw_y, fs_x, fs_y;  ///< fluxes of w and s through faces, film units · mean area
-    Field ax, bx, ay, by;          ///< carriers of pigment: flux = a c(k) + b c(k + 1 or 18)
-    Field fw_d, fs_d, ad, bd;
-    Field c{};                     ///< concentration of one pigment
-    std::array<float, kTexels> dw, ds, dp, dry_neighbours;
+    Field rate{};                  ///< 1 / total, 0 where it is dry
+    Field p{};                     ///< one pigment
+    Faces x, y, up, down;          ///< up: of diagonals k to k + 25, down: k + 1 to k + 24
+    std::array<float, kTexels> dw, ds, dry_neighbours;
+    std::array<float, kTexels> dp; ///< what seams bring of one pigment
 };
 
-/// total = w + s, and what goes through the faces. `slopes` may be null.
+/// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
+void gather(Field& field, const std::array<const float*, 9>& planes);
+/// total, rate, and what goes through the faces. `slopes` may be null.
 void fluxes(Work& work, const Geometry& g, const Slopes* slopes, const Step& step);
 /// dw, ds and dry_neighbours of the texels from the fluxes.
-void liquid_changes(Work& work, const Geometry& g);
-/// c = p / total where there is liquid; p given as a field.
-void concentrations(Work& work, const Field& p);
-/// dp of the texels from c.
-void pigment_changes(Work& work, const Geometry& g);
+void liquid_changes(Work& work, const Geometry& g, const Step& step);
 
 /// What a texel's liquid became.
 struct Outcome {
@@ -93,14 +104,16 @@ const float* dither(std::uint64_t seed);
 /// w and s [256] become those of `work` with dw, ds, then soaking and evaporation; `closing` [256] is
 /// 1 where a texel that was wet is wet no more.
 Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
-                   std::uint64_t seed, std::uint8_t* closing);
-/// p [256] = before + dp, never below 0.
-void add_pigment(float* p, const Work& work, const Field& before, std::uint64_t seed);
+                   std::uint64_t seed, std::array<std::uint8_t, kTexels>& closing);
+/// The largest of [256], at least 0.
+float greatest(const float* plane);
+/// p [256] = work.p + what the faces bring, and dp if `seams`; never below 0.
+void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std::uint64_t seed);
 
 /// The same expressions for two texels that face each other over a seam.
 struct SeamFlux {
     float w = 0, s = 0;  ///< from the first to the second
-    float a = 0, b = 0;  ///< pigment: a c1 + b c2
+    float a = 0, b = 0;  ///< pigment: a p1 / total1 + b p2 / total2
 };
 SeamFlux seam_flux(float weight, float slope, const std::array<float, 2>& w,
                    const std::array<float, 2>& s, const std::array<float, 2>& grain,
