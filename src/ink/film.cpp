@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "ink/drips.h"
 #include "ink/drying.h"
 #include "ink/film_tile.h"
 
@@ -16,7 +17,9 @@ using namespace wet;
 
 constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and drying
 // What may leave a texel in one step, of what it has: less than all of it together.
-constexpr double kFlowPart = 0.5, kMixingPart = 0.2, kWeightPart = 0.25;
+constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
+constexpr double kBeadStep = 0.05;     // seconds: a bead goes a texel or a few
+constexpr std::size_t kMostBeads = 256;
 constexpr double kSeamPart = 4;        // conductances over seams together, over the texel's area
 constexpr double kLeastMixing = 2e-10; // m²/s
 constexpr double kStirring = 0.02;     // film units: mixing over mobility
@@ -88,18 +91,17 @@ struct WetFilm::State {
     const atlas::TexelMap& map;
     atlas::SeamLinks seams;
     std::vector<std::unique_ptr<Geometry>> geometry;
-    std::vector<std::unique_ptr<Slopes>> slopes;
     std::vector<std::uint8_t> mark;  ///< [n_slots] scratch
     std::vector<std::uint32_t> place;  ///< [n_slots] scratch
     std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> others;  ///< of the list: slots over
                                                                              ///< seams, places in the list
-    Vec3 down{0};
     std::vector<Active> list;
     std::vector<std::uint8_t> told;
+    std::unique_ptr<Drips> drips;
     std::vector<PlanePtr> spare;  ///< planes for tiles to come: making them costs as much as a step
 
     State(const atlas::TexelMap& m, atlas::SeamLinks s)
-        : map(m), seams(std::move(s)), geometry(m.n_slots()), slopes(m.n_slots()), mark(m.n_slots(), 0), place(m.n_slots(), kNone) {
+        : map(m), seams(std::move(s)), geometry(m.n_slots()), mark(m.n_slots(), 0), place(m.n_slots(), kNone) {
         limit_links();
     }
 
@@ -152,10 +154,7 @@ struct WetFilm::State {
             for (std::size_t i = begin; i < end; ++i) {
                 Active& tile = list[i];
                 tile.slot = wet[i];
-                tile.outcome.sides = 15;
-                tile.seam_wet = true;
-                if (const Plane* w = canvas.liquid(wet[i], Liquid::film)) tile.outcome.most_w = greatest(w->data());
-                if (const Plane* s = canvas.liquid(wet[i], Liquid::pores)) tile.outcome.most_s = greatest(s->data());
+                look_at(canvas, tile);
             }
         });
         spread();
@@ -235,54 +234,119 @@ struct WetFilm::State {
         if (!canvas.wet()) spare.clear();
     }
 
+    void tell(std::uint32_t slot, const BeforeFn& before) {
+        if (!before || told[slot]) return;
+        told[slot] = 1;
+        before(slot);
+    }
+
+    static void look_at(const Canvas& canvas, Active& tile) {
+        tile.outcome.sides = 15;
+        tile.seam_wet = true;
+        const Plane *w = canvas.liquid(tile.slot, Liquid::film), *s = canvas.liquid(tile.slot, Liquid::pores);
+        tile.outcome.most_w = w ? greatest(w->data()) : 0;
+        tile.outcome.most_s = s ? greatest(s->data()) : 0;
+    }
+
+    /// Where beads may start: of each cube of a grain's length the place that gives way first, the
+    /// lowest first, so that it does not matter how the surface lies in the atlas.
+    std::vector<Drips::Seed> seeds_of_beads(const Canvas& canvas, const FilmParams& params) const {
+        struct Found {
+            std::array<std::int32_t, 3> cube;
+            float weak, height;
+            Drips::Seed seed;
+        };
+        std::vector<Found> found;
+        for (const Active& tile : list) {
+            const auto least = static_cast<float>(Drips::least(params));
+            if (tile.outcome.most_w < least) continue;
+            const Plane& w = *canvas.liquid(tile.slot, Liquid::film);
+            const std::size_t first = found.size();
+            for (int t = 0; t < kTexels; ++t) {
+                if (w[t] < least) continue;
+                const Vec3 at(map.position(tile.slot, t));
+                const auto cell = [](double x) { return static_cast<std::int32_t>(std::floor(x / kGrainLength)); };
+                const std::array cube{cell(at.x), cell(at.y), cell(at.z)};
+                const float grain = geometry[tile.slot]->grain[field_of(t)];
+                auto same = std::find_if(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+                                         [&](const Found& f) { return f.cube == cube; });
+                if (same == found.end()) same = found.insert(found.end(), Found{cube, 0, 0, {}});
+                if (w[t] > same->weak * grain)
+                    *same = {cube, w[t] / grain, static_cast<float>(-glm::dot(params.down, at)),
+                             {{tile.slot, static_cast<std::uint8_t>(t)}, static_cast<double>(grain)}};
+            }
+        }
+        std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+            return a.cube != b.cube ? a.cube < b.cube : a.weak > b.weak;
+        });
+        found.erase(std::unique(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.cube == b.cube; }),
+                    found.end());
+        std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.height < b.height; });
+        std::vector<Drips::Seed> seeds;
+        for (std::size_t i = 0; i < std::min(found.size(), kMostBeads); ++i) seeds.push_back(found[i].seed);
+        return seeds;
+    }
+
+    /// Beads run for the time of a step. Whether any did.
+    bool run_beads(Canvas& canvas, const FilmParams& params, double dt, const BeforeFn& before) {
+        if (!(glm::length(params.down) > 0)) return false;
+        const std::vector<Drips::Seed> seeds = seeds_of_beads(canvas, params);
+        if (seeds.empty()) return false;
+        if (!drips) drips = std::make_unique<Drips>(map, seams);
+        const std::vector<std::uint32_t> written =
+            drips->run(canvas, seeds, params, dt, [&](std::uint32_t slot) { tell(slot, before); });
+        if (written.empty()) return false;
+        const std::size_t listed = list.size();
+        for (const std::uint32_t slot : written) {
+            const auto at = std::lower_bound(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(listed), slot,
+                                             [](const Active& a, std::uint32_t s) { return a.slot < s; });
+            const bool known = at != list.begin() + static_cast<std::ptrdiff_t>(listed) && at->slot == slot;
+            if (!known) {
+                list.emplace_back();
+                list.back().slot = slot;
+            }
+            look_at(canvas, known ? *at : list.back());
+        }
+        std::sort(list.begin(), list.end(), [](const Active& a, const Active& b) { return a.slot < b.slot; });
+        spread();
+        return true;
+    }
+
     /// Whether other tiles may be reached after this step than before it.
     bool changed() const {
         return std::any_of(list.begin(), list.end(), [](const Active& tile) { return tile.spreads; });
     }
 
-    void prepare(const Vec3& towards) {
-        if (towards != down) {
-            for (auto& s : slopes) s.reset();
-            down = towards;
-        }
-        const bool heavy = glm::length(down) > 0;
+    void prepare() {
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::uint32_t slot = list[i].slot;
-                if (!geometry[slot]) geometry[slot] = std::make_unique<Geometry>(make_geometry(map, slot));
-                if (heavy && !slopes[slot])
-                    slopes[slot] = std::make_unique<Slopes>(make_slopes(map, slot, *geometry[slot], down));
-            }
+            for (std::size_t i = begin; i < end; ++i)
+                if (auto& g = geometry[list[i].slot]; !g) g = std::make_unique<Geometry>(make_geometry(map, list[i].slot));
         });
     }
 
     /// The longest stable step, seconds, and its rates.
-    double choose(const FilmParams& p, double left, Step& step) const {
+    double choose(const FilmParams& p, double left, bool beads, Step& step) const {
         const double area = map.texel_size * map.texel_size;
-        double stiffness = kSeamPart, most_w = 0, most_s = 0, steepest = 0, smallest = 1;
+        const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
+        double stiffness = kSeamPart, most_w = 0, most_s = 0;
         for (const Active& tile : list) {
             const Geometry& g = *geometry[tile.slot];
             stiffness = std::max(stiffness, static_cast<double>(g.stiffness) + (tile.links.empty() ? 0 : kSeamPart / 2));
-            smallest = std::min(smallest, static_cast<double>(g.smallest));
             most_w = std::max(most_w, static_cast<double>(tile.outcome.most_w));
             most_s = std::max(most_s, static_cast<double>(tile.outcome.most_s));
-            if (slopes[tile.slot]) steepest = std::max(steepest, static_cast<double>(slopes[tile.slot]->steepest));
         }
-        const double run = kWeightPart / 2 * smallest;
-        double dt = kLongestStep;
+        double dt = beads ? kBeadStep : kLongestStep;
         const double free = std::max(0.0, most_w - p.hold);
         const double flow = stiffness / area *
-                            std::max(p.mobility * (most_w - p.threshold) + p.levelling * free,
+                            std::max(p.mobility * (most_w - p.threshold) + levelling * free,
                                      p.pores > 0 ? p.mobility * most_s : 0.0);
         if (flow > 0) dt = std::min(dt, kFlowPart / flow);
         const double mixing = p.mixing / area * stiffness;
         if (mixing > 0) dt = std::min(dt, kMixingPart / mixing);
-        const double speed = p.weight / map.texel_size * free * free * steepest;
-        if (speed > 0) dt = std::min(dt, run / speed);
         dt = std::max(dt, p.shortest_step);
         dt = left / std::ceil(left / dt * (1 - 1e-12));
         step.flow = static_cast<float>(p.mobility * dt / area);
-        step.levelling = static_cast<float>(p.levelling * dt / area);
+        step.levelling = static_cast<float>(levelling * dt / area);
         step.limit = static_cast<float>(kFlowPart / stiffness);
         step.threshold = static_cast<float>(p.threshold);
         step.pin = static_cast<float>(p.pin);
@@ -292,8 +356,6 @@ struct WetFilm::State {
         step.evaporation = static_cast<float>(p.evaporation * dt);
         step.rim = static_cast<float>(p.rim_evaporation * dt / map.texel_size);
         step.hold = static_cast<float>(p.hold);
-        step.weight = static_cast<float>(p.weight * dt / map.texel_size);
-        step.run = static_cast<float>(run);
         return dt;
     }
 
@@ -324,13 +386,8 @@ struct WetFilm::State {
             // One order for both sides, so that both have the same numbers.
             const bool first = tile.slot != l.other_slot ? tile.slot < l.other_slot : l.texel < l.other_texel;
             const float g0 = g.grain[field_of(l.texel)], g1 = geometry[l.other_slot]->grain[field_of(l.other_texel)];
-            float slope = 0;
-            if (slopes[tile.slot]) {
-                const Vec3 p0(map.position(tile.slot, l.texel)), p1(map.position(l.other_slot, l.other_texel));
-                slope = l.weight * static_cast<float>(glm::dot(down, first ? p1 - p0 : p0 - p1) / map.texel_size);
-            }
-            const SeamFlux f = first ? seam_flux(l.weight, slope, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
-                                     : seam_flux(l.weight, slope, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
+            const SeamFlux f = first ? seam_flux(l.weight, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
+                                     : seam_flux(l.weight, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
             const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
             work.dw[l.texel] += sign * f.w * inverse;
             work.ds[l.texel] += sign * f.s * inverse;
@@ -346,7 +403,7 @@ struct WetFilm::State {
         if (!any_w) work.w.fill(0);
         const bool any_s = load(work.s, list, tile.around, [](const Active& a) { return a.liquid[1]; });
         if (!any_s) work.s.fill(0);
-        fluxes(work, g, slopes[tile.slot].get(), step);
+        fluxes(work, g, step);
         liquid_changes(work, g, step);
         seam_fluxes(index, step, work, carried);
         // From what is there and nothing else: the same whenever this journal is painted.
@@ -454,20 +511,22 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     if (!canvas.wet() || !(seconds > 0)) return report;
     State& s = *state_;
     s.begin(canvas);
+    double beads = 0;  // seconds that they have not run yet
+    bool running = glm::length(params.down) > 0;
     for (double left = seconds; left > 0 && !s.list.empty();) {
-        s.prepare(params.down);
+        s.prepare();
         s.equip(canvas);
-        if (before)
-            for (const Active& tile : s.list)
-                if (!s.told[tile.slot]) {
-                    s.told[tile.slot] = 1;
-                    before(tile.slot);
-                }
+        for (const Active& tile : s.list) s.tell(tile.slot, before);
         Step step;
-        const double dt = s.choose(params, left, step);
+        const double dt = s.choose(params, left, running, step);
         s.step(canvas, params, step, report);
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
         if (s.changed()) s.spread();
+        beads += dt;
+        if (beads > 0.9 * kBeadStep || left == 0) {
+            running = s.run_beads(canvas, params, beads, before);
+            beads = 0;
+        }
     }
     s.keep_spare(canvas);
     return report;

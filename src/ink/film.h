@@ -23,8 +23,11 @@ struct FilmParams {
     double stain = 0;                ///< part of a drying film that stays in bare substrate
     Vec3 down{0};                    ///< towards the ground, length 1; zero: no weight
     double hold = 2;                 ///< film units that neither weight nor surface tension moves
-    double levelling = 1e-8;         ///< m²/s per film unit above `hold`: puddles draw together
-    double weight = 3.3e-4;          ///< ρ g h₀² / 3 μ for a film unit h₀ of water: m/s at one unit
+    double levelling = 1e-8;         ///< L, m²/s per film unit above `hold`: puddles draw together
+    double bead_angle = 0.15;        ///< radians: contact angle of a bead that runs down
+    double bead_speed = 8e-3;        ///< m/s of a bead of √2 times the critical radius
+    double drain = 2;                ///< 1/s: part of the liquid above `hold` near a bead that it draws in
+    double trail = 0.8;              ///< film units that a bead leaves behind
     double shortest_step = 0.01;     ///< seconds; where stability asked for shorter steps, the
                                      ///< fastest flows are held back instead
 };
@@ -42,13 +45,15 @@ struct FilmReport {
 /// Steps the wet film of a canvas. Finite volumes on the texels with the metric of the
 /// surface: liquid w on the surface and s in the pores (w + s = T), pigments p of the open film:
 ///
-///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − hold⟩) ∇w − V(w) g_t) − soak − e,   V(w) = weight ⟨w − hold⟩² w
+///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − hold⟩) ∇w) − soak − e
 ///     ∂s/∂t = ∇·(D s ∇s) + soak,                           soak = a w (1 − s / pores)
 ///     ∂p/∂t = ∇·((p/T)↑ j + D_p T ∇(p/T)),                 j: the flux of w and s together
 ///
 /// ↑: of the texel the liquid comes from. Liquid goes onto a dry texel only from one that has
-/// more than w_c + pin, and by its weight only beyond hold + 2 pin (rims stay where they are; pin varies by ± 40 % with the place, over
-/// about a millimetre, as surfaces are not clean). The rim evaporates faster by
+/// more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
+/// about a millimetre, as surfaces are not clean). With a direction of weight
+/// contact lines keep mounds as they are (L = 0), and what is more than they hold runs down in beads
+/// (drips.h), 256 at once at most. The rim evaporates faster by
 /// `rim_evaporation`, so that liquid, and pigment with it, is drawn there: dark edges.
 /// A texel with nothing wet any more is closed (drying.h).
 ///
@@ -57,8 +62,8 @@ struct FilmReport {
 /// pores never beyond their capacity) for any `seconds`; only tiles that are wet or next to wet
 /// ones are looked at; the same bits for any number of threads and on every instruction set.
 /// Conductances: 1/√g (g22, −g12; −g12, g11), the mixed term by diagonal faces (Selling's
-/// decomposition), made when a tile first gets wet (5 KiB a tile). Some 5 ns per texel and step
-/// with four pigments.
+/// decomposition), made when a tile first gets wet (5 to 7 KiB a tile). Some 8 ns per texel and step
+/// with four pigments from cache, and as much again from memory.
 class WetFilm {
   public:
     /// The map must outlive it.

@@ -10,7 +10,7 @@ namespace {
 constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of the border need both sides
 constexpr float kMostConductance = 4; // over the smaller of the two areas
 constexpr double kNoShear = 0.05;     // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
-constexpr double kGrainLength = 1.2e-3, kGrainDepth = 0.4;  // metres; of the mean
+constexpr double kGrainDepth = 0.4;   // of the mean
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
 
 struct Spot {
@@ -158,34 +158,8 @@ Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot) {
             any |= m != 0;
         }
     if (any) g.gd = std::make_unique<Field>(diagonals);
-    for (int t = 0; t < kTexels; ++t) {
-        g.stiffness = std::max(g.stiffness, g.inverse[t] * sum_at(g, t));
-        if (g.inverse[t] > 0) g.smallest = std::min(g.smallest, 1 / g.inverse[t]);
-    }
+    for (int t = 0; t < kTexels; ++t) g.stiffness = std::max(g.stiffness, g.inverse[t] * sum_at(g, t));
     return g;
-}
-
-Slopes make_slopes(const atlas::TexelMap& map, std::uint32_t slot, const Geometry& geometry, const Vec3& down) {
-    const Neighbourhood n = gather(map, slot);
-    Slopes slopes;
-    const Vec3 d = down / map.texel_size;
-    const auto slope = [&](const Spot& from, const Spot& to, float g) {
-        const float s = g > 0 ? g * static_cast<float>(glm::dot(d, to.position - from.position)) : 0;
-        slopes.steepest = std::max(slopes.steepest, std::abs(s));
-        return s;
-    };
-    for (int row = -1; row < kSide; ++row)
-        for (int column = -1; column < kSide; ++column) {
-            const Spot& here = n.at(column, row);
-            if (row >= 0)
-                x_face(slopes.x, slopes.x_left, column, row) =
-                    slope(here, n.at(column + 1, row), x_face(geometry.gx, geometry.gx_left, column, row));
-            if (column >= 0) {
-                const int i = (row + 1) * kSide + column;
-                slopes.y[i] = slope(here, n.at(column, row + 1), geometry.gy[i]);
-            }
-        }
-    return slopes;
 }
 
 }  // namespace tuft::ink::wet

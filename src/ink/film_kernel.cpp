@@ -33,9 +33,9 @@ TUFT_INLINE Ends ends(const Work& o, const Geometry& g, int k) {
 }
 
 /// What differs between tiles; all give the same numbers where they apply.
-template <bool kPores, bool kWeight, bool kDry>
+template <bool kPores, bool kDry>
 struct Law {
-    static constexpr bool pores = kPores, weight = kWeight;
+    static constexpr bool pores = kPores;
 
     /// Flux of liquid on the surface between two texels, film units · mean area.
     static TUFT_INLINE float film_flux(float g, const End& e0, const End& e1, const Step& p) {
@@ -52,15 +52,6 @@ struct Law {
     static TUFT_INLINE float pore_flux(float g, const End& e0, const End& e1, const Step& p) {
         return g * smaller(p.flow * (0.5f * (e0.s + e1.s)), p.limit) * (e0.s - e1.s);
     }
-
-    /// Of weight: upwind, cubic in the thickness.
-    static TUFT_INLINE float weight_flux(float slope, const End& e0, const End& e1, const Step& p) {
-        const float from = slope > 0 ? e0.w : e1.w;
-        const float onto = (slope > 0 ? e1.t : e0.t) > 0 ? 0 : 2 * p.pin * (slope > 0 ? e1.grain : e0.grain);
-        const float free = positive(from - (p.hold + onto));
-        const float speed = p.weight * (free * free) * slope;
-        return (speed > p.run ? p.run : (speed < -p.run ? -p.run : speed)) * from;
-    }
 };
 
 struct Carriers {
@@ -73,13 +64,11 @@ TUFT_INLINE Carriers carriers(float g, float flux, float t0, float t1, const Ste
 
 /// Sixteen faces.
 template <class Law>
-TUFT_INLINE void faces(float* w, float* s, float* a, float* b, const float* g, const float* slope,
-                       const Ends& from, const Ends& to, const Step& p) {
+TUFT_INLINE void faces(float* w, float* s, float* a, float* b, const float* g, const Ends& from, const Ends& to, const Step& p) {
 #pragma GCC ivdep
     for (int x = 0; x < kSide; ++x) {
         const End e0 = from.at(x), e1 = to.at(x);
-        float fw = Law::film_flux(g[x], e0, e1, p);
-        if constexpr (Law::weight) fw += Law::weight_flux(slope[x], e0, e1, p);
+        const float fw = Law::film_flux(g[x], e0, e1, p);
         float all = fw;
         if constexpr (Law::pores) {
             const float fs = Law::pore_flux(g[x], e0, e1, p);
@@ -95,7 +84,7 @@ TUFT_INLINE void faces(float* w, float* s, float* a, float* b, const float* g, c
 
 /// The left sides of the first column, as one row.
 template <class Law>
-TUFT_INLINE void left_faces(Faces& f, const Work& o, const Geometry& g, const float* slope, const Step& p) {
+TUFT_INLINE void left_faces(Faces& f, const Work& o, const Geometry& g, const Step& p) {
     alignas(64) float in[2][5][kSide], out[4][kSide];
     for (int side = 0; side < 2; ++side)
         for (int row = 0; row < kSide; ++row) {
@@ -107,7 +96,7 @@ TUFT_INLINE void left_faces(Faces& f, const Work& o, const Geometry& g, const fl
             in[side][4][row] = g.grain[k];
         }
     const auto& [l, r] = in;
-    faces<Law>(out[0], out[1], out[2], out[3], g.gx_left.data(), slope, {l[0], l[1], l[2], l[3], l[4]},
+    faces<Law>(out[0], out[1], out[2], out[3], g.gx_left.data(), {l[0], l[1], l[2], l[3], l[4]},
                {r[0], r[1], r[2], r[3], r[4]}, p);
     for (int row = 0; row < kSide; ++row) {
         const int k = field_at(-1, row);
@@ -119,17 +108,15 @@ TUFT_INLINE void left_faces(Faces& f, const Work& o, const Geometry& g, const fl
 }
 
 template <class Law>
-TUFT_INLINE void straight_faces(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
-    left_faces<Law>(o.x, o, g, Law::weight ? slopes->x_left.data() : nullptr, p);
+TUFT_INLINE void straight_faces(Work& o, const Geometry& g, const Step& p) {
+    left_faces<Law>(o.x, o, g, p);
     for (int row = 0; row < kSide; ++row) {
         const int k = field_at(0, row), i = row * kSide;
-        faces<Law>(&o.x.w[k], &o.x.s[k], &o.x.a[k], &o.x.b[k], &g.gx[i], Law::weight ? &slopes->x[i] : nullptr,
-                   ends(o, g, k), ends(o, g, k + 1), p);
+        faces<Law>(&o.x.w[k], &o.x.s[k], &o.x.a[k], &o.x.b[k], &g.gx[i], ends(o, g, k), ends(o, g, k + 1), p);
     }
     for (int row = -1; row < kSide; ++row) {
         const int k = field_at(0, row), i = (row + 1) * kSide;
-        faces<Law>(&o.y.w[k], &o.y.s[k], &o.y.a[k], &o.y.b[k], &g.gy[i], Law::weight ? &slopes->y[i] : nullptr,
-                   ends(o, g, k), ends(o, g, k + kRow), p);
+        faces<Law>(&o.y.w[k], &o.y.s[k], &o.y.a[k], &o.y.b[k], &g.gy[i], ends(o, g, k), ends(o, g, k + kRow), p);
     }
 }
 
@@ -170,23 +157,18 @@ TUFT_INLINE void diagonal_faces(Work& o, const Geometry& g, const Step& p) {
     }
 }
 
-template <bool kPores, bool kDry>
-TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
-    if (slopes) straight_faces<Law<kPores, true, kDry>>(o, g, slopes, p);
-    else straight_faces<Law<kPores, false, kDry>>(o, g, nullptr, p);
-    if (g.gd) diagonal_faces<Law<kPores, false, kDry>>(o, g, p);
+template <class Law>
+TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& p) {
+    straight_faces<Law>(o, g, p);
+    if (g.gd) diagonal_faces<Law>(o, g, p);
 }
-TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
-    all_faces<false, false>(o, g, slopes, p);
+TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) {
+    if (p.pores > 0) all_faces<Law<true, false>>(o, g, p);
+    else all_faces<Law<false, false>>(o, g, p);
 }
-TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
-    all_faces<false, true>(o, g, slopes, p);
-}
-TUFT_CLONES void faces_wet_pores(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
-    all_faces<true, false>(o, g, slopes, p);
-}
-TUFT_CLONES void faces_dry_pores(Work& o, const Geometry& g, const Slopes* slopes, const Step& p) {
-    all_faces<true, true>(o, g, slopes, p);
+TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) {
+    if (p.pores > 0) all_faces<Law<true, true>>(o, g, p);
+    else all_faces<Law<false, true>>(o, g, p);
 }
 
 /// total and rate; whether a texel of a chart is dry.
@@ -369,10 +351,9 @@ void gather(Field& field, const std::array<const float*, 9>& planes) {
     }
 }
 
-void fluxes(Work& work, const Geometry& g, const Slopes* slopes, const Step& step) {
+void fluxes(Work& work, const Geometry& g, const Step& step) {
     const bool dry = totals(work, g);
-    if (step.pores > 0) (dry ? faces_dry_pores : faces_wet_pores)(work, g, slopes, step);
-    else (dry ? faces_dry : faces_wet)(work, g, slopes, step);
+    (dry ? faces_dry : faces_wet)(work, g, step);
     if (dry) count_dry(work.dry_neighbours.data(), work.total.data(), g);
     else work.dry_neighbours.fill(0);
 }
@@ -441,15 +422,12 @@ const float* dither(std::uint64_t seed) {
     return &table[hash_bits(seed, 1) % kOffsets & ~std::uint64_t{1}];
 }
 
-SeamFlux seam_flux(float weight, float slope, const std::array<float, 2>& w,
-                   const std::array<float, 2>& s, const std::array<float, 2>& grain,
-                   const Step& step) {
-    using Any = Law<true, true, true>;
+SeamFlux seam_flux(float weight, const std::array<float, 2>& w, const std::array<float, 2>& s,
+                   const std::array<float, 2>& grain, const Step& step) {
     const End e0{w[0], s[0], w[0] + s[0], 0, grain[0]}, e1{w[1], s[1], w[1] + s[1], 0, grain[1]};
     SeamFlux out;
-    out.w = Any::film_flux(weight, e0, e1, step);
-    if (slope != 0) out.w += Any::weight_flux(slope, e0, e1, step);
-    if (step.pores > 0) out.s = Any::pore_flux(weight, e0, e1, step);
+    out.w = Law<true, true>::film_flux(weight, e0, e1, step);
+    if (step.pores > 0) out.s = Law<true, true>::pore_flux(weight, e0, e1, step);
     const Carriers c = carriers(weight, out.w + out.s, e0.t, e1.t, step);
     out.a = c.a;
     out.b = c.b;

@@ -19,6 +19,8 @@ inline constexpr int kField = (kSide + 2) * kRow + 8;
 
 struct alignas(64) Field : std::array<float, kField> {};
 
+inline constexpr double kGrainLength = 1.2e-3;  ///< metres over which the pin of a place varies
+
 inline constexpr int field_at(int column, int row) { return (row + 1) * kRow + 8 + column; }
 inline constexpr int field_of(int texel) { return field_at(texel % kSide, texel / kSide); }
 
@@ -32,23 +34,11 @@ struct alignas(64) Geometry {
     std::array<float, kTexels> inverse{};  ///< mean texel's area over the texel's; 0 outside the charts
     std::array<std::uint32_t, kSide + 2> valid{};  ///< bit column + 1: a texel of a chart
     float stiffness = 0;                   ///< greatest Σ conductances over area
-    float smallest = 1;                    ///< area, over the mean
     /// Of diagonals: > 0 from k to k + 25, < 0 (its size) from k + 1 to k + 24; null: none.
     std::unique_ptr<Field> gd;
     Field grain{};                         ///< pin of the place, over the mean
 };
 Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot);
-
-/// Downhill of each face for one direction of weight: conductance × (height of the one end
-/// less that of the other) over a texel's length; as `Geometry::gx`, `gx_left`, `gy`.
-struct alignas(64) Slopes {
-    std::array<float, kTexels> x{};
-    std::array<float, kSide> x_left{};
-    std::array<float, kTexels + kSide> y{};
-    float steepest = 0;     ///< greatest size of them
-};
-Slopes make_slopes(const atlas::TexelMap& map, std::uint32_t slot, const Geometry& geometry,
-                   const Vec3& down);
 
 /// FilmParams for one step, in texels: rates times the step's length.
 struct Step {
@@ -62,8 +52,6 @@ struct Step {
     float evaporation = 0; ///< film units
     float rim = 0;         ///< film units more, per dry neighbour
     float hold = 0;
-    float weight = 0;      ///< `FilmParams::weight` dt over a texel's length
-    float run = 0;         ///< part of a texel's liquid that weight may take through a face, at most
 };
 
 /// Through faces: fluxes of w and s, film units · mean area, and the carriers of pigments,
@@ -84,8 +72,8 @@ struct alignas(64) Work {
 
 /// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
 void gather(Field& field, const std::array<const float*, 9>& planes);
-/// total, rate, and what goes through the faces. `slopes` may be null.
-void fluxes(Work& work, const Geometry& g, const Slopes* slopes, const Step& step);
+/// total, rate, and what goes through the faces.
+void fluxes(Work& work, const Geometry& g, const Step& step);
 /// dw, ds and dry_neighbours of the texels from the fluxes.
 void liquid_changes(Work& work, const Geometry& g, const Step& step);
 
@@ -115,8 +103,7 @@ struct SeamFlux {
     float w = 0, s = 0;  ///< from the first to the second
     float a = 0, b = 0;  ///< pigment: a p1 / total1 + b p2 / total2
 };
-SeamFlux seam_flux(float weight, float slope, const std::array<float, 2>& w,
-                   const std::array<float, 2>& s, const std::array<float, 2>& grain,
-                   const Step& step);
+SeamFlux seam_flux(float weight, const std::array<float, 2>& w, const std::array<float, 2>& s,
+                   const std::array<float, 2>& grain, const Step& step);
 
 }  // namespace tuft::ink::wet

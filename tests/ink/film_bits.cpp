@@ -15,21 +15,18 @@ using namespace tuft::ink::wet;
 float chance(std::uint64_t a, std::uint64_t b) { return static_cast<float>(uniform(a, b)); }
 
 /// Conductances as of a stretched, sheared chart with a hole in it.
-void fill(Geometry& g, Slopes& slopes, std::uint64_t seed) {
+void fill(Geometry& g, std::uint64_t seed) {
     g.valid.fill((1u << (kSide + 2)) - 1);
     if (seed % 2) g.gd = std::make_unique<Field>();
     for (int i = 0; i < kTexels; ++i) {
         g.gx[i] = i % 37 ? 0.6f + 0.8f * chance(seed, i) : 0;
         g.inverse[i] = 0.7f + 0.6f * chance(seed + 1, i);
-        slopes.x[i] = g.gx[i] * (chance(seed + 2, i) - 0.5f);
     }
     for (int i = 0; i < kTexels + kSide; ++i) {
         g.gy[i] = 0.6f + 0.8f * chance(seed + 3, i);
-        slopes.y[i] = g.gy[i] * (chance(seed + 4, i) - 0.5f);
     }
     for (int i = 0; i < kSide; ++i) {
         g.gx_left[i] = 0.6f + 0.8f * chance(seed + 5, i);
-        slopes.x_left[i] = g.gx_left[i] * (chance(seed + 6, i) - 0.5f);
     }
     for (int row = -1; row <= kSide; ++row)
         for (int column = -1; column <= kSide; ++column) {
@@ -51,7 +48,7 @@ int main() {
     std::uint64_t hash = 0;
     const auto add = [&](const auto& a) { hash = hash_bytes(a.data(), sizeof a[0] * a.size(), hash); };
     for (std::uint64_t round = 0; round < 32; ++round) {
-        // Wet all over, or with dry places; with and without pores and weight.
+        // Wet all over, or with dry places; with and without pores.
         const float dry = round & 2 ? 0.3f : 0.0f;
         std::array<std::array<float, kTexels>, 9> w, s, p;
         std::array<const float*, 9> w_at, s_at, p_at;
@@ -65,18 +62,17 @@ int main() {
             w_at[i] = w[i].data(), s_at[i] = s[i].data(), p_at[i] = p[i].data();
         }
         Geometry g;
-        Slopes slopes;
-        fill(g, slopes, 50 * round + (round & 1));
+        fill(g, 50 * round + (round & 1));
         const Step step{.flow = 0.02f, .levelling = 0.01f, .limit = 0.06f, .threshold = 0.1f, .pin = 1, .mixing = 0.02f,
                         .soak = 0.01f, .pores = round & 4 ? 3.0f : 0.0f, .evaporation = 0.004f, .rim = 0.002f,
-                        .hold = 1, .weight = 0.003f, .run = 0.1f};
+                        .hold = 1};
         Work work;
         gather(work.w, w_at);
         gather(work.s, s_at);
         gather(work.p, p_at);
-        fluxes(work, g, round & 8 ? &slopes : nullptr, step);
+        fluxes(work, g, step);
         liquid_changes(work, g, step);
-        const SeamFlux seam = seam_flux(0.7f, 0.3f, {w[0][5], w[1][9]}, {s[0][5], s[1][9]}, {0.9f, 1.1f}, step);
+        const SeamFlux seam = seam_flux(0.7f, {w[0][5], w[1][9]}, {s[0][5], s[1][9]}, {0.9f, 1.1f}, step);
         work.dw[5] -= seam.w;
         work.dp.fill(seam.a * p[0][5] + seam.b * p[1][9]);
         std::array<float, kTexels> pigment;

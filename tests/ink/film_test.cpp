@@ -348,30 +348,6 @@ TEST(WetFilm, ADryCanvasCostsNothingAndOnlyWetTilesDo) {
     EXPECT_FALSE(s.canvas.wet());
 }
 
-TEST(WetFilm, WeightDrawsThickLiquidDownAndLeavesThinWhereItIs) {
-    for (const double thickness : {2.0, 5.5}) {
-        Wet s(testing::cylinder(0.01, 0.03, 3, 8000));
-        FilmParams p = film_params(load_substrate("porcelain"), {0, 0, -1});
-        const Vec3 at{0.01, 0, 5e-3};
-        s.wet([&](const Vec3& q) { return thickness * disc(q - at, 2e-3); });
-        s.ink(0, [&](const Vec3& q) { return thickness * disc(q - at, 2e-3); });
-        s.film.advance(s.canvas, 15, p);
-        double mean = 0, lowest = 1, sum = 0;
-        s.each([&](std::uint32_t slot, int t, const Vec3& q) {
-            const double a = s.amount(slot, t) * static_cast<double>(s.map.tiles[slot].area[t]);
-            mean += a * q.z;
-            sum += a;
-            if (s.amount(slot, t) > 0.3) lowest = std::min(lowest, q.z);
-        });
-        if (thickness < 2.1) {
-            EXPECT_NEAR(mean / sum, 5e-3, 0.05e-3);
-        } else {
-            EXPECT_LT(mean / sum, 4.5e-3);
-            EXPECT_LT(lowest, 1e-3) << "below the blot, which ends at 3 mm";
-        }
-    }
-}
-
 TEST(WetFilm, ADryingSpotHasADarkRim) {
     Wet s(testing::sheet(0.012, 1, 120));
     s.wet([](const Vec3& at) { return 3 * disc(at, 3e-3); });

@@ -1,0 +1,316 @@
+#include "ink/drips.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tuft::ink::wet {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kCapillaryLength = 2.7e-3;  // metres: √(σ / ρ g) of water
+constexpr double kLeastSteepness = 0.1;      // sin α: beads on flatter places would be puddles
+constexpr double kTrailWidth = 1;            // of the bead's
+constexpr double kSoft = 0.06;               // of the trail's half width: its edge
+constexpr int kShifts = 6;                   // to the middle of the liquid, and from the critical radius to its own
+constexpr double kCatchment = 2;             // radii from which a bead draws liquid in
+constexpr double kStart = 1.8;               // volumes that run on: with less a bead does not come off a film
+constexpr double kRim = 1.1;                 // a bead's own radius, and what it may have spread meanwhile
+constexpr double kBead = 2;                  // hold: a film as thick as that is likely a bead
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr double kApart = 2.2;               // critical radii between beads that move in the same step
+constexpr double kLeastGrain = 0.8, kGrainPart = 0.5;
+constexpr double kHopeful = 0.3;             // of what runs: less about a place will not come together
+constexpr double kFastest = 1.5;             // bead_speed
+constexpr double kAtRest = 1.01;             // of the critical radius
+
+double critical_radius(double angle, double steepness) {
+    return 2 * kCapillaryLength * std::sqrt(angle / (kPi * std::max(steepness, kLeastSteepness)));
+}
+/// Film units · m² of a bead.
+double amount_of(double radius, double angle) { return 0.25 * kPi * angle * radius * radius * radius / kFilmUnit; }
+/// Newton's method on the above, from a radius near by; rounds the same on every machine.
+double radius_of(double amount, double angle) {
+    const double cube = amount * kFilmUnit * 4 / (kPi * angle);
+    double r = critical_radius(angle, 1);
+    for (int i = 0; i < 40; ++i) r = (2 * r + cube / (r * r)) / 3;
+    return r;
+}
+
+}  // namespace
+
+Drips::Drips(const atlas::TexelMap& map, const atlas::SeamLinks& seams)
+    : map_(map), seams_(seams), seen_of_slot_(map.n_slots(), kNone) {}
+
+double Drips::least(const FilmParams& p) {
+    // Over the bead's disc all above the trail, over the ring round it what is above hold.
+    const double r = critical_radius(p.bead_angle, 1), ring = kCatchment * kCatchment - 1;
+    const double mean = std::pow(kLeastGrain, 1.5) * amount_of(r, p.bead_angle) / (kPi * r * r);
+    return std::min((mean + p.trail + ring * p.hold) / (1 + ring), mean + p.trail);
+}
+
+/// The texels within `radius` of `centre` that hang together with `start`.
+void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radius) {
+    disc_.clear();
+    const auto visit = [&](const atlas::TexelRef& ref, const Vec3* from, double reach) {
+        const Vec3 at(map_.position(ref.slot, ref.texel));
+        const double distance = glm::distance(at, centre);
+        if (from && distance > radius) return;
+        if (from && reach > 0 && glm::distance(at, *from) > reach) return;
+        std::uint32_t& seen = seen_of_slot_[ref.slot];
+        if (seen == kNone) {
+            seen = static_cast<std::uint32_t>(seen_slots_.size());
+            seen_slots_.push_back(ref.slot);
+            if (seen_.size() < seen_slots_.size()) seen_.emplace_back();
+            seen_[seen].fill(0);
+        }
+        std::uint64_t& bits = seen_[seen][ref.texel / 64];
+        const std::uint64_t bit = std::uint64_t{1} << (ref.texel % 64);
+        if (bits & bit) return;
+        bits |= bit;
+        disc_.push_back({ref, at, static_cast<double>(map_.tiles[ref.slot].area[ref.texel]), distance});
+    };
+    visit(start, nullptr, 0);
+    for (std::size_t i = 0; i < disc_.size(); ++i) {
+        const Near here = disc_[i];
+        const std::uint32_t tile = map_.tile_of_slot[here.ref.slot];
+        const std::int64_t x = std::int64_t{tile % map_.tiles_per_side} * atlas::kTile + here.ref.texel % atlas::kTile;
+        const std::int64_t y = std::int64_t{tile / map_.tiles_per_side} * atlas::kTile + here.ref.texel / atlas::kTile;
+        for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
+            if (const atlas::TexelRef next = atlas::texel_ref(map_, x + dx, y + dy); next.valid())
+                visit(next, &here.at, static_cast<double>(std::max(map_.reach[here.ref.slot], map_.reach[next.slot])));
+        const auto links = std::span(seams_.links).subspan(seams_.start[here.ref.slot], seams_.start[here.ref.slot + 1] - seams_.start[here.ref.slot]);
+        const auto first = std::lower_bound(links.begin(), links.end(), here.ref.texel,
+                                            [](const atlas::SeamLink& l, std::uint8_t t) { return l.texel < t; });
+        for (auto l = first; l != links.end() && l->texel == here.ref.texel; ++l)
+            visit({l->other_slot, l->other_texel}, &here.at, 0);
+    }
+    for (const std::uint32_t slot : seen_slots_) seen_of_slot_[slot] = kNone;
+    seen_slots_.clear();
+}
+
+struct Drips::Bead {
+    atlas::TexelRef place;  ///< the texel next to its middle
+    Vec3 at{0};
+    double amount = 0;      ///< film units · m²
+    std::array<double, kMaxPigments> pigment{};
+};
+
+class Drips::Run {
+  public:
+    Run(Drips& drips, Canvas& canvas, const FilmParams& params, const BeforeFn& before)
+        : d_(drips), canvas_(canvas), p_(params), before_(before), n_pigments_(static_cast<int>(canvas.pigments().size())) {}
+
+    std::vector<std::uint32_t> written;
+
+    void run(const Seed& seed, double seconds) {
+        const double start_radius = critical_radius(p_.bead_angle, steepness(seed.place));
+        Bead bead{.place = seed.place, .at = Vec3(d_.map_.position(seed.place.slot, seed.place.texel))};
+        if (steepness(seed.place) < kLeastSteepness) return;
+        const double enough = amount_of(start_radius, p_.bead_angle);
+        double reach = start_radius;
+        for (int i = 0; i < kShifts; ++i) {
+            if (!centre(bead, reach) || bead.amount < kHopeful * enough) return;
+            reach = std::max(start_radius, kRim * radius_of(bead.amount, p_.bead_angle));
+        }
+        for (const Vec3& other : middles_)
+            if (glm::distance(other, bead.at) < kApart * start_radius) return;
+        const double grain = 1 + kGrainPart * (seed.grain - 1), radius = critical(bead, grain);
+        const double runs = amount_of(kAtRest * radius, p_.bead_angle), starts = kStart * runs;
+        d_.gather(bead.place, bead.at, kCatchment * reach);
+        const auto [inside, round] = amounts(reach);
+        if (inside < runs && inside + round < starts) return;
+        bead.amount = 0;
+        if (inside < runs) draw_in(bead, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
+        else draw_in(bead, reach, std::min(p_.drain * seconds, 1.0), kBead * p_.hold);  // leaves other beads whole
+        middles_.push_back(bead.at);
+        move(bead, grain, seconds);
+        lay_down(bead);
+        middles_.push_back(bead.at);
+    }
+
+  private:
+    Vec3 downhill(const atlas::TexelRef& place) const {
+        const Vec3 n(d_.map_.normal(place.slot, place.texel));
+        return p_.down - n * glm::dot(n, p_.down);
+    }
+    double steepness(const atlas::TexelRef& place) const { return glm::length(downhill(place)); }
+    double critical(const Bead& bead, double grain) const {
+        return critical_radius(p_.bead_angle, steepness(bead.place)) * std::sqrt(grain);
+    }
+    float liquid(const atlas::TexelRef& ref) const {
+        const Plane* w = canvas_.liquid(ref.slot, Liquid::film);
+        return w ? (*w)[ref.texel] : 0;
+    }
+    void write(std::uint32_t slot) {
+        if (!written.empty() && written.back() == slot) return;
+        if (std::find(written.begin(), written.end(), slot) == written.end()) {
+            if (before_) before_(slot);
+            canvas_.mark_dirty(slot);
+        } else {
+            std::erase(written, slot);
+        }
+        written.push_back(slot);
+    }
+
+    /// Sets the amount about the bead's middle, and the middle where most of it is.
+    bool centre(Bead& bead, double radius) {
+        d_.gather(bead.place, bead.at, radius);
+        double sum = 0;
+        Vec3 moment{0};
+        for (const Near& n : d_.disc_) {
+            const double over = std::max(0.0, static_cast<double>(liquid(n.ref)) - p_.trail) * n.area;
+            sum += over;
+            moment += over * n.at;
+        }
+        bead.amount = sum;
+        if (!(sum > 0)) return false;
+        put_at(bead, moment / sum);
+        return true;
+    }
+
+    /// Onto the surface next to a point near it; `gather` has been there.
+    void put_at(Bead& bead, const Vec3& at) const {
+        double least = 1e300;
+        const Near* nearest = nullptr;
+        for (const Near& n : d_.disc_)
+            if (const double distance = glm::dot(n.at - at, n.at - at); distance < least) least = distance, nearest = &n;
+        bead.place = nearest->ref;
+        const Vec3 n(d_.map_.normal(bead.place.slot, bead.place.texel));
+        bead.at = at - n * glm::dot(n, at - nearest->at);
+    }
+
+    /// Above the trail within `radius`, and above hold round it.
+    std::pair<double, double> amounts(double radius) const {
+        double inside = 0, round = 0;
+        for (const Near& n : d_.disc_) {
+            const auto w = static_cast<double>(liquid(n.ref));
+            (n.distance < radius ? inside : round) += std::max(0.0, w - (n.distance < radius ? p_.trail : p_.hold)) * n.area;
+        }
+        return {inside, round};
+    }
+    /// All of the one and `part` of the other, where it is less than `thick`, go into the bead.
+    void draw_in(Bead& bead, double radius, double part, double thick) {
+        for (const Near& n : d_.disc_) {
+            const auto w = static_cast<double>(liquid(n.ref));
+            if (n.distance < radius) take(bead, n, p_.trail);
+            else if (w > p_.hold && w < thick) take(bead, n, w - part * (w - p_.hold));
+        }
+    }
+
+    /// What the bead meets on its way; another bead that it touches comes whole.
+    void take_up(Bead& bead, double radius) {
+        const Near* thickest = &d_.disc_.front();
+        for (const Near& n : d_.disc_)
+            if (liquid(n.ref) > liquid(thickest->ref)) thickest = &n;
+        if (static_cast<double>(liquid(thickest->ref)) > kBead * p_.hold) {
+            Bead other{.place = thickest->ref, .at = thickest->at};
+            for (int i = 0; i < kShifts && centre(other, radius); ++i) {}
+            d_.gather(other.place, other.at, kRim * radius);
+            for (const Near& n : d_.disc_) take(bead, n, p_.trail);
+            d_.gather(bead.place, bead.at, radius);
+        }
+        for (const Near& n : d_.disc_) take(bead, n, p_.trail);
+    }
+
+    /// What is thicker than `rest`, with its pigments.
+    void take(Bead& bead, const Near& n, double rest_liquid) {
+        const auto rest_w = static_cast<float>(rest_liquid);
+        if (const float w = liquid(n.ref); w > rest_w) {
+            write(n.ref.slot);
+            canvas_.touch_liquid(n.ref.slot, Liquid::film)[n.ref.texel] = rest_w;
+            bead.amount += (static_cast<double>(w) - static_cast<double>(rest_w)) * n.area;
+            const float part = rest_w / w;
+            for (int k = 0; k < n_pigments_; ++k) {
+                if (!canvas_.plane(n.ref.slot, k)) continue;
+                float& p = canvas_.touch(n.ref.slot, k)[n.ref.texel];
+                const float rest = p * part;
+                bead.pigment[k] += (static_cast<double>(p) - static_cast<double>(rest)) * n.area;
+                p = rest;
+            }
+        }
+    }
+
+    /// Moves `part` of the bead onto a texel: booked is what the texel took.
+    void give(Bead& bead, const Near& n, double part) {
+        if (!(part > 0)) return;
+        write(n.ref.slot);
+        const auto add = [&](float& to, double& from) {
+            const float before = to;
+            to = static_cast<float>(static_cast<double>(to) + part * from / n.area);
+            return (static_cast<double>(to) - static_cast<double>(before)) * n.area;
+        };
+        given_.amount += add(canvas_.touch_liquid(n.ref.slot, Liquid::film)[n.ref.texel], bead.amount);
+        for (int k = 0; k < n_pigments_; ++k)
+            if (bead.pigment[k] > 0) given_.pigment[k] += add(canvas_.touch(n.ref.slot, k)[n.ref.texel], bead.pigment[k]);
+    }
+    void book(Bead& bead) {
+        bead.amount = std::max(0.0, bead.amount - given_.amount);
+        for (int k = 0; k < n_pigments_; ++k) bead.pigment[k] = std::max(0.0, bead.pigment[k] - given_.pigment[k]);
+        given_ = {};
+    }
+
+    void leave_trail(Bead& bead, double radius) {
+        const double half = kTrailWidth * radius, soft = std::max(kSoft * half, d_.map_.texel_size);
+        for (const Near& n : d_.disc_) {
+            const double wanted = p_.trail * std::clamp((half - n.distance) / soft, 0.0, 1.0);
+            const double lacking = (wanted - static_cast<double>(liquid(n.ref))) * n.area;
+            if (lacking > 0 && bead.amount > 0) give(bead, n, std::min(lacking / bead.amount, 1e-3));
+        }
+        book(bead);
+    }
+
+    void move(Bead& bead, double grain, double seconds) {
+        double radius = radius_of(bead.amount, p_.bead_angle);
+        const double least_step = 0.5 * d_.map_.texel_size;
+        while (seconds > 0) {
+            const Vec3 down = downhill(bead.place);
+            const double steep = glm::length(down), ratio = radius / critical(bead, grain);
+            if (steep < kLeastSteepness || ratio < kAtRest) return;
+            const double speed = p_.bead_speed * std::min(ratio * ratio - 1, kFastest);
+            const double step = std::min(std::max(least_step, 0.08 * radius), speed * seconds);
+            seconds -= step / speed;
+            d_.gather(bead.place, bead.at, radius);
+            const Vec3 was = bead.at;
+            put_at(bead, bead.at + down * (step / steep));
+            if (glm::distance(was, bead.at) < 0.1 * step) return;  // an edge of the model
+            d_.gather(bead.place, bead.at, radius);
+            take_up(bead, radius);
+            leave_trail(bead, radius);
+            radius = radius_of(bead.amount, p_.bead_angle);
+        }
+    }
+
+    /// As a cap; what rounding leaves over goes to the middle.
+    void lay_down(Bead& bead) {
+        const double radius = radius_of(bead.amount, p_.bead_angle);
+        d_.gather(bead.place, bead.at, radius);
+        const auto height = [&](const Near& n) { return std::max(0.0, 1 - n.distance * n.distance / (radius * radius)) * n.area; };
+        double sum = 0;
+        for (const Near& n : d_.disc_) sum += height(n);
+        if (sum > 0)
+            for (const Near& n : d_.disc_) give(bead, n, height(n) / sum);
+        book(bead);
+        give(bead, d_.disc_.front(), 1);
+        given_ = {};
+    }
+
+    Drips& d_;
+    Canvas& canvas_;
+    const FilmParams& p_;
+    const BeforeFn& before_;
+    int n_pigments_;
+    Bead given_{};
+    std::vector<Vec3> middles_;  ///< of beads looked at
+};
+
+std::vector<std::uint32_t> Drips::run(Canvas& canvas, std::span<const Seed> seeds, const FilmParams& params,
+                                      double seconds, const BeforeFn& before) {
+    Run run(*this, canvas, params, before);
+    for (const Seed& seed : seeds) run.run(seed, seconds);
+    std::sort(run.written.begin(), run.written.end());
+    return std::move(run.written);
+}
+
+}  // namespace tuft::ink::wet

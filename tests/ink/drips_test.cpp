@@ -1,0 +1,193 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../atlas/analytic_surfaces.h"
+#include "core/parallel.h"
+#include "ink/film.h"
+
+// Ink that runs down a wall.
+namespace tuft::ink {
+namespace {
+
+using atlas::TexelMap;
+
+/// A wall of 24 × 40 mm of glazed porcelain, 8 texels a millimetre, in one chart turned by `angle`
+/// in the atlas, or in two with the seam down its middle, the right one turned by a quarter.
+testing::Unwrapped wall(double angle, bool cut) {
+    const double width = 24e-3, height = 40e-3, per_metre = 8e3;
+    const Vec2 across{std::cos(angle), std::sin(angle)}, up{-across.y, across.x};
+    const auto part = [&](double from, double to, const Vec2& at, const Vec2& x, const Vec2& y) {
+        testing::Patch p = testing::flat({from, 0, -0.5 * height}, {to - from, 0, 0}, {0, 0, height}, 8, 16);
+        testing::place(p, at, (to - from) * per_metre * x, height * per_metre * y);
+        return p;
+    };
+    if (!cut) return testing::build({part(-0.5 * width, 0.5 * width, {8.21 + height * per_metre * std::sin(angle), 8.13}, across, up)}, 450);
+    return testing::build({part(-0.5 * width, 0, {8.21, 8.13}, {1, 0}, {0, 1}),
+                           part(0, 0.5 * width, {450.4, 20.3}, {0, 1}, {-1, 0})}, 480);
+}
+
+struct Wall {
+    testing::Unwrapped u;
+    TexelMap map;
+    WetFilm film;
+    Canvas canvas;
+
+    explicit Wall(double angle = 0, bool cut = false)
+        : u(wall(angle, cut)),
+          map(atlas::build_texel_map(u.mesh, u.atlas)),
+          film(map, atlas::build_seam_links(u.mesh, u.atlas, map)),
+          canvas(map.n_slots()) {
+        canvas.add_pigment(load_ink("carbon").parts[0].pigment);
+    }
+    template <class Fn>
+    void each(Fn&& fn) const {
+        for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+            for (int t = 0; t < atlas::kTileTexels; ++t)
+                if (map.tiles[slot].piece[t] != atlas::kNoPiece) fn(slot, t, Vec3(map.position(slot, t)));
+    }
+    /// A blot of `radius` about (0, 12 mm), `film` thick, a tenth of it ink.
+    void blot(double thickness, double radius) {
+        each([&](std::uint32_t slot, int t, const Vec3& p) {
+            const double part = std::clamp((radius - glm::distance(p, Vec3{0, 0, 12e-3})) / 0.3e-3 + 0.5, 0.0, 1.0);
+            if (!(part > 0)) return;
+            canvas.touch_liquid(slot, Liquid::film)[t] = static_cast<float>(thickness * part);
+            canvas.touch(slot, 0)[t] = static_cast<float>(0.1 * thickness * part);
+        });
+    }
+    double ink(std::uint32_t slot, int t) const {
+        double sum = 0;
+        for (int film_index = 0; film_index < kFilms; ++film_index)
+            if (const Plane* p = canvas.film_plane(slot, film_index, 0)) sum += static_cast<double>((*p)[t]);
+        return sum;
+    }
+    /// Mean ink in squares of `side` metres, [n × n] from (−n/2, n/2) side downwards.
+    std::vector<double> squares(double side, int n) const {
+        std::vector<double> sum(static_cast<std::size_t>(n * n)), area(sum.size());
+        each([&](std::uint32_t slot, int t, const Vec3& p) {
+            const int x = static_cast<int>(std::floor(p.x / side)) + n / 2, y = static_cast<int>(std::floor(-p.z / side)) + n / 2;
+            if (x < 0 || y < 0 || x >= n || y >= n) return;
+            const auto a = static_cast<double>(map.tiles[slot].area[t]);
+            sum[static_cast<std::size_t>(y * n + x)] += ink(slot, t) * a;
+            area[static_cast<std::size_t>(y * n + x)] += a;
+        });
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = area[i] > 0 ? sum[i] / area[i] : 0;
+        return sum;
+    }
+    double lowest() const {
+        double z = 1;
+        each([&](std::uint32_t slot, int t, const Vec3& p) {
+            if (ink(slot, t) > 0.01) z = std::min(z, p.z);
+        });
+        return z;
+    }
+};
+
+FilmParams porcelain(const Vec3& down = {0, 0, -1}) { return film_params(load_substrate("porcelain"), down); }
+
+/// A drop of three times the critical volume.
+void drop(Wall& w) { w.blot(8, 1.5e-3); }
+
+/// Σ |a − b| over Σ a of means over squares of 1 mm.
+double difference(const Wall& a, const Wall& b) {
+    const std::vector<double> one = a.squares(1e-3, 40), other = b.squares(1e-3, 40);
+    double sum = 0, apart = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) apart += std::abs(one[i] - other[i]), sum += one[i];
+    return apart / sum;
+}
+
+TEST(Drips, AThinFilmStaysAndAThickOneRuns) {
+    for (const double thickness : {2.0, 3.5}) {
+        Wall w;
+        w.blot(thickness, 4e-3);
+        w.film.advance(w.canvas, 6, porcelain());
+        if (thickness < 3) EXPECT_NEAR(w.lowest(), 8e-3, 0.3e-3) << "two texels";
+        else EXPECT_LT(w.lowest(), 5e-3);
+    }
+}
+
+TEST(Drips, ADropRunsInANarrowTrailUntilTheTrailHasUsedItUpAndEndsInABead) {
+    Wall thick;
+    drop(thick);
+    const double ink = thick.canvas.total(thick.map, 0), water = thick.canvas.total_liquid(thick.map);
+    const double gone = thick.film.advance(thick.canvas, 15, porcelain()).evaporated;
+    EXPECT_NEAR(thick.canvas.total(thick.map, 0) / ink, 1, 1e-5);
+    EXPECT_NEAR((thick.canvas.total_liquid(thick.map) + gone) / water, 1, 1e-5);
+
+    const double end = thick.lowest();
+    EXPECT_LT(end, 3e-3);
+    EXPECT_GT(end, -18e-3) << "or else the wall ends before the trail";
+    thick.film.advance(thick.canvas, 5, porcelain());
+    EXPECT_NEAR(thick.lowest(), end, 0.3e-3);
+    // A cap of critical radius 1.2 mm, wider by what is left over, and its trail.
+    double bead = 0, trail = 0, most_bead = 0, most_trail = 0;
+    thick.each([&](std::uint32_t slot, int t, const Vec3& p) {
+        const double above = p.z - end, amount = thick.ink(slot, t);
+        if (above < 2.2e-3) most_bead = std::max(most_bead, amount);
+        if (above < 2.2e-3 && amount > 0.01) bead += static_cast<double>(thick.map.tiles[slot].area[t]);
+        if (above > 3e-3 && above < 4e-3) most_trail = std::max(most_trail, amount);
+        if (above > 3e-3 && above < 4e-3 && amount > 0.01) trail += static_cast<double>(thick.map.tiles[slot].area[t]) / 1e-3;
+    });
+    EXPECT_GT(trail, 2e-3);
+    EXPECT_LT(trail, 4e-3);
+    EXPECT_GT(bead, 3e-6);
+    EXPECT_LT(bead, 9e-6);
+    EXPECT_GT(most_bead, 4 * most_trail);
+}
+
+// Texels lie otherwise at the edges of the squares: an eighth of a millimetre on each side of squares
+// of 1 mm, of which every other is an edge of the trail.
+constexpr double kTexelsOfSquares = 0.15;
+
+TEST(Drips, TheDirectionOfTexelsDoesNotShow) {
+    Wall straight, turned(std::numbers::pi / 6);
+    for (Wall* w : {&straight, &turned}) {
+        drop(*w);
+        w->film.advance(w->canvas, 6, porcelain());
+    }
+    EXPECT_LT(difference(straight, turned), kTexelsOfSquares);
+    EXPECT_NEAR(straight.lowest(), turned.lowest(), 0.5e-3);
+}
+
+TEST(Drips, BeadsCrossASeamAsIfThereWereNone) {
+    Wall whole, cut(0, true);
+    for (Wall* w : {&whole, &cut}) {
+        drop(*w);
+        w->film.advance(w->canvas, 6, porcelain(glm::normalize(Vec3{0.3, 0, -1})));
+    }
+    EXPECT_LT(difference(whole, cut), kTexelsOfSquares);
+    EXPECT_NEAR(whole.lowest(), cut.lowest(), 0.5e-3);
+}
+
+TEST(Drips, GentlerSlopesTakeMoreLiquid) {
+    for (const double steepness : {1.0, 0.15}) {
+        Wall w;
+        drop(w);
+        w.film.advance(w.canvas, 3, porcelain({0, std::sqrt(1 - steepness * steepness), -steepness}));
+        EXPECT_EQ(w.lowest() < 6e-3, steepness == 1.0) << "critical radius 1.2 mm, and 3 mm with 17 times the volume";
+    }
+}
+
+TEST(Drips, ThreadsAndTheLengthOfCallsChangeNothingThatMatters) {
+    std::uint64_t hashes[2];
+    double ends[2];
+    for (int i = 0; i < 2; ++i) {
+        set_thread_count(i ? 3 : 1);
+        Wall w;
+        drop(w);
+        w.film.advance(w.canvas, 2, porcelain());
+        hashes[i] = w.canvas.hash();
+    }
+    set_thread_count(0);
+    EXPECT_EQ(hashes[0], hashes[1]);
+    for (int i = 0; i < 2; ++i) {
+        Wall w;
+        drop(w);
+        for (int part = 0; part < (i ? 30 : 1); ++part) w.film.advance(w.canvas, i ? 0.1 : 3, porcelain());
+        ends[i] = w.lowest();
+    }
+    EXPECT_NEAR(ends[0], ends[1], 1e-3) << "of some 15 mm";
+}
+
+}  // namespace
+}  // namespace tuft::ink
