@@ -201,7 +201,7 @@ struct Solver {
             const ContactMemory& c = memory.contact[p];
             const Vec3 x = point(memory.node, p);
             if (c.touching) {
-                anchor[p] = c.anchor;
+                anchor[p] = carried_anchor(p, c, point(before, p));
                 anchored[p] = 1;
                 normal[p] = c.force;
                 frozen.multiplier[p] = c.multiplier;
@@ -216,6 +216,14 @@ struct Solver {
         }
     }
 
+    /// The anchor of a point that stuck at `last`: what it is stretched along the surface
+    /// turns with the surface's normal, so that neither a rounded edge nor a change of planes
+    /// pulls at it.
+    Vec3 carried_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const {
+        if (c.normal == Vec3{0}) return c.anchor;
+        return last - parallel_transport(last - c.anchor, c.normal, normal_at(p, memory.node));
+    }
+
     PointPlace place(std::size_t p) const {
         return point_place(static_cast<int>(p), law.points_per_segment, n());
     }
@@ -225,9 +233,45 @@ struct Solver {
         return (1 - at.s) * x[at.node] + at.s * x[at.node + 1];
     }
 
-    /// The two planes of a point over a crease: those of the nodes beside it, or a node's own
-    /// and the one next to it that differs most.
+    /// The two planes of a point over a crease: those of an edge near the nodes beside it, or of
+    /// the nodes themselves.
     void lay_crease(std::size_t p, const PointPlace& at) {
+        const Obstacle &from = obstacles[at.node], &to = obstacles[at.node + 1];
+        const bool near_first = at.s < 1 && from.at_edge(), near_last = at.s > 0 && to.at_edge();
+        if (near_first || near_last) {
+            const bool both = near_first && near_last;
+            const Obstacle &edge = near_first ? from : to, &other = near_first ? to : from;
+            const double part = at.s == 0 || at.s == 1 ? 0 : near_first ? at.s : 1 - at.s;
+            if (lay_edge(p, edge, other, both, part)) return;
+        }
+        lay_parted(p, at);
+    }
+
+    /// The planes of the edge near node `a`, those that node `b` has too interpolated towards
+    /// it by `part`; false when b's plane is neither of them and b nearer.
+    bool lay_edge(std::size_t p, const Obstacle& a, const Obstacle& b, bool both, double part) {
+        Wedge w{{a.origin, a.beyond_origin}, {a.normal, a.beyond_normal}};
+        const double straight = glm::dot(b.normal, w.normal[0]), turned = glm::dot(b.normal, w.normal[1]);
+        constexpr double kSame = 0.9;  // cos 26°
+        if (std::max(straight, turned) < kSame) {
+            if (part > 0.5) return false;
+            part = 0;
+        }
+        const auto towards = [&](int i, const Vec3& other_origin, const Vec3& other_normal) {
+            if (part == 0 || glm::dot(w.normal[i], other_normal) < kSame) return;
+            w.origin[i] += part * (other_origin - w.origin[i]);
+            w.normal[i] = glm::normalize(w.normal[i] + part * (other_normal - w.normal[i]));
+        };
+        const int first = straight >= turned ? 0 : 1;
+        towards(first, b.origin, b.normal);
+        if (both) towards(1 - first, b.beyond_origin, b.beyond_normal);
+        frozen.crease[p] = {1, true, w};
+        return true;
+    }
+
+    /// The planes of the nodes beside a point, or a node's own and the one next to it that
+    /// differs most, where they part.
+    void lay_parted(std::size_t p, const PointPlace& at) {
         int i = at.node, k = at.node + 1;
         if (at.s == 0 || at.s == 1) {
             i = at.s == 0 ? at.node : at.node + 1;
@@ -245,23 +289,21 @@ struct Solver {
         if (w <= 0) return;
         Crease& c = frozen.crease[p];
         c.share = w * w * (3 - 2 * w);
-        c.convex = glm::dot(b.origin - a.origin, a.normal - b.normal) < 0;
-        c.origin[0] = a.origin;
-        c.origin[1] = b.origin;
-        c.normal[0] = a.normal;
-        c.normal[1] = b.normal;
+        // Closest points that coincide are of an edge.
+        c.convex = glm::dot(b.origin - a.origin, a.normal - b.normal) < 1e-9;
+        c.wedge = {{a.origin, b.origin}, {a.normal, b.normal}};
     }
 
     Distance distance(std::size_t p, const Vec3& x) const {
         return distance_of(fine[p], frozen.crease[p], law.edge, x);
     }
 
-    /// Unit normal of the surface under a contact point.
-    Vec3 normal_at(std::size_t p, const Vec3& x) const {
-        if (frozen.crease[p].share <= 0) return fine[p].normal;
-        const Vec3 slope = distance(p, x).slope;
-        const double size = glm::length(slope);
-        return size > 1e-6 ? slope / size : fine[p].normal;
+    /// The plane that a contact point meets, and its unit normal.
+    Obstacle met_at(std::size_t p, const std::vector<Vec3>& x) const {
+        return met_by(frozen, static_cast<int>(p), x);
+    }
+    Vec3 normal_at(std::size_t p, const std::vector<Vec3>& x) const {
+        return frozen.crease[p].share <= 0 ? fine[p].normal : met_at(p, x).normal;
     }
 
     /// Planes, radii and tributary lengths of the contact points.
@@ -310,7 +352,7 @@ struct Solver {
             if (!anchored[p] || normal[p] <= 0) continue;
             const PointPlace at = place(p);
             const Vec3& tangent = shape.tangent[at.s > 0 ? at.node : at.node - 1];
-            const Vec3 at_point = point(x, p), plane = normal_at(p, at_point);
+            const Vec3 at_point = point(x, p), plane = normal_at(p, x);
             Friction f = friction_of(law, plane, frozen.weight[p], normal[p], anchor[p], at_point, tangent);
             const bool tip = p + 1 == fine.size();
             const double c = std::min(0.0, glm::dot(tangent, plane));
@@ -419,6 +461,7 @@ struct Solver {
         }
         out.root_moment += glm::cross(at.node[n()] - at.node[0], frozen.load.tip_force);
         for (std::size_t p = 0; p < memory.contact.size(); ++p) finish_contact(p, out);
+        for (std::size_t p = 0; p < fine.size(); p += law.points_per_segment) out.met.push_back(met_at(p, at.node));
         const Mat3 back = glm::transpose(clamp_frame(memory.clamp));
         memory.turn.resize(shape.tangent.size());
         for (std::size_t j = 0; j < shape.tangent.size(); ++j) {
@@ -443,13 +486,12 @@ struct Solver {
         out.normal_force[at.node + 1] += at.s * c.force;
         const Vec3 x = point(ws.at.node, p);
         const Friction& f = frozen.friction[p];
-        c.anchor = anchored[p] ? anchor[p] : x;
-        if (f.cap <= 0 || f.stick <= 0) {
-            if (law.friction <= 0) c.anchor = x;
-            return;
-        }
-        Vec3 d = x - c.anchor;
-        d -= glm::dot(d, f.normal) * f.normal;
+        const bool sticks = f.cap > 0 && f.stick > 0;
+        c.normal = sticks ? f.normal : normal_at(p, ws.at.node);
+        Vec3 d = anchored[p] && law.friction > 0 ? x - anchor[p] : Vec3{0};
+        d -= glm::dot(d, c.normal) * c.normal;
+        c.anchor = x - d;
+        if (!sticks) return;
         const double along = glm::dot(d, f.grain);
         const Vec3 side = d - along * f.grain;
         const double q = std::sqrt(f.along * f.along * along * along +

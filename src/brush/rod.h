@@ -61,11 +61,16 @@ struct Clamp {
     Vec3 side{1, 0, 0};
 };
 
-/// Plane that a node meets: it is pushed out when closer than `radius`.
+/// Plane that a node meets: it is pushed out when closer than `radius`. Near a convex edge
+/// also the plane beyond it.
 struct Obstacle {
     Vec3 origin{0};
     Vec3 normal{0, 0, 1};
     double radius = 0;
+    Vec3 beyond_origin{0};
+    Vec3 beyond_normal{0};             ///< zero: no edge near
+
+    bool at_edge() const { return beyond_normal != Vec3{0}; }
 };
 
 /// Contact law of all nodes.
@@ -86,9 +91,10 @@ struct Law {
                                 ///< 0: none. Fades to nothing 4 end_give behind the tip
     double damping = 0;         ///< viscous stiffness over elastic stiffness of the joints:
                                 ///< η/(k Δt) of backward Euler
-    double edge = 0;            ///< over a crease, where the planes of neighbouring nodes part, a
-                                ///< point keeps off both (in a corner) or either (over an edge),
-                                ///< the edge rounded by a quarter of this length; 0: one plane each
+    double edge = 0;            ///< over a crease, where a node has two planes or the planes of
+                                ///< neighbouring nodes part, a point keeps off both (in a corner) or
+                                ///< either (over an edge), rounded by this length as in wedge.h;
+                                ///< 0: one plane each
     double adhesion = 0;        ///< pull per length of a wet node that all but touches, fading
     double adhesion_range = 0;  ///< as (1 - gap/range)² to nothing at this gap
     double friction = 0;        ///< μ
@@ -118,6 +124,7 @@ struct JointMemory {
 struct ContactMemory {
     bool touching = false;
     Vec3 anchor{0};
+    Vec3 normal{0};                    ///< of the surface at the last solve; x - anchor is normal to it
     double force = 0;                  ///< normal force of the last solve
     double multiplier = 0;             ///< hard contact
 };
@@ -142,6 +149,8 @@ struct Result {
     std::vector<double> moment;        ///< [n] |m| at the joints
     std::vector<double> normal_force;  ///< [n+1], shares of the points beside each node
     std::vector<Vec3> contact_force;   ///< [n+1] on the rod, with friction
+    std::vector<Obstacle> met;         ///< [n+1] the one plane that each node meets where it came to
+                                       ///< lie, or none
     Vec3 force{0};                     ///< sum of contact forces
     Vec3 root_moment{0};               ///< of all outer forces about the root
 };

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "brush/rod.h"
+#include "brush/wedge.h"
 
 /// Inside of the rod solver: Π and its derivatives for frozen friction and multipliers.
 namespace tuft::brush::rod {
@@ -17,24 +18,28 @@ inline PointPlace point_place(int p, int per_segment, int segments) {
     return {p / per_segment, static_cast<double>(p % per_segment) / per_segment};
 }
 
-/// Crease beside a contact point: the planes of two neighbouring nodes.
+/// Crease beside a contact point: the planes of an edge near it, or of two neighbouring nodes.
 struct Crease {
     double share = 0;        ///< 0: none, the point has one plane; 1: a sharp one
     bool convex = true;
-    Vec3 origin[2]{Vec3{0}, Vec3{0}}, normal[2]{Vec3{0}, Vec3{0}};
+    Wedge wedge;
 };
 
-/// Distance of a point from the surface, with derivatives.
-struct Distance {
-    double z = 0;
-    Vec3 slope{0};           ///< ∂z/∂x
-    double bend = 0;         ///< ∂²z/∂x² = bend · across acrossᵀ
-    Vec3 across{0};
-};
-
-/// From the plane of `o`, and over a crease from both its planes: the larger distance over an
-/// edge, the smaller in a corner, rounded where they differ by less than `edge`.
+/// From the plane of `o`, and over a crease from both its planes, rounded by `edge`.
 Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const Vec3& x);
+
+struct Frozen;
+
+/// The one plane that contact point p meets; over an edge that of the mean force on its hair.
+Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node);
+
+struct Evaluation;
+
+/// True where the points between two nodes, from p on, are all out of reach of one plane.
+bool all_clear(const Frozen& frozen, int p, const Evaluation& at);
+
+/// Adds contact point p to the slopes and curvatures of its two nodes; returns its potential.
+double add_contact(const Frozen& frozen, int p, Evaluation& out);
 
 /// Friction of one contact point, frozen during one Newton solve.
 struct Friction {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "brush/tuft_sections.h"
+#include "brush/wedge.h"
 
 namespace tuft::brush {
 
@@ -12,7 +13,6 @@ namespace {
 constexpr double kOnset = 5e-5;    ///< m, fuzz of the tuft's side
 constexpr double kStraight = 1e-4; ///< 1 - cos of a bend that is none yet, 0.8°
 constexpr double kEndFriction = 0.2;  ///< of the fold of hair ends that carries the tip along
-constexpr double kEdge = 2e-4;     ///< m, by a quarter of which creases are rounded
 constexpr int kContactPoints = 6;  ///< per segment: a patch then grows smoothly with depth
 
 void set_time(const Preset& p, double dt, rod::Law& law) {
@@ -30,7 +30,7 @@ rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     law.core_start = p.core_start;
     law.onset = kOnset / p.length;
     law.end_friction = kEndFriction;
-    law.edge = kEdge / p.length;
+    law.edge = kEdgeRounding / p.length;
     law.end_give = p.end_give / p.length;
     set_time(p, dt, law);
     law.adhesion = wetness * p.adhesion / (unit * p.length) / share;
@@ -84,12 +84,19 @@ std::vector<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine,
     out.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
-        out[i] = {plane.origin / p.length, plane.normal, spine.rest_radius[i] / p.length};
+        out[i] = {plane.origin / p.length, plane.normal, spine.rest_radius[i] / p.length,
+                  plane.beyond_origin / p.length, plane.beyond_normal};
     }
     return out;
 }
 
 }  // namespace
+
+double height_over(const ContactPlane& plane, const Vec3& p) {
+    if (plane.beyond_normal == Vec3{0}) return glm::dot(p - plane.origin, plane.normal);
+    const Wedge wedge{{plane.origin, plane.beyond_origin}, {plane.normal, plane.beyond_normal}};
+    return edge_distance(wedge, kEdgeRounding, p).z;
+}
 
 rod::Clamp clamp_of(const Preset& p, const Pose& pose) {
     return {pose.position / p.length, pose.axis(), pose.rotation * Vec3{1, 0, 0}};
@@ -114,7 +121,8 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Qu
                      std::span<const rod::Obstacle> obstacles, double wetness, double share,
                      std::span<const ContactPlane> walls = {}) {
     Solved out{std::move(result), {}};
-    SectionOutput sections = make_sections({p, spine, out.result, obstacles, turn, wetness, share, walls});
+    const std::span<const rod::Obstacle> met = out.result.met.empty() ? obstacles : out.result.met;
+    SectionOutput sections = make_sections({p, spine, out.result, met, turn, wetness, share, walls});
     spine.side = std::move(sections.sides);
     spine.wide = sections.wide;
     out.branch.sections = std::move(sections.sections);

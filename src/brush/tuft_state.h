@@ -50,10 +50,18 @@ struct TuftState {
 };
 
 /// Plane the tuft meets, or a local one for each node: points p with
-/// dot(p - origin, normal) < 0 are inside the object.
+/// dot(p - origin, normal) < 0 are inside the object. Next to a sharp convex edge with the plane
+/// beyond it: inside is what both call inside.
 struct ContactPlane {
     Vec3 origin{0};          ///< metres, world
     Vec3 normal{0, 0, 1};    ///< unit, out of the object
+    Vec3 beyond_origin{0};   ///< of the plane beyond the edge
+    Vec3 beyond_normal{0};   ///< unit; zero: no edge near
 };
+
+inline constexpr double kEdgeRounding = 2e-4;  ///< m, radius by which the tuft feels edges rounded
+
+/// Distance of p from the plane, or from both with their edge rounded (see wedge.h), metres.
+double height_over(const ContactPlane& plane, const Vec3& p);
 
 }  // namespace tuft::brush

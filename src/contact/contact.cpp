@@ -58,7 +58,8 @@ std::vector<Stand> stand_nodes(const Work& w, std::span<const Vec3> nodes, std::
 /// The plane for a node that met `old` and came to rest where the surface is `now`. In a
 /// concave corner, where it would be thrown from wall to wall, it gets both walls' bisector.
 ContactPlane refreshed(const ContactPlane& old, const Stand& now, const Vec3& p, double radius) {
-    const ContactPlane& fresh = now.plane;
+    const ContactPlane& fresh = now.met;
+    if (fresh.beyond_normal != Vec3{0} || old.beyond_normal != Vec3{0}) return fresh;
     const double z_old = glm::dot(p - old.origin, old.normal);
     constexpr double kCorner = 0.87;  // cos 30°
     if (glm::dot(old.normal, fresh.normal) > kCorner || z_old > 1.5 * radius) return fresh;
@@ -105,7 +106,7 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
     const bool was_split = tuft.split;
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
     const std::vector<Stand> predicted = stand_nodes(w, nodes, trunk);
-    for (const Stand& s : predicted) planes.push_back(s.plane);
+    for (const Stand& s : predicted) planes.push_back(s.met);
     const std::vector<ContactPlane> walls = side_walls(w, tuft, predicted);
     if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt, walls);
 
@@ -121,9 +122,10 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
         for (std::size_t i = 0; i < planes.size(); ++i) {
             const double radius = i < trunk ? before.spine.rest_radius[trunk - 1 - i]
                                             : before.spine.rest_radius[trunk - 1];
-            const double z = glm::dot(compared[i] - planes[i].origin, planes[i].normal);
-            if (std::min(z, stands[i].height) > 2 * radius) continue;
-            worst = std::max(worst, std::abs(z - stands[i].height));
+            const double z = brush::height_over(planes[i], compared[i]);
+            const double height = brush::height_over(stands[i].met, compared[i]);
+            if (std::min(z, height) > 2 * radius) continue;
+            worst = std::max(worst, std::abs(z - height));
             fresh[i] = refreshed(planes[i], stands[i], compared[i], radius);
         }
         if (worst < w.options.refresh_error) {

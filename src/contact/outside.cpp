@@ -1,6 +1,7 @@
 #include "contact/outside.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tuft::contact {
@@ -25,6 +26,85 @@ Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, dou
         smooth((kAlike - cosine) / (kAlike - kApart)) * smooth((d - lift) / (4 * lift));
     if (w <= 0 || cosine < -0.5) return n;
     return glm::normalize((1 - w) * n + w * direction);
+}
+
+/// Unit normal of triangle t, smooth as shading has it, at weight w between its corners k and l.
+Vec3 corner_normal(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, int l, double w) {
+    const Vec3 n = (1 - w) * Vec3(mesh.corner_normals[3 * t + k]) + w * Vec3(mesh.corner_normals[3 * t + l]);
+    const double size = glm::length(n);
+    return size > 1e-9 ? n / size : n;
+}
+
+Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t t) {
+    const Vec3 from = mesh.position(t, 0);
+    return glm::normalize(glm::cross(mesh.position(t, 1) - from, mesh.position(t, 2) - from));
+}
+
+/// A point of a sharp convex edge and the normal of the face beyond it.
+struct SharpEdge {
+    Vec3 origin{0}, beyond{0};
+    double distance = 0;  // metres from where it was looked for
+};
+
+/// The edge of triangle t from its corner k on, where it is sharp and convex: the point of it nearest to q.
+std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, const Vec3& q) {
+    const std::uint32_t other = mesh.neighbours[3 * t + k];
+    if (other == kNone) return {};
+    const int l = (k + 1) % 3;
+    const auto& of = mesh.triangles[other];
+    int a = -1, b = -1, far = -1;
+    for (int i = 0; i < 3; ++i) {
+        if (of[i] == mesh.triangles[t][k]) a = i;
+        else if (of[i] == mesh.triangles[t][l]) b = i;
+        else far = i;
+    }
+    if (a < 0 || b < 0 || far < 0) return {};
+    const Vec3 from = mesh.position(t, k), way = mesh.position(t, l) - from;
+    const double w = std::clamp(glm::dot(q - from, way) / glm::dot(way, way), 0.0, 1.0);
+    const Vec3 own = corner_normal(mesh, t, k, l, w);
+    constexpr double kSharp = 0.9;  // cos 26°
+    if (glm::dot(own, corner_normal(mesh, other, a, b, w)) > kSharp) return {};
+    if (glm::dot(mesh.position(other, far) - from, face_normal(mesh, t)) >= 0) return {};
+    const Vec3 nearest = from + w * way;
+    return SharpEdge{nearest, face_normal(mesh, other), glm::length(nearest - q)};
+}
+
+/// The sharp convex edge nearest to the surface point q within reach, over triangles that
+/// hang together with q's without such an edge between them.
+std::optional<SharpEdge> edge_near(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q) {
+    constexpr double kReach = 1e-3;  // metres; more than a node goes from step to step
+    constexpr int kMost = 24;        // triangles
+    std::array<std::uint32_t, kMost> seen{q.triangle};
+    int count = 1;
+    std::optional<SharpEdge> best;
+    for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t next = mesh.neighbours[3 * seen[i] + k];
+            if (next == kNone || std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count)
+                continue;
+            const Vec3 from = mesh.position(seen[i], k), way = mesh.position(seen[i], (k + 1) % 3) - from;
+            const double w = std::clamp(glm::dot(q.position - from, way) / glm::dot(way, way), 0.0, 1.0);
+            const Vec3 off = from + w * way - q.position;
+            if (glm::dot(off, off) > kReach * kReach) continue;
+            if (const auto edge = sharp_edge(mesh, seen[i], k, q.position)) {
+                if (!best || edge->distance < best->distance) best = edge;
+            } else if (count < kMost) {
+                seen[count++] = next;
+            }
+        }
+    }
+    return best;
+}
+
+/// Whether the surface point q lies on an edge from whose other face `off` leads outwards.
+bool before_other_face(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q, double side, const Vec3& off) {
+    const double weight[3] = {1 - q.b1 - q.b2, q.b1, q.b2};
+    for (int k = 0; k < 3; ++k) {
+        const std::uint32_t other = mesh.neighbours[3 * q.triangle + k];
+        if (weight[(k + 2) % 3] > 1e-9 || other == kNone) continue;
+        if (side * glm::dot(off, face_normal(mesh, other)) >= 0) return true;
+    }
+    return false;
 }
 
 }  // namespace
@@ -53,13 +133,21 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
     if (!behind) {
         // Clearly in front of an open sheet's back.
         const double over = out.side * glm::dot(off, q->face_normal);
-        if (over < -0.5 * q->distance && q->distance > options.lift) out.side = -out.side;
+        if (over < -0.5 * q->distance && q->distance > options.lift &&
+            !before_other_face(surface.mesh(), *q, out.side, off))
+            out.side = -out.side;
     }
     out.triangle = q->triangle;
     out.plane.origin = q->position;
     out.plane.normal =
         behind ? out.side * q->normal : plane_normal(*q, out.side, off, options.lift);
     out.height = glm::dot(off, out.plane.normal);
+    out.met = out.plane;
+    if (const auto edge = edge_near(surface.mesh(), *q)) {
+        // On the edge itself both faces are taken flat, so that it is the same from either.
+        const Vec3& own = edge->distance < 1e-7 ? q->face_normal : q->normal;
+        out.met = {q->position, out.side * own, edge->origin, out.side * edge->beyond};
+    }
     if (out.height < options.lift) out.outside = p + (options.lift - out.height) * out.plane.normal;
     return out;
 }

@@ -13,6 +13,8 @@ namespace tuft::contact {
 /// How a point stands to the surface.
 struct Stand {
     brush::ContactPlane plane;       ///< touches the surface at `plane.origin`
+    brush::ContactPlane met;         ///< the same; next to a sharp convex edge the planes of both
+                                     ///< its faces instead
     std::uint32_t triangle = kNone;  ///< under plane.origin; kNone: nothing within reach
     double height = 0;               ///< metres of the point over the plane, negative behind it
     Vec3 outside{0};                 ///< the point itself, or where it comes out in front

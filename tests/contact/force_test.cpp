@@ -27,6 +27,12 @@ struct Curve {
         std::sort(steps.begin(), steps.end());
         return steps[static_cast<std::size_t>(share * (steps.size() - 1))] / peak;
     }
+    /// How many changes from sample to sample are larger than this share of the peak.
+    int steps_above(double most) const {
+        int count = 0;
+        for (std::size_t i = 1; i < force.size(); ++i) count += std::abs(force[i] - force[i - 1]) > most * peak;
+        return count;
+    }
 };
 
 /// The shortest turn that takes +z to n.
@@ -96,6 +102,82 @@ TEST(Force, ASlowPressGrowsWithoutStepsOnAnySurface) {
     }
 }
 
+/// A block of 60 × 100 × 40 mm; its rim of 90° at x = 30 mm, z = 20 mm.
+struct Block {
+    mesh::TriangleMesh mesh = shapes::plate({0.03, 0.05, 0.02}, 60);
+    mesh::SurfaceQuery surface{mesh};
+
+    Vec3 beside_rim(double outside, double y, double under = 0) const { return {0.03 + outside, y, 0.02 - under}; }
+};
+
+TEST(Force, APressBesideARimGrowsWithoutSteps) {
+    // Points of the hair used to flip between the two faces' planes: steps up to 90 % of the peak, for
+    // hundreds of milliseconds.
+    const Block block;
+    for (const std::string brush : {"wolf-medium", "goat-medium", "mixed-small"}) {
+        for (const double outside : {-1e-3, -5e-4, -2e-4, 2e-4, 5e-4}) {
+            for (const Vec3 lean : {Vec3{0.1, 0.02, 0}, Vec3{-0.15, 0.02, 0}, Vec3{0, 0.15, 0}}) {
+                const Curve curve =
+                    press(block.surface, brush, block.beside_rim(outside, 7e-4), {0, 0, 1}, lean);
+                SCOPED_TRACE(brush + ", " + std::to_string(outside) + " m outside, lean " + std::to_string(lean.x));
+                EXPECT_LT(curve.step(0.99), 0.01);  // some times the honest slope, as kSmooth
+                // A tip that stands on the rim may slip off it, once.
+                EXPECT_LE(curve.steps_above(0.02), 3);
+                EXPECT_LT(curve.step(), 0.1);
+                EXPECT_GT(curve.peak, 0.005);
+            }
+        }
+    }
+}
+
+/// Goes down 4 mm in the first 300 ms and follows `tip` (m, of a tuft that hangs free) for 600 ms; forces
+/// from `first` ms on.
+template <class Tip>
+Curve drag_along(const mesh::SurfaceQuery& surface, const std::string& brush, const Quat& q, int first,
+                 const Tip& tip) {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset(brush));
+    Memory memory;
+    Curve curve;
+    for (int i = 0; i <= 900; ++i) {
+        const Result r = step(tuft, pose_at(tuft.preset, tip(i), q, 1e-3 * i), surface, memory, 1e-3);
+        if (i >= first) curve.add(r.tuft.normal_force);
+    }
+    return curve;
+}
+
+TEST(Force, HairDraggedOverARimComesOffItEvenly) {
+    // At 50 mm/s the rim passes from one contact point to the next in 5 ms: steps used to be 35 %.
+    const Block block;
+    for (const std::string brush : {"wolf-medium", "mixed-small"}) {
+        for (const double lean : {0.0, -0.3}) {
+            const Quat q = glm::angleAxis(lean, Vec3{0, 1, 0});
+            const Curve out = drag_along(block.surface, brush, q, 310, [&](int i) {
+                return block.beside_rim(-0.015 + 5e-5 * std::max(0, i - 300), 7e-4, 0.004 * std::min(1.0, i / 300.0));
+            });
+            const Curve in = drag_along(block.surface, brush, q, 50,
+                                        [&](int i) { return block.beside_rim(0.015 - 5e-5 * i, 7e-4, 0.004); });
+            EXPECT_LT(out.step(), 0.045) << brush << " lean " << lean;
+            EXPECT_LT(in.step(), 0.045) << brush << " lean " << lean;
+            EXPECT_LT(out.step(0.98), 0.02) << brush << " lean " << lean;
+            EXPECT_LT(in.step(0.98), 0.02) << brush << " lean " << lean;
+        }
+    }
+}
+
+TEST(Force, HairDraggedAlongARimFeelsASteadyForce) {
+    const Block block;
+    for (const std::string brush : {"wolf-medium", "goat-medium"}) {
+        for (const double lean : {0.0, 0.4}) {
+            const Quat q = glm::angleAxis(lean, Vec3{1, 0, 0});
+            const Curve curve = drag_along(block.surface, brush, q, 400, [&](int i) {
+                return block.beside_rim(-0.001, -0.015 + 5e-5 * std::max(0, i - 300), 0.004 * std::min(1.0, i / 300.0));
+            });
+            EXPECT_LT(curve.step(), 0.02) << brush << " lean " << lean;
+            EXPECT_GT(curve.force.back(), 0) << brush << " lean " << lean;
+        }
+    }
+}
+
 /// The clay car at 1:4, its front right wheel's arch: the flange 97 mm from the axle.
 struct Arch {
     mesh::TriangleMesh mesh =
@@ -130,9 +212,11 @@ TEST(Force, TheWheelArchIsPressedAndFollowedWithoutSteps) {
                 step(tuft, pose_at(tuft.preset, tip, upright(out), 1e-3 * i), arch.surface, memory, 1e-3);
             if (i >= 300) curve.add(r.tuft.normal_force);
         }
-        // Hair that slips off the flange's edge lets go in some milliseconds.
+        // Hair that slips off the flange's edge lets go in some milliseconds; the flange ends in a fin a
+        // tenth of a millimetre wide, which the soft goat (13 mN in all) feels now from one face, now
+        // from another.
         EXPECT_LT(curve.step(), 0.15) << brush;
-        EXPECT_LT(curve.step(0.98), 0.01) << brush;
+        EXPECT_LT(curve.step(0.98), brush == "wolf-medium" ? 0.01 : 0.025) << brush;
         EXPECT_GT(*std::min_element(curve.force.begin(), curve.force.end()), 0) << brush;
     }
 }
