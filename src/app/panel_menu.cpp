@@ -84,8 +84,11 @@ void menu_bar(Session& s) {
         if (s.painter) {
             const std::string name = project_name(s);
             const float width = ImGui::GetWindowWidth();
-            ImGui::SetCursorPosX(0.5f * (width - ImGui::CalcTextSize(name.c_str()).x));
-            ImGui::TextUnformatted(name.c_str());
+            const float text = ImGui::CalcTextSize(name.c_str()).x, x = std::max(0.5f * (width - text), ImGui::GetCursorPosX() + s.ui.px(8));
+            if (x + text < width - s.ui.px(130 + 140 + 34)) {
+                ImGui::SetCursorPosX(x);
+                ImGui::TextUnformatted(name.c_str());
+            }
             ImGui::SetCursorPosX(width - s.ui.px(130 + 140 + 24));
             ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(8), s.ui.px(2)));
             ImGui::SetCursorPosY(ImGui::GetCursorPosY() + s.ui.px(3));

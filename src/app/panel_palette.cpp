@@ -45,7 +45,7 @@ void palette_panel(Session& s) {
     if (!p.shown || !s.painter) return;
     Ui& ui = s.ui;
     const float pad = ui.px(10), room = static_cast<float>(s.area.width) - 2 * pad;
-    const float width = std::min({ui.px(330), room, std::max(ui.px(216), 0.55f * room)});
+    const float width = std::min({ui.px(330), room, std::max(ui.px(256), 0.55f * room)});
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y) + pad));
     ImGui::SetNextWindowSize(ImVec2(width, 0));
     ImGui::SetNextWindowBgAlpha(0.94f);

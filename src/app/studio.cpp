@@ -21,6 +21,7 @@ constexpr double kTurnPause = 0.25;    // seconds without a turn of the wheel af
 constexpr double kStillAfter = 0.4;    // seconds after the last event
 constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
 constexpr double kInkWait = 0.02, kInkPart = 0.2;  // seconds, and part of a frame's time, that the newest ink is waited for
+constexpr float kLeastView = 240;      // pixels at scale 1, of the model's view beside both panels
 constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
 
 }  // namespace
@@ -85,7 +86,10 @@ double Studio::patience() const {
 void Studio::layout(int width, int height) {
     Session& s = session_;
     const float top = ImGui::GetFrameHeight() + s.ui.px(4);
-    const int tools = static_cast<int>(s.ui.px(kToolWidth)), journal = static_cast<int>(s.ui.px(kJournalWidth));
+    // Where there is no room for both, the model is worth more than the list.
+    const int tools = static_cast<int>(s.ui.px(kToolWidth)), whole = static_cast<int>(s.ui.px(kJournalWidth));
+    journal_fits_ = static_cast<float>(width - tools - whole) >= s.ui.px(kLeastView);
+    const int journal = journal_fits_ ? whole : 0;
     const int left = s.wanted.left_handed ? journal : tools;
     s.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
               std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
@@ -109,7 +113,7 @@ void Studio::panels(int height) {
         const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
         const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
         (s.show_colours ? colours_panel : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : 0);
-        journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
+        if (journal_fits_) journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
         status_bar(s, bottom);
         tuft_inset(s);
         update_palette_picture();

@@ -99,6 +99,7 @@ class Studio {
     std::unique_ptr<render::GlScene> scene_;
     std::unique_ptr<render::GlView> view_;
     std::optional<stroke::Model> plate_;      ///< of the palette, once it was shown
+    bool journal_fits_ = true;
     bool on_plate_ = false;                   ///< the hand is over it
     std::optional<Hand> hand_;
     std::optional<Event> line_start_;         ///< where a new control point was set
