@@ -18,11 +18,11 @@ constexpr double kSmallest = 0.25;  // texels: extent below which a chart is enl
 constexpr double kLeastUse = 1e-3;  // part of the page that charts must cover to "fit"
 constexpr std::uint32_t kCells =
     1024;  // cells per side of the page that masks are made on, at most
-constexpr std::uint32_t kCoarseCells = 512;  // the same while searching
+constexpr std::uint32_t kCoarseCells = 256;  // the same while searching
 constexpr double kStep = 1.01;               // by which the search raises the scale
 constexpr double kFineStep = 1.003;          // the same on fine masks
 constexpr double kOverhang = 1.3;  // height of the strip while searching, over the page's
-constexpr int kFineShare = 6;                // of the trials, that fine masks get
+constexpr int kFineShare = 3;                // of the trials, that fine masks get
 constexpr double kTrials = 8000;             // charts placed while searching, about
 constexpr double kCoarseTrials = 800;        // the same when layouts are only compared
 constexpr int kStarts = 3;                   // searches, of which the best counts
