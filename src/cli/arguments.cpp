@@ -193,7 +193,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->type_name("SECONDS");
     p->add_option("--prepare", paint.prepare,
                   "done with the full brush before it paints, in this order: rinse, wipe[,amount=0.6][,depth=0.3], "
-                  "dip[:INK][,depth=0.2][,amount=0.5], reshape")
+                  "dip[:INK][,depth=0.2][,amount=0.5], reshape; side=0.5 of a dip or wipe: only this part of the "
+                  "width, from the right flank, negative from the left")
         ->check([](const std::string& text) -> std::string {
             try {
                 stroke::care_of_text(text);

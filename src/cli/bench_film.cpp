@@ -76,20 +76,28 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
     for (std::size_t k = 0; k < kInks.size(); ++k) mix[k] = 0.25f;
     ink::dip(tuft, mix);
     ink::Skin skin;
-    ink::LaneAreas areas;
+    ink::NodeAreas areas;
     areas.fill(1e-5);
-    refresh(skin, tuft, {}, areas, 0.1);
+    const ink::NodeTouch nodes = ink::node_touch(tuft, {}, {}, {});
+    refresh(skin, tuft, {}, nodes, areas, 0.1);
     const ink::TransferParams p = transfer_params(skin, tuft, {}, areas, {}, 1e-4, 2e-3, 0.5);
     std::array<float, atlas::kTileTexels> coverage;
-    std::array<std::uint8_t, atlas::kTileTexels> lanes;
     coverage.fill(0.8f);
-    for (int t = 0; t < atlas::kTileTexels; ++t) lanes[t] = static_cast<std::uint8_t>(3 + (t % atlas::kTile) / 8);
-    ink::LaneContents given{};
+    // As under a patch of 64 × 64 texels, and mostly between two nodes.
+    ink::TexelPlaces places;
+    for (int t = 0; t < atlas::kTileTexels; ++t) {
+        places.along[t] = 1.2f + static_cast<float>(t / atlas::kTile) * (ink::kAlong - 1) / 64.0f;
+        places.across[t] = 3.1f + static_cast<float>(t % atlas::kTile) * (ink::kAcross - 1) / 64.0f;
+    }
+    ink::Tents tents;
+    ink::NodeContents given{};
     std::vector<double> runs;
     for (int i = 0; i < 9; ++i) {
         const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
-        for (std::uint32_t slot = 0; slot < tiles; ++slot)
-            ink::transfer(canvas, slot, coverage, lanes, model.texels.tiles[slot].area, 1e-4, p, given);
+        for (std::uint32_t slot = 0; slot < tiles; ++slot) {
+            ink::tents_of(tents, places, coverage);
+            ink::transfer(canvas, slot, coverage, tents, model.texels.tiles[slot].area, 1e-4, p, given);
+        }
         runs.push_back(seconds(CLOCK_THREAD_CPUTIME_ID) - start);
     }
     return median(runs) / static_cast<double>(tiles * atlas::kTileTexels);

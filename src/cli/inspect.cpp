@@ -100,6 +100,7 @@ int inspect_project(const Inspect& a) {
                                     {"dip", s.settings.dip},
                                     {"depth", s.extent.depth},
                                     {"amount", s.extent.amount},
+                                    {"side", s.extent.side},
                                     {"label", s.trace.label},
                                     {"layer", s.layer},
                                     {"on", s.layer == stroke::kPaletteLayer ? "palette" : "model"},

@@ -209,6 +209,22 @@ void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::s
     }
 }
 
+/// Calls f(bundle, cut, place in the section, length) for what of the bundles lies on the surface.
+template <class F>
+void each_touch(const Trail& trail, const brush::Bundles& bundles, int branches, F f) {
+    constexpr std::size_t kStride = 3;  // sections looked at
+    const std::size_t count = trail.cuts.size();
+    for (std::size_t k = 0; k < bundles.place.size(); ++k) {
+        const Placed placed(bundles.place[k], branches);
+        for (std::size_t i = 0; i < count; i += kStride) {
+            const Vec2* at = placed.at(trail, i);
+            if (!at || rise(trail.cuts[i], *at) > 0 || !touches(trail.cuts[i], *at)) continue;
+            const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
+            f(k, i, *at, std::abs(trail.along[a] - trail.along[b]));
+        }
+    }
+}
+
 }  // namespace
 
 double wetness_of_bundle(double saturation, double holds, double speed) {
@@ -222,26 +238,12 @@ std::vector<float> touched_cells(std::span<const Trail> trails, const brush::Bun
     const auto cell_at = [&](double along) {
         return std::min<std::size_t>(std::upper_bound(ends.begin(), ends.end(), along) - ends.begin(), cells - 1);
     };
-    constexpr std::size_t kStride = 3;  // sections looked at
     double front = 0;
     for (const Trail& trail : trails) {
-        std::vector<std::size_t> cell;
-        std::vector<double> length;
-        const std::size_t count = trail.cuts.size();
-        for (std::size_t i = 0; i < count; i += kStride) {
-            cell.push_back(cell_at(trail.along[i]));
-            const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
-            length.push_back(std::abs(trail.along[a] - trail.along[b]));
-        }
         front = std::max(front, trail.along.front());
-        for (std::size_t k = 0; k < n; ++k) {
-            const Placed placed(bundles.place[k], branches);
-            for (std::size_t i = 0, j = 0; i < count; i += kStride, ++j) {
-                const Vec2* at = placed.at(trail, i);
-                if (at && rise(trail.cuts[i], *at) <= 0 && touches(trail.cuts[i], *at))
-                    sum[k * cells + cell[j]] += length[j];
-            }
-        }
+        each_touch(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2&, double length) {
+            sum[k * cells + cell_at(trail.along[i])] += length;
+        });
     }
     double all = 0;
     for (const double v : sum) all += v;
@@ -252,6 +254,15 @@ std::vector<float> touched_cells(std::span<const Trail> trails, const brush::Bun
     std::vector<float> parts(sum.size());
     for (std::size_t i = 0; i < sum.size(); ++i) parts[i] = static_cast<float>(sum[i] / all);
     return parts;
+}
+
+std::vector<HairTouch> hair_touches(std::span<const Trail> trails, const brush::Bundles& bundles, int branches) {
+    std::vector<HairTouch> found;
+    for (const Trail& trail : trails)
+        each_touch(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
+            found.push_back({static_cast<std::uint32_t>(k), on_surface(trail.cuts[i], place.x), trail.along[i], length});
+        });
+    return found;
 }
 
 HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines,

@@ -19,6 +19,17 @@ namespace tuft::footprint {
 std::vector<float> touched_cells(std::span<const Trail> trails, const brush::Bundles& bundles,
                                  int branches, std::span<const double> ends);
 
+/// A piece of a bundle that lies on the surface.
+struct HairTouch {
+    std::uint32_t bundle = 0;
+    Vec2 at{0};         ///< metres, in the stamp's (u, v)
+    double along = 0;   ///< part of the tuft's length from the root
+    double length = 0;  ///< of hair, part of the tuft's
+};
+
+/// The pieces that `touched_cells` counts, one by one. About 10 µs.
+std::vector<HairTouch> hair_touches(std::span<const Trail> trails, const brush::Bundles& bundles, int branches);
+
 /// How wet the hair is where it touches.
 struct HairInk {
     std::span<const double> wet;  ///< [bundles] film a bundle brings over the film that closes the

@@ -11,6 +11,7 @@ namespace {
 /// Part of the supply that comes without any bending: hair wets what it touches.
 constexpr double kCapillarySupply = 0.25;
 constexpr double kFlowStep = 0.005;  // seconds
+constexpr double kSoftEdge = 0.1;  // of the width
 constexpr int kNeighbours = 4;       // of a bundle that it shares ink with, at least
 constexpr std::size_t kMostSteps = 1000;  // of flow at once: 5 s, after which all is even
 
@@ -53,10 +54,14 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours(const std::vecto
     return pairs;
 }
 
-/// Part of cell c that lies within `depth` from the tip.
-double part_within(const ReservoirLayout& l, std::size_t c, double depth) {
+/// Part of cell i that lies within reach.
+double part_within(const ReservoirLayout& l, std::size_t i, const Reach& reach) {
+    const std::size_t c = i % l.cell_ends.size();
     const double begin = c == 0 ? 0 : l.cell_ends[c - 1], end = l.cell_ends[c];
-    return std::clamp((end - std::max(begin, 1 - depth)) / (end - begin), 0.0, 1.0);
+    const double part = std::clamp((end - std::max(begin, 1 - reach.depth)) / (end - begin), 0.0, 1.0);
+    if (reach.side == 0) return part;
+    const double from_side = 0.5 - 0.5 * std::copysign(1.0, reach.side) * l.bundles[i / l.cell_ends.size()].x;
+    return part * std::clamp((std::abs(reach.side) - from_side) / kSoftEdge + 0.5, 0.0, 1.0);
 }
 
 void flow_step(Reservoir& tuft, std::vector<Content>& change, std::vector<double>& total) {
@@ -170,7 +175,7 @@ double dip(Reservoir& tuft, const Mix& mix, const Dip& how) {
     double pigments = 0, taken = 0;
     for (const float part : mix) pigments += static_cast<double>(part);
     for (std::size_t i = 0; i < tuft.content.size(); ++i) {
-        const double within = part_within(tuft.layout, i % tuft.n_cells(), how.depth);
+        const double within = part_within(tuft.layout, i, {how.depth, how.side});
         // The dipped part of the cell is filled; what it holds is spread over all of it.
         const double want = within * (std::min(how.level, 1.0) * tuft.room[i] - sum_of(tuft.content[i]));
         if (!(want > 0)) continue;
@@ -181,10 +186,10 @@ double dip(Reservoir& tuft, const Mix& mix, const Dip& how) {
     return taken;
 }
 
-double wipe(Reservoir& tuft, double part, double depth) {
+double wipe(Reservoir& tuft, double part, const Reach& reach) {
     double gone = 0;
     for (std::size_t i = 0; i < tuft.content.size(); ++i) {
-        const double less = std::clamp(part, 0.0, 1.0) * part_within(tuft.layout, i % tuft.n_cells(), depth);
+        const double less = std::clamp(part, 0.0, 1.0) * part_within(tuft.layout, i, reach);
         gone += less * sum_of(tuft.content[i]);
         for (double& v : tuft.content[i]) v *= 1 - less;
     }

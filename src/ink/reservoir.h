@@ -62,19 +62,27 @@ using Touch = std::vector<float>;
 /// An empty tuft that holds `millilitres`. Throws `Error` for a layout that is none.
 Reservoir make_reservoir(double millilitres, ReservoirLayout layout = {});
 
-/// How far a tuft is dipped, or wiped.
+/// Part of the tuft that is dipped, or wiped.
+struct Reach {
+    double depth = 1;  ///< of its length, from the tip, 0–1
+    double side = 0;   ///< of its width, from the side of the sections' +x (> 0) or −x (< 0), −1–1; 0: all
+};
+
+/// How far a tuft is dipped.
 struct Dip {
-    double depth = 1;  ///< part of the tuft's length below the surface of the ink, from the tip
+    double depth = 1;  ///< as `Reach`
     double level = 1;  ///< part of their room up to which cells are filled
+    double side = 0;   ///< as `Reach`
 };
 
 /// Fills the tuft up with ink of the given mix; what is in it stays and mixes. Cells that are
-/// dipped in part are filled in part. Returns the amount taken from the dish, film·m².
+/// dipped in part are filled in part; bundles at the edge of the side that is dipped have a soft
+/// one, a tenth of the width, as hair draws ink. Returns the amount taken from the dish, film·m².
 double dip(Reservoir& tuft, const Mix& mix, const Dip& how = {});
 
-/// Draws the tuft over a rag: of what is in its cells within `depth` from the tip, `part` goes.
-/// Returns the amount, film·m².
-double wipe(Reservoir& tuft, double part, double depth = 1);
+/// Draws the tuft over a rag: of what is in its cells within reach, `part` goes. Returns the
+/// amount, film·m².
+double wipe(Reservoir& tuft, double part, const Reach& reach = {});
 
 /// Empties the tuft; returns what was in it, film·m².
 double rinse(Reservoir& tuft);

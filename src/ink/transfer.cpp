@@ -30,18 +30,14 @@ inline float larger(float a, float b) { return a > b ? a : b; }
 inline float smaller(float a, float b) { return a < b ? a : b; }
 inline float positive(float a) { return a > 0 ? a : 0; }
 
-void by_lane(Texels& out, std::span<const std::uint8_t, kN> lanes, const std::array<float, kLanes>& values) {
-    for (int t = 0; t < kN; ++t) out[t] = values[lanes[t]];
-}
-
 struct Volumes {
     alignas(64) Texels down, up;
 };
 
 TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict goal,
                          const float* __restrict w, const float* __restrict total,
-                         const float* __restrict film, const float* __restrict room, float target,
-                         float capacity, float rate, float exchange, float thirst) {
+                         const float* __restrict film, float room, float target, float capacity,
+                         float rate, float exchange, float thirst) {
     for (int t = 0; t < kN; ++t) {
         const float touched = coverage[t] > 0 ? 1.0f : 0.0f;
         const float lack = positive(smaller(goal[t] - w[t], capacity - total[t])) * rate;
@@ -49,7 +45,7 @@ TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const f
         const float part = coverage[t] * exchange;
         const float x = part * smaller(w[t], film[t] - n);
         const float over = positive(w[t] - larger(goal[t], target)) * part * thirst;
-        const float lift = smaller(over, smaller(room[t], w[t] - x));
+        const float lift = smaller(over, smaller(room, w[t] - x));
         out.down[t] = n + x;
         out.up[t] = x + lift;
     }
@@ -67,73 +63,107 @@ TUFT_CLONES void lifted_part(float* __restrict up, const float* __restrict total
     }
 }
 
-TUFT_CLONES void move(float* __restrict p, const float* __restrict down, const float* __restrict mix,
-                      const float* __restrict part, float* __restrict before) {
+/// down becomes the part that leaves of what the skin can give.
+TUFT_CLONES void given_part(float* __restrict part, const float* __restrict down, const float* __restrict film) {
+    for (int t = 0; t < kN; ++t) part[t] = film[t] > 0 ? down[t] / film[t] : 0;
+}
+
+/// What goes up of a plane, and the plane after it and what comes down.
+TUFT_CLONES void move(float* __restrict p, float* __restrict up, const float* __restrict lifted,
+                      const float* __restrict part, const float* __restrict film) {
     for (int t = 0; t < kN; ++t) {
-        before[t] = p[t];
-        p[t] = (p[t] - p[t] * part[t]) + down[t] * mix[t];
+        up[t] = p[t] * lifted[t];
+        p[t] = (p[t] - up[t]) + part[t] * film[t];
     }
 }
 
-/// Σ (after − before) · area over the texels of a lane, in an order of its own.
+/// Σ (after − before) · area over the tile, in an order of its own.
 TUFT_CLONES double change(const float* __restrict after, const float* __restrict before,
-                          const float* __restrict area, const std::uint8_t* __restrict lanes, int lane) {
+                          const float* __restrict area) {
     double sums[kSums] = {};
     for (int t = 0; t < kN; t += kSums)
-        for (int i = 0; i < kSums; ++i) {
-            const double d = (static_cast<double>(after[t + i]) - static_cast<double>(before[t + i])) *
-                             static_cast<double>(area[t + i]);
-            sums[i] += lanes[t + i] == lane ? d : 0.0;
-        }
+        for (int i = 0; i < kSums; ++i)
+            sums[i] += (static_cast<double>(after[t + i]) - static_cast<double>(before[t + i])) *
+                       static_cast<double>(area[t + i]);
     double sum = 0;
     for (const double s : sums) sum += s;
     return sum;
 }
 
-}  // namespace
+/// What a tile's nodes gave and took, before it is made to agree with what was stored.
+struct Booked {
+    std::array<double, kNodes> part{};                  ///< m² that gave all that lay over it
+    std::array<Reservoir::Content, kNodes> taken{};     ///< by the surface's planes; water: all liquid
+    Reservoir::Content stored{};                        ///< likewise, given less taken
+};
 
-double Skin::volume(int lane) const { return sum_of(content[lane]); }
-
-void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch) {
-    Reservoir::Content all{};
-    for (Reservoir::Content& lane : skin.content) {
-        for (int p = 0; p < Reservoir::kPlanes; ++p) all[p] += lane[p];
-        lane.fill(0);
-    }
-    absorb(tuft, all, touch);
-}
-
-void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const LaneAreas& areas, double dt) {
-    const double wet = std::min(1.0, saturation_at(tuft, touch) / kHalfFull);
-    const double part = -std::expm1(-std::max(dt, 0.0) / kSkinTime);
-    std::array<double, kLanes> want;
-    Reservoir::Content back{};
-    for (int lane = 0; lane < kLanes; ++lane) {
-        want[lane] = kSkinFilm * wet * areas[lane];
-        const double volume = skin.volume(lane);
-        if (!(volume > 0)) continue;
-        // Where the hair has left the surface, what was on it spreads among the rest.
-        const double leaves = std::max(part, 1 - std::min(1.0, 1.25 * want[lane] / volume));
-        for (int p = 0; p < Reservoir::kPlanes; ++p) {
-            const double v = leaves * skin.content[lane][p];
-            skin.content[lane][p] -= v;
-            back[p] += v;
+/// Deals the stored change of each plane out to the nodes: what they took, and the rest by what
+/// lies over them, where the sums differ by the rounding of the texels.
+void settle(const Booked& b, const Tents& tents, const TransferParams& params, NodeContents& given) {
+    double all = 0;
+    for (int k = 0; k < tents.count; ++k) all += b.part[k] + b.taken[k][kWater];
+    Reservoir::Content stored = b.stored;
+    for (int p = 0; p < kMaxPigments; ++p) stored[kWater] -= stored[p];  // the liquid counts its pigments
+    for (int p = 0; p < Reservoir::kPlanes; ++p) {
+        std::array<double, kNodes> net;
+        double sum = 0;
+        for (int k = 0; k < tents.count; ++k) {
+            double taken = b.taken[k][p];
+            for (int q = 0; q < kMaxPigments && p == kWater; ++q) taken -= b.taken[k][q];
+            net[k] = b.part[k] * static_cast<double>(params.film[p][tents.node[k]]) - taken;
+            sum += net[k];
+        }
+        const double left = stored[p] - sum;
+        for (int k = 0; k < tents.count; ++k) {
+            const double share = all > 0 ? (b.part[k] + b.taken[k][kWater]) / all : 1.0 / tents.count;
+            given[tents.node[k]][p] += net[k] + left * share;
         }
     }
-    absorb(tuft, back, touch);
-    double lack = 0;
-    for (int lane = 0; lane < kLanes; ++lane) lack += std::max(0.0, want[lane] - skin.volume(lane));
-    if (!(lack > 0)) return;
-    const Reservoir::Content fresh = take(tuft, std::min(lack, tuft.remaining()), touch);
-    std::array<double, kLanes> share;
-    for (int lane = 0; lane < kLanes; ++lane)
-        share[lane] = std::max(0.0, want[lane] - skin.volume(lane)) / lack;
-    for (int lane = 0; lane < kLanes; ++lane)
-        for (int p = 0; p < Reservoir::kPlanes; ++p) skin.content[lane][p] += share[lane] * fresh[p];
+}
+
+}  // namespace
+
+double Skin::volume(int node) const { return sum_of(content[node]); }
+
+void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes) {
+    absorb(tuft, skin.content, nodes, touch);
+    skin.content = {};
+}
+
+void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes, const NodeAreas& areas,
+             double dt) {
+    const double wet = std::min(1.0, saturation_at(tuft, touch) / kHalfFull);
+    const double part = -std::expm1(-std::max(dt, 0.0) / kSkinTime);
+    std::array<double, kNodes> want, lack;
+    NodeContents back{};
+    for (int node = 0; node < kNodes; ++node) {
+        want[node] = kSkinFilm * wet * areas[node];
+        const double volume = skin.volume(node);
+        if (!(volume > 0)) continue;
+        // Where the hair has left the surface, what was on it spreads among the rest.
+        const double leaves = std::max(part, 1 - std::min(1.0, 1.25 * want[node] / volume));
+        for (int p = 0; p < Reservoir::kPlanes; ++p) {
+            const double v = leaves * skin.content[node][p];
+            skin.content[node][p] -= v;
+            back[node][p] += v;
+        }
+    }
+    absorb(tuft, back, nodes, touch);
+    double all = 0;
+    for (int node = 0; node < kNodes; ++node) {
+        lack[node] = std::max(0.0, want[node] - skin.volume(node));
+        all += lack[node];
+    }
+    if (!(all > 0)) return;
+    const double within = std::min(1.0, tuft.remaining() / all);
+    for (double& amount : lack) amount *= within;
+    const NodeContents fresh = draw(tuft, lack, nodes, touch);
+    for (int node = 0; node < kNodes; ++node)
+        for (int p = 0; p < Reservoir::kPlanes; ++p) skin.content[node][p] += fresh[node][p];
 }
 
 TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const Touch& touch,
-                               const LaneAreas& areas, const DepositParams& deposit, double ds,
+                               const NodeAreas& areas, const DepositParams& deposit, double ds,
                                double dt, double stress) {
     TransferParams out;
     out.deposit = deposit;
@@ -142,61 +172,58 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
     out.thirst = static_cast<float>(std::clamp(1 - saturation_at(tuft, touch), 0.0, 1.0));
     double area = 0;
     for (const double a : areas) area += a;
-    const double room = area > 0 ? room_left(tuft, touch) / area : 0;
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const double volume = skin.volume(lane);
-        out.room[lane] = static_cast<float>(room);
-        if (!(volume > 0) || !(areas[lane] > 0)) continue;
-        out.film[lane] = static_cast<float>(kMostGiven * volume / areas[lane]);
-        for (int p = 0; p < kMaxPigments; ++p)
-            out.mix[lane][p] = static_cast<float>(std::max(0.0, skin.content[lane][p]) / volume);
+    out.room = static_cast<float>(area > 0 ? room_left(tuft, touch) / area : 0);
+    for (int node = 0; node < kNodes; ++node) {
+        if (!(areas[node] > 0)) continue;
+        for (int p = 0; p < Reservoir::kPlanes; ++p)
+            out.film[p][node] =
+                static_cast<float>(kMostGiven * std::max(0.0, skin.content[node][p]) / areas[node]);
     }
     return out;
 }
 
-void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
-              std::span<const std::uint8_t, kN> lanes, std::span<const float, kN> area, double ds,
-              const TransferParams& params, LaneContents& given) {
-    alignas(64) Texels film, room, goal, total, dense{}, mix, before, held;
-    by_lane(film, lanes, params.film);
-    by_lane(room, lanes, params.room);
+void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const Tents& tents,
+              std::span<const float, kN> area, double ds, const TransferParams& params, NodeContents& given) {
+    if (tents.count == 0) return;
+    std::array<float, kNodes> over{};  // film units of all planes
+    for (int k = 0; k < tents.count; ++k)
+        for (int p = 0; p < Reservoir::kPlanes; ++p) over[tents.node[k]] += params.film[p][tents.node[k]];
+    alignas(64) Texels film, goal, total, dense{}, part, up, before;
+    interpolate(film, tents, over);
     film_goals(goal, coverage, params.deposit);
     Plane& w = canvas.touch_liquid(slot, Liquid::film);
     const Plane* s = canvas.liquid(slot, Liquid::pores);
     for (int t = 0; t < kN; ++t) total[t] = s ? w[t] + (*s)[t] : w[t];
     Volumes v;
     const auto rate = static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
-    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), room.data(),
+    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), params.room,
             params.deposit.target, params.deposit.capacity, rate, params.exchange, params.thirst);
-    held = w;
+    given_part(part.data(), v.down.data(), film.data());
+    Booked booked;
+    for (int k = 0; k < tents.count; ++k) {
+        booked.part[k] = static_cast<double>(tent_sum(tents.weight[k], part.data(), area));
+        booked.taken[k][kWater] = static_cast<double>(tent_sum(tents.weight[k], v.up.data(), area));
+    }
+    before = w;
     for (int t = 0; t < kN; ++t) w[t] = (w[t] - v.up[t]) + v.down[t];
-    std::uint32_t present = 0;  // bits: lanes on this tile
-    for (int t = 0; t < kN; ++t) present |= coverage[t] > 0 ? 1u << lanes[t] : 0;
-    const auto book = [&](const float* after, const float* was, int plane) {
-        for (int lane = 0; lane < kLanes; ++lane) {
-            if (!(present >> lane & 1)) continue;
-            const double d = change(after, was, area.data(), lanes.data(), lane);
-            given[lane][plane] += d;
-            if (plane != kWater) given[lane][kWater] -= d;  // the liquid counts its pigments
-        }
-    };
-    book(w.data(), held.data(), kWater);
+    booked.stored[kWater] = change(w.data(), before.data(), area.data());
     for (int p = 0; p < kMaxPigments; ++p)
         if (const Plane* here = canvas.plane(slot, p)) add_concentration(dense.data(), here->data(), total.data());
     lifted_part(v.up.data(), total.data(), dense.data());
     for (int p = 0; p < kMaxPigments; ++p) {
-        std::array<float, kLanes> parts;
         float most = 0;
-        for (int lane = 0; lane < kLanes; ++lane) {
-            parts[lane] = params.mix[lane][p];
-            most = std::max(most, present >> lane & 1 ? parts[lane] : 0);
-        }
-        if (!(most > 0) && !canvas.plane(slot, p)) continue;
-        by_lane(mix, lanes, parts);
+        for (int k = 0; k < tents.count; ++k) most = std::max(most, params.film[p][tents.node[k]]);
+        const bool there = canvas.plane(slot, p) != nullptr;
+        if (!(most > 0) && !there) continue;
+        interpolate(film, tents, params.film[p]);
         Plane& here = canvas.touch(slot, p);
-        move(here.data(), v.down.data(), mix.data(), v.up.data(), before.data());
-        book(here.data(), before.data(), p);
+        before = here;
+        move(here.data(), up.data(), v.up.data(), part.data(), film.data());
+        booked.stored[p] = change(here.data(), before.data(), area.data());
+        for (int k = 0; k < tents.count && there; ++k)
+            booked.taken[k][p] = static_cast<double>(tent_sum(tents.weight[k], up.data(), area));
     }
+    settle(booked, tents, params, given);
 }
 
 }  // namespace tuft::ink

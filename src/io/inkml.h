@@ -54,7 +54,7 @@ struct InkmlOptions {
 /// tuft:reshape, tuft:wash (of the palette), tuft:dry (seconds, or empty: until all is dry), tuft:fill (an ink's name, or empty: the trace's own) with the
 /// attributes film, region (all, part, chart), at, gradient (none, along, round), to_film, to_ink,
 /// from, to: see stroke::Fill, points "x y z" in mm, or followed by m in metres. A dip or wipe may have attributes depth and
-/// amount, 0–1: see stroke::Extent.
+/// amount, 0–1, and side, -1–1: see stroke::Extent.
 ///
 /// Flat traces without P and F get pressure that swells in and tapers out over their length
 /// and falls with speed; P without a declared range is 0–1, or scaled by its largest value.

@@ -113,15 +113,16 @@ double seconds_of(const InkmlText& file, const xml_node& node, std::string_view 
 
 stroke::Extent extent_of(const InkmlText& file, const xml_node& node) {
     stroke::Extent extent;
-    const auto read = [&](const char* name, double& value) {
+    const auto read = [&](const char* name, double& value, double least) {
         const std::string_view text = node.attribute(name).value();
         if (text.empty()) return;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0 && value <= 1))
-            file.fail(node, std::string(name) + " of a dip or wipe is a number from 0 to 1");
+        if (error != std::errc{} || end != text.data() + text.size() || !(value >= least && value <= 1))
+            file.fail(node, std::string(name) + " of a dip or wipe is a number from " + (least < 0 ? "-1" : "0") + " to 1");
     };
-    read("depth", extent.depth);
-    read("amount", extent.amount);
+    read("depth", extent.depth, 0);
+    read("amount", extent.amount, 0);
+    read("side", extent.side, -1);
     return extent;
 }
 

@@ -157,12 +157,12 @@ void add_trace(std::string& out, const Trace& trace, Kind kind, const Style& sty
     out += fmt::format("    <trace contextRef=\"#{}\">\n", name_of(kind));
     add_annotation(out, "      ", "label", trace.label);
     for (const stroke::Care& care : trace.before) {
-        const auto part = [](const char* name, double value) {
-            return value == 1 ? std::string() : fmt::format(" {}=\"{}\"", name, value);
+        const auto part = [](const char* name, double value, double usual = 1) {
+            return value == usual ? std::string() : fmt::format(" {}=\"{}\"", name, value);
         };
-        out += fmt::format("      <annotation type=\"tuft:{}\"{}{}{}>{}</annotation>\n", stroke::name_of(care.action),
+        out += fmt::format("      <annotation type=\"tuft:{}\"{}{}{}{}>{}</annotation>\n", stroke::name_of(care.action),
                            care.action == stroke::Action::fill ? fill_attributes(care.fill, style) : "",
-                           part("depth", care.extent.depth), part("amount", care.extent.amount),
+                           part("depth", care.extent.depth), part("amount", care.extent.amount), part("side", care.extent.side, 0),
                            care.seconds > 0 ? fmt::format("{}", care.seconds) : escaped(care.ink));
     }
     if (trace.seed) add_annotation(out, "      ", "seed", std::to_string(trace.seed));

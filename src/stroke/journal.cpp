@@ -94,6 +94,7 @@ std::string entry_json(const Stroke& entry) {
     if (entry.extent != Extent{}) {
         j["depth"] = entry.extent.depth;
         j["amount"] = entry.extent.amount;
+        if (entry.extent.side != 0) j["side"] = entry.extent.side;
     }
     return j.dump();
 }
@@ -134,7 +135,7 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     check_seconds(entry.seconds);
     entry.extent = {};
     try {
-        entry.extent = {j.value("depth", 1.0), j.value("amount", 1.0)};
+        entry.extent = {j.value("depth", 1.0), j.value("amount", 1.0), j.value("side", 0.0)};
     } catch (const nlohmann::json::exception&) {
         throw Error("how far a brush was dipped or wiped cannot be read");
     }
@@ -153,19 +154,21 @@ Action action_of(const std::string& name) {
 void check_extent(const Extent& e) {
     if (!(e.depth >= 0 && e.depth <= 1)) throw Error("the depth of a dip or wipe is a part of the tuft, 0 to 1");
     if (!(e.amount >= 0 && e.amount <= 1)) throw Error("the amount of a dip or wipe is 0 to 1");
+    if (!(std::abs(e.side) <= 1)) throw Error("the side of a dip or wipe is a part of the tuft's width, -1 to 1");
 }
 
 std::string care_text(const Care& care) {
     std::string text = name_of(care.action);
     if (!care.ink.empty()) text += ":" + care.ink;
-    const auto add = [&](const char* name, double value) {
-        if (value == 1) return;
+    const auto add = [&](const char* name, double value, double usual) {
+        if (value == usual) return;
         char number[40];
         *std::to_chars(number, number + sizeof number - 1, value).ptr = 0;
         text += std::string(",") + name + "=" + number;
     };
-    add("depth", care.extent.depth);
-    add("amount", care.extent.amount);
+    add("depth", care.extent.depth, 1);
+    add("amount", care.extent.amount, 1);
+    add("side", care.extent.side, 0);
     return text;
 }
 
@@ -183,9 +186,12 @@ Care care_of_text(const std::string& text) {
         const std::string part = text.substr(end + 1, next - end - 1);
         const std::size_t equal = part.find('=');
         const std::string name = part.substr(0, std::min(equal, part.size()));
-        double* value = name == "depth" ? &care.extent.depth : name == "amount" ? &care.extent.amount : nullptr;
+        double* value = name == "depth"    ? &care.extent.depth
+                        : name == "amount" ? &care.extent.amount
+                        : name == "side"   ? &care.extent.side
+                                           : nullptr;
         if (!value || equal == std::string::npos || (care.action != Action::dip && care.action != Action::wipe))
-            throw Error("'" + part + "' in '" + text + "' is neither depth=PART nor amount=PART of a dip or wipe");
+            throw Error("'" + part + "' in '" + text + "' is none of depth=PART, amount=PART and side=PART of a dip or wipe");
         const char* last = part.data() + part.size();
         const auto [rest, error] = std::from_chars(part.data() + equal + 1, last, *value);
         if (error != std::errc{} || rest != last) throw Error("'" + part + "' in '" + text + "' is no number");

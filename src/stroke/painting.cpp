@@ -4,31 +4,14 @@
 #include <cmath>
 
 #include "contact/contact.h"
-#include "footprint/hair.h"
 #include "stroke/hand.h"
-#include "stroke/resample.h"
-#include "stroke/stamper.h"
-#include "stroke/wet_hand.h"
+#include "stroke/painting_hand.h"
 
 namespace tuft::stroke {
 namespace {
 
 constexpr std::size_t kPosesPerReport = 16;
-// Bending moment of a firm press over B0/L: what a hand reaches at the working depth.
-constexpr double kFirmPress = 0.1;
 constexpr double kForceTime = 5e-3;  // seconds of the low-pass on the force to the hand
-constexpr double kSpeedLength = 2e-3;   // metres of travel over which the hand's speed is taken
-constexpr double kSkinFilm = 0.1e-3;    // metres of ink round wet hair
-// Metres of ink under hair that brings just what closes its gaps: twice the grain of rough
-// paper, three times that of bisque.
-constexpr double kGrainFilm = 30e-6;
-constexpr double kSplays = 0.4;         // lack of wetness at which no water holds the tip together
-
-footprint::StampOptions stamp_options(const Settings& settings) {
-    footprint::StampOptions o;
-    o.mapping = settings.footprint == "plane" ? footprint::Mapping::plane : footprint::Mapping::log;
-    return o;
-}
 
 /// Hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
 double wetness_of(const ink::Reservoir& reservoir) {
@@ -44,130 +27,7 @@ ink::Reservoir empty_reservoir(const brush::Tuft& tuft) {
                                                            .cell_rooms = std::move(cells.rooms)});
 }
 
-double footprint_area(const footprint::Footprint& f) {
-    std::size_t sum = 0;
-    for (const std::uint8_t c : f.coverage) sum += c;
-    return static_cast<double>(sum) / 255.0 * f.cell * f.cell;
-}
-
 }  // namespace
-
-// The stroke in work: everything between the hand's samples and the texels.
-struct Painting::Hand {
-    Stroke stroke;
-    const Model* model = nullptr;          // that it is drawn on: the painting's, or the palette
-    const ink::Substrate* substrate = nullptr;
-    brush::Tuft tuft;
-    ink::Ink ink;
-    ink::Reservoir reservoir;
-    std::string dipped;
-    SteadyHand steady;
-    contact::Memory memory;
-    contact::Options contact_options;
-    Resampler resampler;
-    Stamper stamper;
-    double step = 0, cell = 0;
-    std::vector<brush::Pose> poses;
-    StrokeReport report;
-    brush::TuftState state;
-    double last_time = 0;
-    double speed = 0, travel = 0;  // m/s; metres drawn so far
-    ink::Touch touched;            // by the last stamp
-    ink::Touch touch;              // of the stamps since the last flush, summed
-    double closed_area = 0;        // m², of the last stamp with its gaps; 0: it has none
-    double parted = 0;             // travel up to which bundles have parted
-    bool moved = false, was_touching = false;
-    std::optional<WetHand> wet;  ///< with wet ink
-    Vec3 force{0};  // to the hand
-    Vec3 last_position{0};
-
-    Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& on, ink::Canvas& canvas,
-         const ink::Substrate& ground, double step_, double texel)
-        : stroke(std::move(s)),
-          model(&on),
-          substrate(&ground),
-          tuft(std::move(held.tuft)),
-          ink(i),
-          reservoir(held.reservoir),
-          dipped(std::move(held.dipped)),
-          resampler({.step = step_, .lever = tuft.preset.length}),
-          stamper(on, canvas, stamp_options(stroke.settings), ground),
-          step(step_),
-          cell(0.5 * texel) {
-        contact_options.method = stroke.settings.contact == "vertices" ? contact::Method::vertices
-                                                                       : contact::Method::exact;
-        report.nearest = std::numeric_limits<double>::infinity();
-    }
-
-    void flush() {
-        const double given = stamper.flush();
-        float sum = 0;
-        for (const float t : touch) sum += t;
-        for (float& t : touch) t /= sum;
-        ink::take(reservoir, given, touch);
-        touch.clear();
-        report.ink_given += given;
-    }
-
-    void move_on(const brush::Pose& pose, double dt) {
-        const double way = glm::length(pose.position - last_position);
-        travel += way;
-        if (dt > 0) speed += -std::expm1(-way / kSpeedLength) * (way / dt - speed);
-    }
-
-    /// k = |M| / M_max of the ink's laws.
-    double stress(const contact::Result& contact) const {
-        const double limit = kFirmPress * tuft.preset.stiffness / tuft.preset.length;
-        return std::min(1.0, std::abs(contact.tuft.root_moment) / limit);
-    }
-
-    /// The hair on the surface: `touched`, and the footprint with the gaps that lack of ink leaves.
-    Stamp make_stamp(const contact::Result& contact, double dt);
-};
-
-Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
-    const int branches = static_cast<int>(contact.tuft.branches.size());
-    std::vector<footprint::Trail> trails = footprint::trails(
-        contact.tuft, contact.frame, contact.branch_planes, tuft.preset.length, kSkinFilm);
-    touched = footprint::touched_cells(trails, tuft.bundles, branches, reservoir.layout.cell_ends);
-    touch.resize(touched.size(), 0);
-    for (std::size_t i = 0; i < touch.size(); ++i) touch[i] += touched[i];
-
-    // Saturation and film of each bundle along what touches of the tuft.
-    const std::size_t n = reservoir.n_bundles(), cells = reservoir.n_cells();
-    std::vector<double> saturation(n, 0), wetness(n), depth(cells, 0);
-    for (std::size_t i = 0; i < touched.size(); ++i) depth[i % cells] += static_cast<double>(touched[i]);
-    double least = 1e9, mean = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t c = 0; c < cells; ++c) saturation[k] += depth[c] * reservoir.saturation(k * cells + c);
-        wetness[k] = footprint::wetness_of_bundle(saturation[k], tuft.bundles.holds[k], speed);
-        mean += wetness[k] / static_cast<double>(n);
-        least = std::min(least, wetness[k]);
-    }
-    brush::part_bundles(tuft.bundles, tuft.preset, stress(contact), saturation, travel - parted, dt);
-    parted = travel;
-
-    Stamp stamp;
-    // On the palette the pool itself fills the gaps of dry hair.
-    const bool closed = least >= 1 || stroke.layer == kPaletteLayer;
-    closed_area = 0;
-    if (!closed) footprint::splay(trails, std::clamp((1 - mean) / kSplays, 0.0, 1.0));
-    std::vector<footprint::Outline> outlines;
-    for (const footprint::Trail& trail : trails) {
-        footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points);
-        if (o.left.size() >= 3) outlines.push_back(std::move(o));
-    }
-    if (closed) {
-        stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, cell);
-    } else {
-        footprint::HairMarks marks = footprint::hair_marks(trails, outlines, tuft.bundles, branches,
-                                                           {wetness, travel}, contact.frame, contact.triangle, cell);
-        stamp.footprint = std::move(marks.footprint);
-        stamp.grain_film = kGrainFilm * mean;
-        closed_area = marks.closed_area;
-    }
-    return stamp;
-}
 
 Painting::Painting(const Model& model, const PaintingOptions& options)
     : model_(&model),
@@ -282,10 +142,10 @@ void Painting::act(const Stroke& entry) {
     switch (entry.action) {
         case Action::dip:
             ink::dip(brush.reservoir, mix_of(entry.trace.ink),
-                     {.depth = entry.extent.depth, .level = entry.extent.amount});
+                     {.depth = entry.extent.depth, .level = entry.extent.amount, .side = entry.extent.side});
             brush.dipped = entry.trace.ink;
             break;
-        case Action::wipe: ink::wipe(brush.reservoir, entry.extent.amount, entry.extent.depth); break;
+        case Action::wipe: ink::wipe(brush.reservoir, entry.extent.amount, {entry.extent.depth, entry.extent.side}); break;
         case Action::rinse:
             ink::rinse(brush.reservoir);
             brush::reset(brush.tuft);
@@ -324,6 +184,7 @@ void Painting::begin_hand(Stroke stroke) {
     hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, model, canvas, substrate,
                                    spacing, texel);
     hand_->stamper.keep_to(mask);
+    hand_->mixed = !hand_->stroke.trace.erases && ink::is_mixed(hand_->reservoir);
     const Settings& settings = hand_->stroke.settings;
     if (settings.film != "wet" || hand_->stroke.trace.erases) return;
     if (&model == model_) hand_->wet.emplace(film(), canvas, ink::film_params(substrate, settings.down));
@@ -393,15 +254,19 @@ void Painting::draw_poses() {
         const ink::StampContact touch{
             .moment_factor = h.stress(contact),
             .width = h.closed_area > 0 ? area / std::sqrt(h.closed_area) : std::sqrt(area),
-            // A batch shares what is left.
-            .area = area * static_cast<double>(Stamper::kBatch),
+            // A batch shares what is left; mixed ink comes stamp by stamp.
+            .area = area * (h.mixed ? 1.0 : static_cast<double>(Stamper::kBatch)),
             .touch = h.touched};
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
         stamp.ink.capacity = h.substrate->capacity;
         stamp.ds = h.step;
         if (h.stroke.trace.erases) stamp.erases = 0.25 + 0.75 * touch.moment_factor;  // as ink is given
         if (h.wet) {
-            h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, touch.moment_factor);
+            h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, h.nodes, touch.moment_factor);
+            continue;
+        }
+        if (h.mixed) {
+            h.report.ink_given += h.lay_mixed(stamp);
             continue;
         }
         if (h.stamper.add(std::move(stamp))) h.flush();
@@ -415,7 +280,7 @@ StrokeReport Painting::finish_hand() {
     h.resampler.finish(h.poses);
     draw_poses();
     h.flush();
-    if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched);
+    if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched, h.nodes);
     h.report.ink_left = h.reservoir.remaining();
     if (h.report.touched()) h.report.nearest = 0;
     h.report.removed = h.stamper.erased();

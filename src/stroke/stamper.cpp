@@ -112,7 +112,7 @@ void Stamper::keep(std::uint32_t slot) {
     if (!before_.contains(slot)) before_.emplace(slot, canvas_.snapshot(slot));
 }
 
-ink::LaneAreas Stamper::expose(const Stamp& stamp) {
+ink::NodeAreas Stamper::expose(const Stamp& stamp) {
     jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, stamp.motion, options_, scratch_[0],
                                      std::move(jobs_[0]));
     const footprint::StampJobs& plan = jobs_[0];
@@ -121,13 +121,10 @@ ink::LaneAreas Stamper::expose(const Stamp& stamp) {
     piecewise_ = footprint::choose_mode(jobs_[0], piecewise_, options_);
     exposed_.resize(plan.tiles.size());
     if (grain_.empty() && stamp.grain_film > 0) grain_.resize(model_.texels.n_slots());
-    const Frame& frame = stamp.footprint.frame;
-    const Vec3f origin(frame.origin), across(frame.b);
-    const auto lo = static_cast<float>(stamp.footprint.lo.y);
-    const auto per_lane = static_cast<float>(ink::kLanes / (stamp.footprint.height * stamp.footprint.cell));
     parallel_for(exposed_.size(), 4, [&](std::size_t begin, std::size_t end) {
         footprint::Unpacked unpacked;
         atlas::TexelShape room;
+        ink::Tents tents;
         for (std::size_t i = begin; i < end; ++i) {
             Exposed& e = exposed_[i];
             const std::uint32_t slot = plan.tiles[i].slot;
@@ -137,39 +134,52 @@ ink::LaneAreas Stamper::expose(const Stamp& stamp) {
             e.slot = slot;
             if (stamp.grain_film > 0)
                 ink::expose_relief(e.exposure, grain(slot), grain_rms_, static_cast<float>(stamp.grain_film));
-            const atlas::TexelShape& shape = atlas::shape_of(model_.texels, slot, room);
-            const auto& area = model_.texels.tiles[slot].area;
-            for (int t = 0; t < atlas::kTileTexels; ++t) {
-                const Vec3f d = Vec3f{shape.px[t], shape.py[t], shape.pz[t]} - origin;
-                const float lane = (d.x * across.x + d.y * across.y + d.z * across.z - lo) * per_lane;
-                e.lanes[t] = static_cast<std::uint8_t>(lane > 0 ? std::min(lane, ink::kLanes - 1.0f) : 0);
-                if (e.exposure[t] > 0) e.areas[e.lanes[t]] += static_cast<double>(area[t]);
-            }
+            ink::place_texels(e.places, stamp.grid, stamp.footprint.frame, atlas::shape_of(model_.texels, slot, room));
+            ink::tents_of(tents, e.places, e.exposure);
+            for (int k = 0; k < tents.count; ++k)
+                e.areas[tents.node[k]] = static_cast<double>(
+                    ink::tent_sum(tents.weight[k], nullptr, model_.texels.tiles[slot].area));
         }
     });
-    ink::LaneAreas areas{};
+    ink::NodeAreas areas{};
     for (const Exposed& e : exposed_)
         if (e.slot != kNone)
-            for (int lane = 0; lane < ink::kLanes; ++lane) areas[lane] += e.areas[lane];
+            for (int node = 0; node < ink::kNodes; ++node) areas[node] += e.areas[node];
     return areas;
 }
 
-ink::LaneContents Stamper::exchange(const ink::TransferParams& params, double ds) {
+// act(exposed tile, its tents) by the one thread that works on the slot.
+template <class F>
+ink::NodeContents Stamper::act_on_exposed(F act) {
     for (const Exposed& e : exposed_)
         if (e.slot != kNone) keep(e.slot);
     parallel_for(exposed_.size(), 2, [&](std::size_t begin, std::size_t end) {
+        ink::Tents tents;
         for (std::size_t i = begin; i < end; ++i) {
             Exposed& e = exposed_[i];
-            if (e.slot != kNone)
-                ink::transfer(canvas_, e.slot, e.exposure, e.lanes, model_.texels.tiles[e.slot].area, ds, params,
-                              e.given);
+            if (e.slot == kNone) continue;
+            ink::tents_of(tents, e.places, e.exposure);
+            act(e, tents);
         }
     });
-    ink::LaneContents given{};
+    ink::NodeContents given{};
     for (const Exposed& e : exposed_)
-        for (int lane = 0; lane < ink::kLanes; ++lane)
-            for (int p = 0; p < ink::Reservoir::kPlanes; ++p) given[lane][p] += e.given[lane][p];
+        for (int node = 0; node < ink::kNodes; ++node)
+            for (int p = 0; p < ink::Reservoir::kPlanes; ++p) given[node][p] += e.given[node][p];
     return given;
+}
+
+ink::NodeContents Stamper::exchange(const ink::TransferParams& params, double ds) {
+    return act_on_exposed([&](Exposed& e, const ink::Tents& tents) {
+        ink::transfer(canvas_, e.slot, e.exposure, tents, model_.texels.tiles[e.slot].area, ds, params, e.given);
+    });
+}
+
+ink::NodeContents Stamper::lay(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds) {
+    return act_on_exposed([&](Exposed& e, const ink::Tents& tents) {
+        ink::deposit_mixed(canvas_, e.slot, e.exposure, tents, model_.texels.tiles[e.slot].area, ds, params, mixes,
+                           e.given);
+    });
 }
 
 std::vector<ink::TileSnapshot> Stamper::take_before() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "footprint/stamp.h"
+#include "ink/deposit_mixed.h"
 #include "ink/erase.h"
 #include "ink/transfer.h"
 #include "stroke/mask.h"
@@ -21,6 +22,7 @@ struct Stamp {
     double ds = 0;               ///< metres of travel it stands for
     double erases = 0;           ///< strength of an eraser, which takes ink instead; 0: it is none
     double grain_film = 0;       ///< metres of ink under the hair, to fill the surface's grain; 0: it does
+    ink::TouchGrid grid;         ///< over the footprint, for ink that is not the same all over it
 };
 
 /// Puts stamps onto the texels, a batch at a time: tiles in parallel, on each tile the
@@ -44,11 +46,13 @@ class Stamper {
     /// What erasing stamps have taken away since the start.
     const ink::Amounts& erased() const { return erased_; }
 
-    /// For wet ink, one stamp at a time: where it touches, and how much surface lies under each
-    /// lane, m². Lanes divide the footprint along its v axis.
-    ink::LaneAreas expose(const Stamp& stamp);
-    /// Lets ink go both ways there. Returns what was given less what was taken, by lane.
-    ink::LaneContents exchange(const ink::TransferParams& params, double ds);
+    /// For wet and for mixed ink, one stamp at a time: where it touches, and how much surface lies
+    /// under each node of its grid.
+    ink::NodeAreas expose(const Stamp& stamp);
+    /// Lets ink go both ways there. Returns what was given less what was taken, by node.
+    ink::NodeContents exchange(const ink::TransferParams& params, double ds);
+    /// Lays ink down there that differs from node to node. Returns what was given.
+    ink::NodeContents lay(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds);
 
     /// Notes a tile as it is, for `take_before`, unless it was noted already.
     void keep(std::uint32_t slot);
@@ -59,6 +63,9 @@ class Stamper {
   private:
     using Grain = std::array<float, atlas::kTileTexels>;
     const Grain& grain(std::uint32_t slot);
+    struct Exposed;
+    template <class F>
+    ink::NodeContents act_on_exposed(F act);
 
     const Model& model_;
     ink::Canvas& canvas_;
@@ -72,9 +79,9 @@ class Stamper {
     struct Exposed {
         std::uint32_t slot = kNone;
         alignas(64) std::array<float, atlas::kTileTexels> exposure;
-        std::array<std::uint8_t, atlas::kTileTexels> lanes;
-        ink::LaneAreas areas{};
-        ink::LaneContents given{};
+        ink::TexelPlaces places;
+        ink::NodeAreas areas{};
+        ink::NodeContents given{};
     };
     std::vector<Exposed> exposed_;                 ///< by the stamp in work, as many as it reached
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;

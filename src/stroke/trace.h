@@ -60,6 +60,9 @@ struct Extent {
     double depth = 1;    ///< part of the tuft's length, from the tip, 0–1
     double amount = 1;   ///< dip: part of its room up to which hair is filled; wipe: part of its ink
                          ///< that goes; 0–1
+    double side = 0;     ///< part of the tuft's width, from the right flank (> 0) or the left one (< 0), −1–1;
+                         ///< 0: all of it. Right is the side of the ferrule's +x, of the stroke's right hand
+                         ///< edge where that is drawn away from the hand
 
     bool operator==(const Extent&) const = default;
 };
@@ -73,7 +76,7 @@ struct Care {
     Extent extent = {};
 };
 
-/// A care in words, "ACTION[:INK][,depth=PART][,amount=PART]": "dip:cinnabar,depth=0.2",
+/// A care in words, "ACTION[:INK][,depth=PART][,amount=PART][,side=PART]": "dip:cinnabar,depth=0.2",
 /// "wipe,amount=0.6"; and back, throwing `Error` for anything else.
 std::string care_text(const Care& care);
 Care care_of_text(const std::string& text);

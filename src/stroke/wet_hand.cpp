@@ -20,25 +20,25 @@ void WetHand::pass(Stamper& stamper, double seconds) {
 }
 
 double WetHand::lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
-                    double stress) {
-    const ink::LaneAreas areas = stamper.expose(stamp);
-    ink::refresh(skin_, tuft, touch, areas, since_);
+                    const ink::NodeTouch& nodes, double stress) {
+    const ink::NodeAreas areas = stamper.expose(stamp);
+    ink::refresh(skin_, tuft, touch, nodes, areas, since_);
     const ink::TransferParams params =
         ink::transfer_params(skin_, tuft, touch, areas, stamp.ink, stamp.ds, since_, stress);
     since_ = 0;
-    const ink::LaneContents given = stamper.exchange(params, stamp.ds);
+    const ink::NodeContents given = stamper.exchange(params, stamp.ds);
     double sum = 0;
-    for (int lane = 0; lane < ink::kLanes; ++lane)
+    for (int node = 0; node < ink::kNodes; ++node)
         for (int p = 0; p < ink::Reservoir::kPlanes; ++p) {
-            skin_.content[lane][p] -= given[lane][p];
-            sum += given[lane][p];
+            skin_.content[node][p] -= given[node][p];
+            sum += given[node][p];
         }
     return sum;
 }
 
-void WetHand::end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch) {
+void WetHand::end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes) {
     advance(stamper);
-    ink::withdraw(skin_, tuft, touch);
+    ink::withdraw(skin_, tuft, touch, nodes);
 }
 
 }  // namespace tuft::stroke

@@ -19,9 +19,9 @@ class WetHand {
     /// One stamp, pressed by `stress` (0–1): ink goes both ways. Returns the liquid given less what
     /// was taken, film·m².
     double lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
-               double stress);
+               const ink::NodeTouch& nodes, double stress);
     /// The tuft is lifted for good: what is on the hair goes into it.
-    void end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch);
+    void end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes);
 
   private:
     void advance(Stamper& stamper);

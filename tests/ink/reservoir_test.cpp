@@ -202,7 +202,7 @@ TEST(Reservoir, FlowKeepsEveryPigmentAndTheWater) {
 TEST(Reservoir, InkMovesFromTheWetRootToTheDryTipAndSettlesEven) {
     Reservoir tuft = make_reservoir(0.5, layout_of(12));
     dip(tuft, kBlack);
-    wipe(tuft, 1, 0.1);  // the last cell of four
+    wipe(tuft, 1, {.depth = 0.1});  // the last cell of four
     const std::size_t tip = kCells - 1;
     ASSERT_EQ(tuft.saturation(tip), 0);
     const double even = tuft.fullness();
@@ -215,7 +215,7 @@ TEST(Reservoir, InkMovesFromTheWetRootToTheDryTipAndSettlesEven) {
     // One cell alone with τ = 0.3 s: 1 − e^{−t/τ} of the way, less what the cell above lacks by then.
     Reservoir short_time = make_reservoir(0.5, layout_of(12));
     dip(short_time, kBlack);
-    wipe(short_time, 1, 0.1);
+    wipe(short_time, 1, {.depth = 0.1});
     flow(short_time, 0.03);
     EXPECT_NEAR(short_time.saturation(tip), 1 - std::exp(-0.1), 0.01) << "first order in the step";
     flow(tuft, 100);
@@ -305,7 +305,7 @@ TEST(Reservoir, ARagTakesWhatItTouches) {
     dip(tuft, kBlack);
     EXPECT_NEAR(wipe(tuft, 0.5) / tuft.capacity, 0.5, 1e-12);
     EXPECT_NEAR(tuft.fullness(), 0.5, 1e-12);
-    EXPECT_NEAR(wipe(tuft, 1, 0.3) / tuft.capacity, 0.5 * 0.2, 1e-12);
+    EXPECT_NEAR(wipe(tuft, 1, {.depth = 0.3}) / tuft.capacity, 0.5 * 0.2, 1e-12);
     EXPECT_EQ(tuft.saturation(kCells - 1), 0);
     EXPECT_NEAR(tuft.saturation(0), 0.5, 1e-12);
 }

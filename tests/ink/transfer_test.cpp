@@ -19,37 +19,43 @@ struct Touching {
     DepositParams deposit;
     Touch touch;
     std::array<float, kN> coverage, area;
-    std::array<std::uint8_t, kN> lanes;
+    TexelPlaces places;
+    Tents tents;
 
     Touching() : tuft(make_reservoir(0.05)) {
         purple = mix_of(canvas, load_ink("indigo"));
         yellow = mix_of(canvas, load_ink("gamboge"));
         coverage.fill(1);
         area.fill(kArea);
-        for (int t = 0; t < kN; ++t) lanes[t] = static_cast<std::uint8_t>(t % atlas::kTile / 2);
+        for (int t = 0; t < kN; ++t) {
+            places.along[t] = static_cast<float>(t / atlas::kTile) * (kAlong - 1) / 15;
+            places.across[t] = static_cast<float>(t % atlas::kTile) * (kAcross - 1) / 15;
+        }
     }
     void wash(float film, const Mix& mix) {
         canvas.touch_liquid(0, Liquid::film).fill(film);
         for (int p = 0; p < kMaxPigments; ++p)
             if (mix[p] > 0) canvas.touch(0, p).fill(film * mix[p]);
     }
-    LaneAreas areas() const {
-        LaneAreas out{};
-        for (int t = 0; t < kN; ++t)
-            if (coverage[t] > 0) out[lanes[t]] += static_cast<double>(area[t]);
+    NodeAreas areas() const {
+        NodeAreas out{};
+        for (int k = 0; k < tents.count; ++k)
+            out[tents.node[k]] = static_cast<double>(tent_sum(tents.weight[k], nullptr, area));
         return out;
     }
+    NodeTouch nodes() const { return node_touch(tuft, {}, {}, touch); }
     void move(double ds, double dt) {
-        refresh(skin, tuft, touch, areas(), dt);
+        tents_of(tents, places, coverage);
+        refresh(skin, tuft, touch, nodes(), areas(), dt);
         const TransferParams p = transfer_params(skin, tuft, touch, areas(), deposit, ds, dt, 1);
-        LaneContents given{};
-        transfer(canvas, 0, coverage, lanes, area, ds, p, given);
-        for (int lane = 0; lane < kLanes; ++lane)
-            for (int k = 0; k < Reservoir::kPlanes; ++k) skin.content[lane][k] -= given[lane][k];
+        NodeContents given{};
+        transfer(canvas, 0, coverage, tents, area, ds, p, given);
+        for (int node = 0; node < kNodes; ++node)
+            for (int k = 0; k < Reservoir::kPlanes; ++k) skin.content[node][k] -= given[node][k];
     }
     double in_hair(int plane) const {
         double sum = tuft.pigment(plane);
-        for (const auto& lane : skin.content) sum += lane[plane];
+        for (const auto& node : skin.content) sum += node[plane];
         return sum;
     }
     double on_surface(int plane) const {
@@ -73,11 +79,11 @@ TEST(Transfer, KeepsEachPigmentAndTheWater) {
     const double whole = t.all(0) + t.all(1);
     for (int i = 0; i < 1000; ++i) {
         t.move(0.1e-3, 2e-3);
-        for (const auto& lane : t.skin.content)
-            for (const double v : lane) ASSERT_GE(v, -1e-9 * whole) << "the rounding of the texels";
+        for (const auto& node : t.skin.content)
+            for (const double v : node) ASSERT_GE(v, -1e-9 * whole) << "the rounding of the texels";
     }
     for (int p = 0; p < Reservoir::kPlanes; ++p) EXPECT_NEAR(t.all(p), before[p], 1e-9 * whole) << p;
-    withdraw(t.skin, t.tuft, t.touch);
+    withdraw(t.skin, t.tuft, t.touch, t.nodes());
     for (int p = 0; p < Reservoir::kPlanes; ++p) EXPECT_NEAR(t.all(p), before[p], 1e-9 * whole) << p;
 }
 
@@ -139,7 +145,7 @@ TEST(Transfer, AFullTuftTakesNoMoreAndDryFilmsStay) {
     for (int i = 0; i < 300; ++i) {
         t.move(0.1e-3, 2e-3);
         double held = t.tuft.remaining();
-        for (int lane = 0; lane < kLanes; ++lane) held += t.skin.volume(lane);
+        for (int node = 0; node < kNodes; ++node) held += t.skin.volume(node);
         ASSERT_LE(held, t.tuft.capacity * (1 + 1e-4)) << "the rounding of the texels";
     }
     EXPECT_EQ((*t.canvas.film_plane(0, kFirstDryFilm, 0))[100], 1);

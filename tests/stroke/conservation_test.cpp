@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+const std::string kBrush = "wolf-small";
+const char* const kInks[] = {"indigo", "gamboge", "cinnabar"};
+constexpr int kPigments = 3;
+
+/// A short stroke somewhere on 12 × 12 mm, in any direction.
+Stroke dab(int i, const std::string& ink) {
+    const auto u = [&](std::uint64_t what) { return uniform(hash_bits(11, what), static_cast<std::uint64_t>(i)); };
+    const double turn = 2 * std::numbers::pi * u(0);
+    Stroke s;
+    s.trace.flat = false;
+    s.trace.brush = kBrush;
+    s.trace.ink = ink;
+    s.settings.dip = "carry";
+    s.settings.film = i % 2 ? "wet" : "still";
+    s.settings.spacing = 4;
+    const Vec3 way{2e-3 * std::cos(turn), 2e-3 * std::sin(turn), 0};
+    const Vec3 start{12e-3 * (u(1) - 0.5), 12e-3 * (u(2) - 0.5), brush::load_preset(kBrush).length};
+    constexpr int kSamples = 8;
+    for (int k = 0; k <= kSamples; ++k) {
+        const double f = static_cast<double>(k) / kSamples;
+        TraceSample p;
+        p.time = 0.06 * f;
+        p.position = start + f * way;
+        p.position.z += 0.5e-3 - 3e-3 * std::sin(std::numbers::pi * f);
+        s.trace.samples.push_back(p);
+    }
+    return s;
+}
+
+Stroke care(Action action, const std::string& ink, const Extent& extent = {}, double seconds = 0) {
+    Stroke s{.action = action, .seconds = seconds, .extent = extent};
+    s.trace.flat = false;
+    s.trace.brush = kBrush;
+    s.trace.ink = ink;
+    s.settings.dip = "carry";
+    return s;
+}
+
+TEST(Conservation, AThousandStrokesKeepEachPigment) {
+    const Model model = sheet();
+    Painting painting(model, {.substrate = "bisque", .undo_bytes = 1});
+    std::array<double, kPigments> supplied{};
+    const auto in_hair = [&](int p) {
+        const BrushInHand* held = painting.held(kBrush);
+        return held ? held->reservoir.pigment(p) : 0;
+    };
+    // What a dip brings and a rag takes is counted where it happens: in the hair.
+    const auto tend = [&](const Stroke& entry) {
+        std::array<double, kPigments> before;
+        for (int p = 0; p < kPigments; ++p) before[p] = in_hair(p);
+        painting.paint(entry);
+        for (int p = 0; p < kPigments; ++p) supplied[p] += in_hair(p) - before[p];
+    };
+    std::string ink = kInks[0];
+    std::size_t touched = 0;
+    for (int i = 0; i < 1000; ++i) {
+        if (i % 20 == 0) {
+            ink = kInks[i / 20 % kPigments];
+            tend(care(Action::wipe, ink, {.depth = 0.6, .amount = 0.5}));
+            tend(care(Action::dip, ink, {.depth = 0.5, .side = i % 40 ? 0.5 : 0.0}));
+        }
+        if (i % 100 == 99) painting.paint(care(Action::dry, ink, {}, i == 999 ? 0 : 3));
+        touched += painting.paint(dab(i, ink)).touched();
+    }
+    EXPECT_EQ(touched, 1000u);
+    for (int p = 0; p < kPigments; ++p) {
+        const double on_sheet = painting.canvas().total(model.texels, p);
+        EXPECT_GT(on_sheet, 0.01 * supplied[p]) << "a part of it worth the name";
+        EXPECT_NEAR((on_sheet + in_hair(p)) / supplied[p], 1, 1e-5) << kInks[p];
+    }
+}
+
+}  // namespace
+}  // namespace tuft::stroke

@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+const std::string kBrush = "wolf-medium";
+
+Stroke care(Action action, const std::string& ink, const Extent& extent) {
+    Stroke s{.action = action, .extent = extent};
+    s.trace.flat = false;
+    s.trace.brush = kBrush;
+    s.trace.ink = ink;
+    s.settings.dip = "carry";
+    return s;
+}
+
+/// A brush with cinnabar in its right flank and gamboge in the left.
+void load_sides(Painting& painting) {
+    painting.paint(care(Action::dip, "gamboge", {}));
+    painting.paint(care(Action::wipe, "gamboge", {.amount = 1, .side = 0.5}));
+    painting.paint(care(Action::dip, "cinnabar", {.side = 0.5}));
+}
+
+/// Drawn over the sheet with the holder at right angles to it; `turn` about the holder: where the
+/// right flank, the ferrule's +x, points to.
+Stroke drawn(const std::string& film, double y = 0, bool along_y = true) {
+    const Vec3 along = along_y ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
+    Stroke s = line(kBrush, 6e-3, make_frame({y, 0, 0}, {0, 0, 1}, along));
+    for (TraceSample& p : s.trace.samples) p.rotation = Quat{1, 0, 0, 0};
+    s.trace.ink = "cinnabar";
+    s.settings.dip = "carry";
+    s.settings.film = film;
+    s.settings.spacing = 3;
+    return s;
+}
+
+/// Where a pigment lies, metres along x, in the middle part of the stroke.
+struct Spread {
+    double amount = 0, mean = 0;
+};
+Spread spread(const Painting& painting, const Model& model, int plane) {
+    Spread out;
+    for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            const Vec3f p = model.texels.position(slot, t);
+            const ink::Plane* w = painting.canvas().plane(slot, plane);
+            if (!w || std::abs(p.y) > 5e-3f) continue;
+            const double v = static_cast<double>((*w)[t]) * static_cast<double>(model.texels.tiles[slot].area[t]);
+            out.amount += v;
+            out.mean += v * static_cast<double>(p.x);
+        }
+    out.mean /= out.amount;
+    return out;
+}
+
+TEST(MixedInk, TwoInksSideBySideLieSideBySideInTheStroke) {
+    const Model model = sheet();
+    for (const char* film : {"still", "wet"}) {
+        Painting painting(model);
+        load_sides(painting);
+        painting.paint(drawn(film));
+        const Spread yellow = spread(painting, model, 0), red = spread(painting, model, 1);
+        EXPECT_GT(yellow.amount, 1e-6) << film;
+        EXPECT_GT(red.amount, 1e-6) << film;
+        // The stroke is about 5 mm wide: halves of it lie 2.5 mm apart when nothing mixes.
+        EXPECT_GT(std::abs(red.mean - yellow.mean), 1e-3) << film;
+    }
+}
+
+TEST(MixedInk, EachPigmentIsKeptStillAndWet) {
+    const Model model = sheet();
+    for (const char* film : {"still", "wet"}) {
+        Painting painting(model);
+        load_sides(painting);
+        std::array<double, 2> whole;
+        for (int p = 0; p < 2; ++p) whole[p] = painting.held(kBrush)->reservoir.pigment(p);
+        for (int i = 0; i < 3; ++i) painting.paint(drawn(film, 4e-3 * i - 4e-3, i != 1));
+        for (int p = 0; p < 2; ++p) {
+            const double now = painting.canvas().total(model.texels, p) + painting.held(kBrush)->reservoir.pigment(p);
+            EXPECT_NEAR(now / whole[p], 1, 1e-6) << film << ' ' << p;
+        }
+        for (const auto& cell : painting.held(kBrush)->reservoir.content)
+            for (const double v : cell) EXPECT_GE(v, -1e-9 * (whole[0] + whole[1])) << "the rounding of the texels";
+    }
+}
+
+TEST(MixedInk, ReplaysToTheBitOnAnyNumberOfThreads) {
+    const Model model = sheet();
+    for (const char* film : {"still", "wet"}) {
+        std::uint64_t hashes[2];
+        std::vector<Stroke> journal;
+        for (int i = 0; i < 2; ++i) {
+            set_thread_count(i ? 3 : 1);
+            Painting painting(model);
+            if (i == 0) {
+                load_sides(painting);
+                painting.paint(drawn(film));
+                journal = painting.journal().strokes();
+            } else {
+                painting.replay(journal);
+            }
+            hashes[i] = painting.canvas().hash();
+        }
+        EXPECT_EQ(hashes[0], hashes[1]) << film;
+    }
+    set_thread_count(0);
+}
+
+TEST(MixedInk, CaresWithASideComeBackFromTheirText) {
+    Care c = care_of_text("dip:cinnabar,depth=0.25,side=-0.5");
+    EXPECT_EQ(c.extent, (Extent{.depth = 0.25, .side = -0.5}));
+    EXPECT_EQ(care_text(c), "dip:cinnabar,depth=0.25,side=-0.5");
+    EXPECT_ANY_THROW(care_of_text("wipe,side=1.5"));
+    EXPECT_ANY_THROW(care_of_text("rinse,side=0.5"));
+    Stroke entry = care(Action::wipe, "carbon", {.depth = 0.5, .amount = 0.25, .side = 0.125});
+    Stroke back;
+    read_entry_json(entry_json(entry), back);
+    EXPECT_EQ(back.extent, entry.extent);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
