@@ -22,8 +22,8 @@ Stroke dab(int i, const std::string& ink) {
     s.trace.brush = kBrush;
     s.trace.ink = ink;
     s.settings.dip = "carry";
-    s.settings.film = i % 2 ? "wet" : "still";
-    s.settings.spacing = 4;
+    s.settings.film = i % 4 ? "still" : "wet";
+    s.settings.spacing = 6;
     const Vec3 way{2e-3 * std::cos(turn), 2e-3 * std::sin(turn), 0};
     const Vec3 start{12e-3 * (u(1) - 0.5), 12e-3 * (u(2) - 0.5), brush::load_preset(kBrush).length};
     constexpr int kSamples = 8;
@@ -70,7 +70,7 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
             tend(care(Action::wipe, ink, {.depth = 0.6, .amount = 0.5}));
             tend(care(Action::dip, ink, {.depth = 0.5, .side = i % 40 ? 0.5 : 0.0}));
         }
-        if (i % 100 == 99) painting.paint(care(Action::dry, ink, {}, i == 999 ? 0 : 3));
+        if (i % 100 == 99) painting.paint(care(Action::dry, ink, {}, i == 999 ? 0 : 0.3));
         touched += painting.paint(dab(i, ink)).touched();
     }
     EXPECT_EQ(touched, 1000u);
