@@ -119,7 +119,9 @@ TEST(TouchNodes, EachNodeMeetsTheHairOverIt) {
         for (int p = 0; p < Reservoir::kPlanes; ++p) mixture += static_cast<double>(mixes[p][n]);
         EXPECT_NEAR(parts, 1, 1e-5) << n;
         EXPECT_NEAR(mixture, 1, 1e-6) << n;
-        if (n % kAcross < 3) EXPECT_NEAR(mixes[0][n], 1, 1e-6) << n;
+        if (n % kAcross < 3) {
+            EXPECT_NEAR(mixes[0][n], 1, 1e-6) << n;
+        }
         if (n % kAcross > 4) {
             EXPECT_NEAR(mixes[1][n], 0.5, 1e-6) << n;
             EXPECT_NEAR(mixes[kWater][n], 0.5, 1e-6) << n;

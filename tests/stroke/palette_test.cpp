@@ -122,7 +122,8 @@ TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
     painting.paint(strokes[5]);
     for (const int p : {red, yellow}) EXPECT_GT(painting.canvas().total(model.texels, p), 0);
 
-    // Stirred to and fro over both pools, what lies between them is of both.
+    // Stirred to and fro over both pools, what lies between them is of both: a part in fifty and
+    // more, for hair keeps what it took up in its own bundle and cell until that touches again.
     for (int i = 0; i < 3; ++i) painting.paint(through({0, 0, 0}, kPaletteLayer, "cinnabar"));
     const Pick between = painting.pick_palette({0, 0, 0});
     EXPECT_GT(between.amounts[red], 0.02 * between.amounts[yellow]);
