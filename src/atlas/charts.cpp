@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "atlas/asked_seams.h"
 #include "atlas/hull.h"
@@ -200,6 +201,18 @@ bool StretchBudget::allows(std::span<const FlatChart* const> before,
 void StretchBudget::spend(std::span<const FlatChart* const> before,
                           std::span<const FlatChart* const> now) {
     used_ += difference(before, now);
+}
+
+Patch whole_patch(const mesh::TriangleMesh& mesh, const CutMesh& cut) {
+    std::vector<std::uint32_t> all(mesh.n_triangles());
+    std::iota(all.begin(), all.end(), 0u);
+    return make_patch(mesh, cut.twin, all, cut.unit);
+}
+
+std::vector<std::uint8_t> seam_flags(const CutMesh& cut) {
+    std::vector<std::uint8_t> seam(cut.glued.size());
+    for (std::size_t h = 0; h < seam.size(); ++h) seam[h] = cut.glued[h] == kNone;
+    return seam;
 }
 
 void number_charts(CutMesh& cut) {

@@ -7,6 +7,7 @@
 #include "atlas/atlas.h"
 #include "atlas/chart_mesh.h"
 #include "atlas/flatten.h"
+#include "atlas/half_edges.h"
 #include "atlas/refusals.h"
 #include "core/progress.h"
 
@@ -68,6 +69,10 @@ class StretchBudget {
 
 /// Gives charts that have none their version.
 void number_charts(CutMesh& cut);
+
+/// All triangles as one patch, and a flag at each of its half-edges that is a seam now.
+Patch whole_patch(const mesh::TriangleMesh& mesh, const CutMesh& cut);
+std::vector<std::uint8_t> seam_flags(const CutMesh& cut);
 
 /// Hull of a chart's border in the plane.
 std::vector<Vec2> chart_hull(const FlatChart& chart);

@@ -97,7 +97,7 @@ class Merger {
           options_(options),
           merge_(merge),
           budget_(cut, options.l2_all),
-          patch_(make_patch(mesh, cut.twin, all_triangles(mesh), cut.unit)),
+          patch_(whole_patch(mesh, cut)),
           graph_(patch_, seam_flags(cut), 0),
           chart_at_(mesh.n_triangles(), kNone),
           refused_(3 * mesh.n_triangles(), 0) {
@@ -125,18 +125,6 @@ class Merger {
     }
 
   private:
-    static std::vector<std::uint32_t> all_triangles(const mesh::TriangleMesh& mesh) {
-        std::vector<std::uint32_t> all(mesh.n_triangles());
-        std::iota(all.begin(), all.end(), 0u);
-        return all;
-    }
-
-    static std::vector<std::uint8_t> seam_flags(const CutMesh& cut) {
-        std::vector<std::uint8_t> seam(cut.glued.size());
-        for (std::size_t h = 0; h < seam.size(); ++h) seam[h] = cut.glued[h] == kNone;
-        return seam;
-    }
-
     void set_glued(const Trial& t, bool glued) {
         for (const std::uint32_t h : t.halves) {
             const std::uint32_t g = cut_.twin[h];

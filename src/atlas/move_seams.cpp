@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include "atlas/carry_uvs.h"
 #include "atlas/hull.h"
@@ -38,7 +37,7 @@ class Mover {
           cut_(cut),
           options_(options),
           budget_(cut, options.l2_all),
-          patch_(make_patch(mesh, cut.twin, all_triangles(mesh), cut.unit)),
+          patch_(whole_patch(mesh, cut)),
           paths_(patch_, seam_flags(cut), chart_of(mesh, cut)) {
         number_charts(cut);
     }
@@ -72,18 +71,6 @@ class Mover {
     }
 
   private:
-    static std::vector<std::uint32_t> all_triangles(const mesh::TriangleMesh& mesh) {
-        std::vector<std::uint32_t> all(mesh.n_triangles());
-        std::iota(all.begin(), all.end(), 0u);
-        return all;
-    }
-
-    static std::vector<std::uint8_t> seam_flags(const CutMesh& cut) {
-        std::vector<std::uint8_t> seam(cut.glued.size());
-        for (std::size_t h = 0; h < seam.size(); ++h) seam[h] = cut.glued[h] == kNone;
-        return seam;
-    }
-
     static std::vector<std::uint32_t> chart_of(const mesh::TriangleMesh& mesh,
                                                const CutMesh& cut) {
         std::vector<std::uint32_t> chart(mesh.n_triangles());

@@ -8,12 +8,10 @@
 
 #include "core/random.h"
 #include "ink/composite.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
-
-constexpr int kN = atlas::kTileTexels;
-using Texels = std::array<float, kN>;
 
 Ink plain(const std::string& name, std::vector<std::pair<std::string, double>> parts = {}) {
     Ink ink;
@@ -26,18 +24,6 @@ Ink plain(const std::string& name, std::vector<std::pair<std::string, double>> p
         ink.parts.push_back(part);
     }
     return ink;
-}
-
-Texels constant(float v) {
-    Texels a;
-    a.fill(v);
-    return a;
-}
-
-Texels random_texels(std::uint64_t seed, double lo, double hi) {
-    Texels a;
-    for (int t = 0; t < kN; ++t) a[t] = static_cast<float>(lo + (hi - lo) * uniform(seed, t));
-    return a;
 }
 
 const Texels kArea = random_texels(99, 0.5e-8, 1.5e-8);  // texels of about 0.1 mm

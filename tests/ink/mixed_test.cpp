@@ -5,25 +5,12 @@
 
 #include "core/random.h"
 #include "ink/deposit_mixed.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
 
-constexpr int kN = atlas::kTileTexels;
 constexpr int kWater = kMaxPigments;
-using Texels = std::array<float, kN>;
-
-Texels constant(float v) {
-    Texels a;
-    a.fill(v);
-    return a;
-}
-
-Texels random_texels(std::uint64_t seed, double lo, double hi) {
-    Texels a;
-    for (int t = 0; t < kN; ++t) a[t] = static_cast<float>(lo + (hi - lo) * uniform(seed, t));
-    return a;
-}
 
 /// A tile that covers all of a patch.
 TexelPlaces whole_patch() {

@@ -8,12 +8,11 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
 
-constexpr int kN = atlas::kTileTexels;
-using Texels = std::array<float, kN>;
 using Content = Reservoir::Content;
 
 Ink plain(const std::string& name, double fraction = 1) {
@@ -24,12 +23,6 @@ Ink plain(const std::string& name, double fraction = 1) {
     part.fraction = fraction;
     ink.parts.push_back(part);
     return ink;
-}
-
-Texels random_texels(std::uint64_t seed, double lo, double hi) {
-    Texels a;
-    for (int t = 0; t < kN; ++t) a[t] = static_cast<float>(lo + (hi - lo) * uniform(seed, t));
-    return a;
 }
 
 ReservoirLayout layout_of(int bundles) {
