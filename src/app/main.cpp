@@ -120,6 +120,7 @@ int main(int argc, char** argv) {
     }
     // A limit on the size of files is a write that fails, with a message, not the end of the program.
     std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);  // so is a driver that goes away
     try {
         return run(parse(argc, argv));
     } catch (const UsageError& error) {

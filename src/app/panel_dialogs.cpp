@@ -185,6 +185,16 @@ void settings_dialog(Session& s) {
     ImGui::SameLine();
     if (ui.choice("As in Maya", s.keymap == Keymap::maya, "Turn with Alt and the left button", 150)) s.keymap = Keymap::maya, changed = true;
     changed |= ui.toggle("Left-handed: tools on the right", w.left_handed);
+    bool cap = false;
+    if (s.cap.seen) {
+        ui.heading("SpaceMouse");
+        if (ui.choice("Moves the model", !s.cap.moves_eye, "It goes where you push and turn the cap", 150)) s.cap.moves_eye = false, cap = true;
+        ImGui::SameLine();
+        if (ui.choice("Moves the eye", s.cap.moves_eye, "The cap is your head", 150)) s.cap.moves_eye = true, cap = true;
+        cap |= ui.toggle("Keep the horizon level", s.cap.level);
+        cap |= ui.slider("Cap speed", s.cap.speed, 0.1, 4, "%.1f");
+    }
+    if (cap) store_settings(s);
     if (ui.button("Keys...", "Look up and change what the keys do", 150)) s.show_keys = true;
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     const bool close = ui.button("Close", nullptr, 110);

@@ -12,6 +12,7 @@
 #include "app/panels.h"
 #include "app/studio.h"
 #include "core/random.h"
+#include "core/units.h"
 #include "io/image.h"
 #include "render/gl_target.h"
 
@@ -148,10 +149,12 @@ void Script::report(Studio& studio, double now) {
     const auto seconds_of = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
     const double cpu = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
     std::printf("{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, \"delay_ms_p95\": %.1f, "
-                "\"samples\": %zu, \"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, \"peak_mb\": %.0f}\n",
+                "\"samples\": %zu, \"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, \"peak_mb\": %.0f, "
+                "\"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f}\n",
                 report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95), studio.samples(),
                 studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now, cpu - report_cpu_,
-                static_cast<double>(usage.ru_maxrss) / 1024);
+                static_cast<double>(usage.ru_maxrss) / 1024, studio.session().view.orbit.azimuth / kDegree,
+                studio.session().view.orbit.elevation / kDegree, studio.session().view.orbit.distance / kMillimetre);
     report_cpu_ = cpu;
     std::fflush(stdout);
     report_frames_ = 0;
@@ -233,7 +236,14 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         if (word == "label" && !s.ui.find(c.words.back()) && waited < kLabelWait) return false;
         expect(studio, c);
     }
-    else if (c.name == "pace") {
+    else if (c.name == "await") {
+        try {
+            expect(studio, c);
+        } catch (const Error&) {
+            if (waited > kLongestWait) throw;
+            return false;
+        }
+    } else if (c.name == "pace") {
         paced_ = word == "on";
         pace_start_ = now;
         pace_from_ = clock_;

@@ -299,6 +299,9 @@ void load_settings(Session& s) {
         else if (key == "pen_least") s.hand.pen_least = std::clamp(std::atof(value.c_str()), 0.0, 0.9);
         else if (key == "pen_full") s.hand.pen_full = std::clamp(std::atof(value.c_str()), s.hand.pen_least + 0.1, 1.0);
         else if (key == "pen_gamma") s.hand.pen_gamma = std::clamp(std::atof(value.c_str()), 0.25, 4.0);
+        else if (key == "cap_speed") s.cap.speed = std::clamp(std::atof(value.c_str()), 0.1, 4.0);
+        else if (key == "cap_level") s.cap.level = value == "1";
+        else if (key == "cap_eye") s.cap.moves_eye = value == "1";
         else if (key == "keymap") s.keymap = value == "maya" ? Keymap::maya : Keymap::blender;
     }
 }
@@ -308,7 +311,8 @@ void store_settings(const Session& s) {
     out << "language " << (s.wanted.language == Language::chinese ? "chinese" : "english") << "\ntheme "
         << (s.wanted.theme == Theme::light ? "light" : "dark") << "\nscale " << s.wanted.scale << "\nleft_handed "
         << s.wanted.left_handed << "\nkeymap " << (s.keymap == Keymap::maya ? "maya" : "blender") << "\npen_least " << s.hand.pen_least << "\npen_full "
-        << s.hand.pen_full << "\npen_gamma " << s.hand.pen_gamma << '\n';
+        << s.hand.pen_full << "\npen_gamma " << s.hand.pen_gamma << "\ncap_speed " << s.cap.speed << "\ncap_level " << s.cap.level
+        << "\ncap_eye " << s.cap.moves_eye << '\n';
     for (const auto& [word, chord] : s.keys.changes()) out << "key:" << word << ' ' << chord << '\n';
     const std::string text = out.str();
     try {

@@ -72,6 +72,14 @@ struct MaskChoice {
     int with = 0;                 ///< the chosen mask: 0 as it is, 1 united with it, 2 only within it
 };
 
+/// How a SpaceMouse is used.
+struct CapSettings {
+    double speed = 1;
+    bool level = true;            ///< the horizon stays as it is
+    bool moves_eye = false;       ///< else the model goes where the cap goes
+    bool seen = false;            ///< there is one
+};
+
 /// Which part of the window the model has, pixels.
 struct Area {
     int x = 0, y = 0, width = 1, height = 1;
@@ -137,6 +145,7 @@ struct Session {
     double pen_pressure = -1;              ///< of the pen now; below 0: no pen
     int pen_handle = 1;                    ///< of its curve, in the hand
     KeyTable keys;
+    CapSettings cap;
     std::optional<Act> key_asked;          ///< action that the next key is given to
 
     std::uint32_t layer = stroke::kFirstLayer;  ///< painted on

@@ -50,6 +50,7 @@ class Studio {
     bool dialog_open() const;
     void take_model();
     void handle(const Event& event);
+    void fly(const Event& event);
     void press(const Event& event);
     void move(const Event& event);
     void release(const Event& event);

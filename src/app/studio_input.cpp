@@ -53,6 +53,11 @@ void Studio::handle(const Event& e) {
         case Event::Kind::press: press(e); break;
         case Event::Kind::move: move(e); break;
         case Event::Kind::release: release(e); break;
+        case Event::Kind::fly: fly(e); return;
+        case Event::Kind::cap_button:
+            s.cap.seen = true;
+            if (s.painter && !dialog_open()) perform(e.button == 0 ? Act::frame_all : Act::frame_cursor);
+            return;
         case Event::Kind::hover_end: cursor_inside_ = false; return;
         case Event::Kind::scroll:
             if (!s.painter || ImGui::GetIO().WantCaptureMouse) return;
@@ -72,6 +77,20 @@ void Studio::handle(const Event& e) {
     cursor_ = e;
     cursor_inside_ = !ImGui::GetIO().WantCaptureMouse && e.x >= s.area.x && e.y >= s.area.y && e.x < s.area.x + s.area.width &&
                      e.y < s.area.y + s.area.height;
+}
+
+// The view may turn while the hand paints: the stroke goes on under the cursor, as on a banding wheel.
+void Studio::fly(const Event& e) {
+    Session& s = session_;
+    s.cap.seen = true;
+    if (!s.painter || dialog_open()) return;
+    const double way = s.cap.moves_eye ? -s.cap.speed : s.cap.speed;
+    s.view.orbit.fly(way * e.push, way * e.twist, s.cap.level);
+    last_turn_ = now_;
+    if (!hand_ || on_plate_) return;
+    Event at = cursor_;
+    at.time = e.time;
+    post(hand_->move(aim_of(at)), e.time);
 }
 
 void Studio::press(const Event& e) {

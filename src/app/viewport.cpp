@@ -8,6 +8,7 @@ namespace tuft::app {
 namespace {
 
 constexpr double kQuarter = std::numbers::pi / 2;
+constexpr double kNearest = 1e-3, kFurthest = 1e3;  // metres to the target
 
 struct Axes {
     Vec3 right, up, forward;
@@ -48,9 +49,20 @@ void Orbit::pan(double dx, double dy, int side) {
     target += metres_per_pixel * (-dx * a.right + dy * a.up);
 }
 
+void Orbit::fly(const Vec3& push, const Vec3& twist, bool level) {
+    constexpr double kTurn = 2, kNearer = 1.5;  // radians, and powers of e in distance, per second at full deflection
+    const Axes a = axes_of(*this);
+    target -= 2 * distance * std::tan(0.5 * field_of_view) * (push.x * a.right + push.y * a.up);
+    distance = std::clamp(distance * std::exp(-kNearer * push.z), kNearest, kFurthest);
+    const double c = std::cos(roll), s = std::sin(roll);
+    azimuth -= kTurn * (c * twist.y + s * twist.x);
+    elevation = std::clamp(elevation + kTurn * (c * twist.x - s * twist.y), -kQuarter, kQuarter);
+    if (!level) roll += kTurn * twist.z;
+}
+
 void Orbit::zoom(double steps, const Vec3& towards) {
     const double before = distance;
-    distance = std::clamp(distance * std::pow(0.88, steps), 1e-3, 1e3);
+    distance = std::clamp(distance * std::pow(0.88, steps), kNearest, kFurthest);
     // Only sideways: the target keeps its depth.
     const Axes a = axes_of(*this);
     const Vec3 d = towards - target;

@@ -23,6 +23,10 @@ struct Orbit {
     void turn(double dx_pixels, double dy_pixels);
     /// Moves the target in the picture plane, so that what is under the cursor stays there.
     void pan(double dx_pixels, double dy_pixels, int shorter_side);
+    /// Moves the model as a SpaceMouse's cap is held: `push` and `twist` as in `Event`. Pushed all the way
+    /// the model crosses the picture's shorter side in a second; twisted, it turns by 2 radians.
+    /// `level`: the horizon stays as it is.
+    void fly(const Vec3& push, const Vec3& twist, bool level);
     /// Moves nearer (steps > 0); what lies at `towards` keeps its place in the picture.
     void zoom(double steps, const Vec3& towards);
     render::GlCamera camera(int width, int height, const Box& scene) const;

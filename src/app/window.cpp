@@ -9,6 +9,7 @@
 
 #include "app/display.h"
 #include "app/pen.h"
+#include "app/space_mouse.h"
 #include "core/error.h"
 
 namespace tuft::app {
@@ -32,6 +33,7 @@ class Window : public Display {
         if (!glfwInit()) throw Error("no display could be opened; set DISPLAY, or use 'tuft' without a window");
         make_window(width, height);
         for (std::size_t i = 0; i < cursors_.size(); ++i) cursors_[i] = glfwCreateStandardCursor(kCursors[i].second);
+        space_mouse_ = open_space_mouse([] { glfwPostEmptyEvent(); });
     }
     void renew() override {
         int x = 0, y = 0, w = 1, h = 1;
@@ -64,6 +66,7 @@ class Window : public Display {
         pen_ = open_pen(window_);
     }
     ~Window() override {
+        space_mouse_.reset();
         pen_.reset();
         glfwDestroyWindow(window_);
         glfwTerminate();
@@ -72,6 +75,7 @@ class Window : public Display {
     void poll(EventQueue& events, double wait) override {
         const double before = last_poll_;
         fresh_.clear();
+        if (space_mouse_ && space_mouse_->held()) wait = 0;
         if (wait > 0) glfwWaitEventsTimeout(wait);
         else glfwPollEvents();
         last_poll_ = now();
@@ -84,6 +88,7 @@ class Window : public Display {
             e.time = from + (last_poll_ - from) * (moves ? static_cast<double>(done) / static_cast<double>(moves) : 1.0);
         }
         if (pen_ && pen_->merge(fresh_, last_poll_, scale_factor())) trouble_ = "The pen was unplugged; the mouse goes on.";
+        take_space_mouse();
         events.insert(events.end(), std::make_move_iterator(fresh_.begin()), std::make_move_iterator(fresh_.end()));
         show_cursor();
     }
@@ -109,6 +114,14 @@ class Window : public Display {
         int w = 1, h = 1;
         glfwGetFramebufferSize(window_, &w, &h);
         return {std::max(1, w), std::max(1, h)};
+    }
+    // The daemon tells every program; only the one in front moves.
+    void take_space_mouse() {
+        if (!space_mouse_) return;
+        EventQueue events;
+        space_mouse_->merge(events, last_poll_);
+        if (std::string trouble = space_mouse_->take_trouble(); !trouble.empty()) trouble_ = std::move(trouble);
+        if (glfwGetWindowAttrib(window_, GLFW_FOCUSED)) fresh_.insert(fresh_.end(), events.begin(), events.end());
     }
     // Picture pixels per window coordinate.
     double scale_factor() const {
@@ -174,6 +187,7 @@ class Window : public Display {
 
     GLFWwindow* window_ = nullptr;
     std::unique_ptr<Pen> pen_;
+    std::unique_ptr<SpaceMouse> space_mouse_;
     EventQueue fresh_;
     std::string trouble_;
     double last_poll_ = 0;

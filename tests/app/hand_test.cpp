@@ -137,6 +137,39 @@ TEST(Orbit, ZoomingKeepsThePlaceUnderTheCursor) {
     }
 }
 
+TEST(Orbit, TheModelGoesWhereTheCapIsPushedAndTurned) {
+    for (const double roll : {0.0, 0.7}) {
+        Orbit before;
+        before.roll = roll;
+        const Box scene{Vec3(-0.1), Vec3(0.1)};
+        const auto picture = [&](const Orbit& o, const Vec3& p) { return render::picture_point(o.camera(800, 600, scene), p); };
+        const Vec3 middle = before.target, front = before.target - 0.05 * before.camera(800, 600, scene).forward;
+        Orbit o = before;
+        o.fly({0.1, 0, 0}, Vec3(0), true);
+        // A tenth of a second across the shorter side, in the plane of the target.
+        EXPECT_NEAR(picture(o, middle).x - picture(before, middle).x, 60, 1e-6);
+        EXPECT_NEAR(picture(o, middle).y, picture(before, middle).y, 1e-6);
+        o = before;
+        o.fly({0, 0.1, 0}, Vec3(0), true);
+        EXPECT_NEAR(picture(o, middle).y - picture(before, middle).y, -60, 1e-6);
+        o = before;
+        o.fly({0, 0, 0.1}, Vec3(0), true);
+        EXPECT_NEAR(o.distance, before.distance * std::exp(-0.15), 1e-12);
+        // About the upright its front goes to the right, about the level its front goes down.
+        o = before;
+        o.fly(Vec3(0), {0, 0.05, 0}, true);
+        EXPECT_GT(picture(o, front).x, picture(before, front).x + 1);
+        o = before;
+        o.fly(Vec3(0), {0.05, 0, 0}, true);
+        EXPECT_GT(picture(o, front).y, picture(before, front).y + 1);
+        o = before;
+        o.fly(Vec3(0), {0, 0, 0.05}, false);
+        EXPECT_NEAR(o.roll - before.roll, 0.1, 1e-12);
+        o.fly(Vec3(0), {0, 0, 0.05}, true);
+        EXPECT_NEAR(o.roll - before.roll, 0.1, 1e-12);
+    }
+}
+
 TEST(Orbit, RayAndPicturePointAreInverse) {
     for (const bool parallel : {false, true}) {
         Orbit o;

@@ -13,6 +13,7 @@
 
 #include "io/project.h"
 #include "projects.h"
+#include "space_daemon.h"
 
 /// The real window on a real X server, driven as by a person's hand through XTEST.
 namespace tuft::app {
@@ -48,7 +49,7 @@ class Window : public testing::Test {
     pid_t start(const std::vector<std::string>& words, const std::string& rest) const {
         std::string line = "exec";
         for (const std::string& word : words) line += " '" + word + "'";
-        line += " " + rest + " >>'" + path("log") + "' 2>&1";
+        line += " >>'" + path("log") + "' 2>&1 " + rest;
         const pid_t child = fork();
         if (child == 0) {
             execl("/bin/bash", "bash", "-c", line.c_str(), nullptr);
@@ -71,12 +72,13 @@ class Window : public testing::Test {
         }
         throw std::runtime_error("waited in vain for " + what + "\n" + read("log"));
     }
-    void open_studio(const std::string& file) {
+    void open_studio(const std::string& file, std::vector<std::string> options = {}, const std::string& out = "") {
         setenv("DISPLAY", display_.c_str(), 1);
         setenv("TUFT_DATA", TUFT_SOURCE, 1);
         setenv("XDG_STATE_HOME", path("state").c_str(), 1);
-        studio_ = start(file.empty() ? std::vector<std::string>{TUFT_STUDIO_PROGRAM, "--size", "1000x640"}
-                                     : std::vector<std::string>{TUFT_STUDIO_PROGRAM, "--size", "1000x640", file}, "");
+        options.insert(options.begin(), {TUFT_STUDIO_PROGRAM, "--size", "1000x640"});
+        if (!file.empty()) options.push_back(file);
+        studio_ = start(options, out.empty() ? "" : ">'" + path(out) + "'");
         wait_for("the window", [&] { return run("xdotool search --name 'tuft studio'") == 0; });
         run("xdotool search --name 'tuft studio' windowfocus");
     }
@@ -178,6 +180,35 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     const int valid = std::system(("bash '" TUFT_SOURCE "/tests/io/validate_glb.sh' '" TUFT_SOURCE "/build/node' '" + path("work.glb") + "' >'" + path("valid") + "' 2>&1").c_str());
     if (WEXITSTATUS(valid) == 77) std::puts("the glTF validator is not installed: the exported file is not checked");
     else EXPECT_EQ(valid, 0) << read("valid");
+}
+
+// The spacenav daemon, played by the test, turns the model; its device is pulled out; the hand paints on.
+TEST_F(Window, ASpaceMouseTurnsTheModelAndMayBePulledOut) {
+    test::SpaceDaemon daemon(path("spnav"));
+    setenv("SPNAV_SOCKET", path("spnav").c_str(), 1);
+    std::ofstream(path("script")) << "open " TUFT_SOURCE "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
+                                     "report\nscreenshot " << path("ready.png") << "\nawait message unplugged\nreport\n"
+                                     "stroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 1\nexpect kept\n";
+    open_studio("", {"--script", path("script")}, "out");
+    if (!daemon.accept()) GTEST_SKIP() << "built without libspnav: no SpaceMouse is tested";
+    wait_for("the model", [&] { return fs::exists(path("ready.png")); });
+    run("xdotool search --name 'tuft studio' windowfocus --sync");
+    daemon.motion({0, 0, 0, 0, 350, 0});
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    daemon.device(1);
+    int status = -1;
+    waitpid(studio_, &status, 0);
+    studio_ = 0;
+    ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << read("log");
+    std::istringstream reports(read("out"));
+    std::string first, second;
+    std::getline(reports, first);
+    std::getline(reports, second);
+    const auto before = nlohmann::json::parse(first), after = nlohmann::json::parse(second);
+    // Two radians a second; how long the cap stood is up to the machine, but not under what was slept less one look.
+    EXPECT_LT(after["azimuth_deg"].get<double>(), before["azimuth_deg"].get<double>() - 10);
+    EXPECT_EQ(after["elevation_deg"], before["elevation_deg"]);
+    EXPECT_EQ(after["distance_mm"], before["distance_mm"]);
 }
 
 }  // namespace
