@@ -14,6 +14,7 @@ constexpr double kLeastSteepness = 0.1;      // sin α: beads on flatter places 
 constexpr double kTrailWidth = 1;            // of the bead's
 constexpr double kSoft = 0.06;               // of the trail's half width: its edge
 constexpr int kShifts = 6;                   // to the middle of the liquid, and from the critical radius to its own
+constexpr int kTilts = 3;
 constexpr double kCatchment = 2;             // radii from which a bead draws liquid in
 constexpr double kStart = 1.8;               // volumes that run on: with less a bead does not come off a film
 constexpr double kRim = 1.1;                 // a bead's own radius, and what it may have spread meanwhile
@@ -282,13 +283,22 @@ class Drips::Run {
         }
     }
 
-    /// As a cap; what rounding leaves over goes to the middle.
+    /// As a cap whose middle is the bead's; what rounding leaves over goes to the texel there.
     void lay_down(Bead& bead) {
-        const double radius = radius_of(bead.amount, p_.bead_angle);
+        const double radius = radius_of(bead.amount, p_.bead_angle), square = radius * radius;
         d_.gather(bead.place, bead.at, radius);
-        const auto height = [&](const Near& n) { return std::max(0.0, 1 - n.distance * n.distance / (radius * radius)) * n.area; };
+        // Texels lie unevenly at seams: without the tilt a bead would creep to one side, step by step.
+        Vec3 tilt{0};
+        const auto height = [&](const Near& n) {
+            return std::max(0.0, 1 - n.distance * n.distance / square) * n.area * std::clamp(1 - glm::dot(tilt, n.at - bead.at), 0.5, 1.5);
+        };
         double sum = 0;
-        for (const Near& n : d_.disc_) sum += height(n);
+        for (int i = 0; i < kTilts; ++i) {
+            Vec3 moment{0};
+            sum = 0;
+            for (const Near& n : d_.disc_) sum += height(n), moment += height(n) * (n.at - bead.at);
+            if (sum > 0 && i + 1 < kTilts) tilt += moment / sum * (6 / square);  // a cap's mean square is R²/6 each way
+        }
         if (sum > 0)
             for (const Near& n : d_.disc_) give(bead, n, height(n) / sum);
         book(bead);

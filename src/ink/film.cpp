@@ -351,6 +351,7 @@ struct WetFilm::State {
         step.threshold = static_cast<float>(p.threshold);
         step.pin = static_cast<float>(p.pin);
         step.mixing = static_cast<float>(std::min(p.mixing * dt / area, kMixingPart / stiffness));
+        step.grip = static_cast<float>(p.grip);
         step.soak = static_cast<float>(-std::expm1(-p.absorbency * dt));
         step.pores = static_cast<float>(p.pores);
         step.evaporation = static_cast<float>(p.evaporation * dt);
@@ -363,13 +364,14 @@ struct WetFilm::State {
     struct Carried {
         std::uint8_t texel, other_texel;
         const Active* other;
-        float out, in;  ///< dp = −out c(texel) + in c(other)
-        float other_rate;
+        float out, in;  ///< dp = −out p(texel) + in p(other)
     };
     void seam_fluxes(std::size_t index, const Step& step, Work& work, std::vector<Carried>& carried) const {
         const Active& tile = list[index];
         const Geometry& g = *geometry[tile.slot];
         carried.clear();
+        std::array<float, kTexels> dry;
+        if (!tile.links.empty()) dry.fill(0);
         const Active* other = nullptr;
         for (const atlas::SeamLink& l : tile.links) {
             if (!other || other->slot != l.other_slot) {
@@ -382,7 +384,7 @@ struct WetFilm::State {
                                              other ? at(other->liquid[1], l.other_texel) : 0};
             const float t = here[0] + here[1], u = there[0] + there[1];
             if (!(t + u > 0) || !other) continue;
-            if (!(u > 0)) work.dry_neighbours[l.texel] += l.weight;
+            if (!(u > 0)) dry[l.texel] += l.weight;
             // One order for both sides, so that both have the same numbers.
             const bool first = tile.slot != l.other_slot ? tile.slot < l.other_slot : l.texel < l.other_texel;
             const float g0 = g.grain[field_of(l.texel)], g1 = geometry[l.other_slot]->grain[field_of(l.other_texel)];
@@ -391,7 +393,12 @@ struct WetFilm::State {
             const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
             work.dw[l.texel] += sign * f.w * inverse;
             work.ds[l.texel] += sign * f.s * inverse;
-            carried.push_back({l.texel, l.other_texel, other, first ? f.a : -f.b, first ? -f.b : f.a, u > 0 ? 1 / u : 0});
+            carried.push_back({l.texel, l.other_texel, other, first ? f.a : -f.b, first ? -f.b : f.a});
+        }
+        for (std::size_t i = 0; i < tile.links.size(); ++i) {
+            const std::uint8_t t = tile.links[i].texel;
+            if (i > 0 && tile.links[i - 1].texel == t) continue;
+            if (dry[t] > 0) work.dry_neighbours[t] = std::sqrt(work.dry_neighbours[t] * work.dry_neighbours[t] + dry[t] * dry[t]);
         }
     }
 
@@ -435,8 +442,8 @@ struct WetFilm::State {
             if (!carried.empty()) work.dp.fill(0);
             for (const Carried& c : carried) {
                 const int k = field_of(c.texel);
-                const float there = at(c.other->open[p], c.other_texel) * c.other_rate;
-                work.dp[c.texel] += (c.in * there - c.out * (work.p[k] * work.rate[k])) * g.inverse[c.texel];
+                const float there = at(c.other->open[p], c.other_texel);
+                work.dp[c.texel] += (c.in * there - c.out * work.p[k]) * g.inverse[c.texel];
             }
             pigment_step(tile.p[p]->data(), work, g, !carried.empty(), seed + 1 + static_cast<std::uint64_t>(p));
             tile.pigments |= 1u << p;

@@ -16,6 +16,7 @@ struct FilmParams {
     double threshold = 0.1;          ///< w_c: liquid below it is held by the surface
     double pin = 1;                  ///< film units above w_c that it takes to wet dry surface
     double mixing = 1e-10;           ///< m²/s: pigments' own diffusion within the liquid
+    double grip = 1;                 ///< film units: in thinner liquid, grains lie on the surface and lag behind
     double absorbency = 0;           ///< 1/s: part of the liquid that empty pores draw in
     double pores = 0;                ///< liquid that the substrate can hold inside; 0: none
     double evaporation = 1.0 / 60;   ///< film units a second
@@ -47,9 +48,10 @@ struct FilmReport {
 ///
 ///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − hold⟩) ∇w) − soak − e
 ///     ∂s/∂t = ∇·(D s ∇s) + soak,                           soak = a w (1 − s / pores)
-///     ∂p/∂t = ∇·((p/T)↑ j + D_p T ∇(p/T)),                 j: the flux of w and s together
+///     ∂p/∂t = ∇·((p/H)↑ j + D_p T ∇(p/H)),                 j: the flux of w and s together
 ///
-/// ↑: of the texel the liquid comes from. Liquid goes onto a dry texel only from one that has
+/// ↑: of the texel the liquid comes from. H = max(T, grip): what liquid gets thin over stays there, so that
+/// a drop dries as it stood and does not draw its pigments into its middle. Liquid goes onto a dry texel only from one that has
 /// more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
 /// about a millimetre, as surfaces are not clean). With a direction of weight
 /// contact lines keep mounds as they are (L = 0), and what is more than they hold runs down in beads

@@ -13,10 +13,12 @@ namespace tuft::ink::wet {
 namespace {
 
 constexpr int kLanes = kSide;
+constexpr float kLeast = 1e-30f;     // film units: no division by zero in lanes that are dry
 
 TUFT_INLINE float larger(float a, float b) { return a > b ? a : b; }
 TUFT_INLINE float smaller(float a, float b) { return a < b ? a : b; }
 TUFT_INLINE float positive(float a) { return a > 0 ? a : 0; }
+TUFT_INLINE float rate_of(float total, float grip) { return total > 0 ? 1 / larger(larger(total, grip), kLeast) : 0; }
 
 /// One end of a face.
 struct End {
@@ -172,12 +174,12 @@ TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) {
 }
 
 /// total and rate; whether a texel of a chart is dry.
-TUFT_CLONES bool totals(Work& o, const Geometry& g) {
+TUFT_CLONES bool totals(Work& o, const Geometry& g, float grip) {
 #pragma GCC ivdep
     for (int k = 7; k < kField; ++k) {
         const float t = o.w[k] + o.s[k];
         o.total[k] = t;
-        o.rate[k] = t > 0 ? 1 / (t > 0 ? t : 1) : 0;
+        o.rate[k] = rate_of(t, grip);
     }
     for (int row = -1; row <= kSide; ++row) {
         std::uint32_t wet = 0;
@@ -223,7 +225,8 @@ TUFT_CLONES void count_dry(float* __restrict n, const float* __restrict t, const
             const float left = t[k - 1] > 0 || !(left_side[i] > 0) ? 0.0f : 1.0f;
             const float up = t[k + kRow] > 0 || !(g.gy[i + kSide] > 0) ? 0.0f : 1.0f;
             const float down = t[k - kRow] > 0 || !(g.gy[i] > 0) ? 0.0f : 1.0f;
-            n[i] = (right + left) + (up + down);
+            const float across = right + left, along = up + down;
+            n[i] = std::sqrt(across * across + along * along);
         }
 }
 
@@ -352,7 +355,7 @@ void gather(Field& field, const std::array<const float*, 9>& planes) {
 }
 
 void fluxes(Work& work, const Geometry& g, const Step& step) {
-    const bool dry = totals(work, g);
+    const bool dry = totals(work, g, step.grip);
     (dry ? faces_dry : faces_wet)(work, g, step);
     if (dry) count_dry(work.dry_neighbours.data(), work.total.data(), g);
     else work.dry_neighbours.fill(0);
@@ -429,8 +432,8 @@ SeamFlux seam_flux(float weight, const std::array<float, 2>& w, const std::array
     out.w = Law<true, true>::film_flux(weight, e0, e1, step);
     if (step.pores > 0) out.s = Law<true, true>::pore_flux(weight, e0, e1, step);
     const Carriers c = carriers(weight, out.w + out.s, e0.t, e1.t, step);
-    out.a = c.a;
-    out.b = c.b;
+    out.a = c.a * rate_of(e0.t, step.grip);
+    out.b = c.b * rate_of(e1.t, step.grip);
     return out;
 }
 

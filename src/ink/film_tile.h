@@ -47,6 +47,7 @@ struct Step {
     float limit = 0;       ///< of flow × thickness, so that nothing gets negative
     float threshold = 0, pin = 0;
     float mixing = 0;      ///< D_p dt / A
+    float grip = 0;
     float soak = 0;        ///< part drawn in by empty pores: 1 − exp(−a dt)
     float pores = 0;
     float evaporation = 0; ///< film units
@@ -63,10 +64,10 @@ struct alignas(64) Faces {
 /// The fields of a tile in work.
 struct alignas(64) Work {
     Field w{}, s{}, total{};       ///< liquid
-    Field rate{};                  ///< 1 / total, 0 where it is dry
+    Field rate{};                  ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
     Field p{};                     ///< one pigment
     Faces x, y, up, down;          ///< up: of diagonals k to k + 25, down: k + 1 to k + 24
-    std::array<float, kTexels> dw, ds, dry_neighbours;
+    std::array<float, kTexels> dw, ds, dry_neighbours;  ///< the last: length of rim, in texels
     std::array<float, kTexels> dp; ///< what seams bring of one pigment
 };
 
@@ -101,7 +102,7 @@ void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std
 /// The same expressions for two texels that face each other over a seam.
 struct SeamFlux {
     float w = 0, s = 0;  ///< from the first to the second
-    float a = 0, b = 0;  ///< pigment: a p1 / total1 + b p2 / total2
+    float a = 0, b = 0;  ///< pigment: a p1 + b p2
 };
 SeamFlux seam_flux(float weight, const std::array<float, 2>& w, const std::array<float, 2>& s,
                    const std::array<float, 2>& grain, const Step& step);
