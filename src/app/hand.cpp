@@ -9,6 +9,7 @@ namespace {
 constexpr double kRise = 0.05;    // seconds in which the pressure follows
 constexpr double kLift = 0.06;    // seconds of the lift
 constexpr double kFrame = 0.004;  // seconds between the poses made between two aims
+constexpr double kReport = 0.01;  // seconds between a tablet's reports while something changes, at most
 constexpr double kJump = 0.004;   // metres between two aims that may be an edge of the outline
 constexpr double kGrazing = 6;    // times further on a slanting surface than across the view
 constexpr double kMaxTilt = 1.2;  // radians
@@ -42,9 +43,10 @@ brush::Pose Hand::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal,
     };
     const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) + std::tan(tilt.y) * along(aim.view_up));
     const Frame f = make_frame(point, up);
+    const Quat upright = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n)));
     const double height = hold_.tuft_length + (pressure > 0 ? -pressure * hold_.working_depth : hold_.hover);
     return {.position = point + height * up,
-            .rotation = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n))),
+            .rotation = aim.turn == 0 ? upright : glm::normalize(upright * glm::angleAxis(-aim.turn, Vec3(0, 0, 1))),
             .time = time};
 }
 
@@ -112,10 +114,17 @@ std::vector<HandStep> Hand::move(const Aim& aim) {
         touch_down(aim, *hit, normal, steps);
     } else {
         HandStep step;
+        // A tablet reports what changes: where it was silent, the pen was held still until shortly before.
+        if (aim.pressure >= 0 && aim_.pressure >= 0 && aim.time - aim_.time > 2 * kReport) {
+            Aim still = aim_;
+            still.time = aim.time - kReport;
+            follow(still, goal_, goal_normal_, step.poses);
+        }
         follow(aim, hit->position, normal, step.poses);
         steps.push_back(std::move(step));
     }
     aim_ = aim;
+    goal_normal_ = normal;
     return steps;
 }
 

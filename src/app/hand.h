@@ -34,6 +34,7 @@ struct Aim {
     double time = 0;                             ///< seconds
     double pressure = -1;                        ///< of a pen, below 0: none
     std::optional<Vec2> tilt;                    ///< of a pen, as `HandSettings::tilt`
+    double turn = 0;                             ///< of a pen about itself, radians, clockwise for who holds it
     Vec4f section{0};                            ///< cut plane: what it hides is not met
 };
 
@@ -72,7 +73,7 @@ class Hand {
     HandSettings settings_;
     bool down_ = false;
     Aim aim_;                              ///< the last one
-    Vec3 goal_{0}, point_{0}, normal_{0, 0, 1};
+    Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};
     double pressure_ = 0, time_ = 0, speed_ = 0, rest_ = 0, start_ = 0;
 };
 

@@ -63,7 +63,7 @@ class X11Pen : public Pen {
     }
 
     static PenReport report_of(const XIDeviceEvent& event) {
-        PenReport report{.device = event.deviceid, .motion = event.evtype == XI_Motion, .time = static_cast<double>(event.time) * 1e-3,
+        PenReport report{.device = event.deviceid, .motion = event.evtype == XI_Motion, .button = event.detail, .pressed = event.evtype == XI_ButtonPress, .time = static_cast<double>(event.time) * 1e-3,
                          .window_x = event.event_x, .window_y = event.event_y};
         const double* value = event.valuators.values;
         for (int i = 0; i < event.valuators.mask_len * 8; ++i)
@@ -79,7 +79,8 @@ class X11Pen : public Pen {
         int count = 0;
         XIDeviceInfo* list = XIQueryDevice(display_, XIAllDevices, &count);
         const Atom pressure = XInternAtom(display_, "Abs Pressure", True), tilt_x = XInternAtom(display_, "Abs Tilt X", True),
-                   tilt_y = XInternAtom(display_, "Abs Tilt Y", True);
+                   tilt_y = XInternAtom(display_, "Abs Tilt Y", True), wheel = XInternAtom(display_, "Abs Wheel", True),
+                   rotary = XInternAtom(display_, "Abs Rotary Z", True);
         for (int i = 0; list && i < count; ++i) {
             if (list[i].use != XISlavePointer && list[i].use != XIFloatingSlave) continue;
             PenDevice d{.name = list[i].name};
@@ -92,6 +93,7 @@ class X11Pen : public Pen {
                 if (pressure != None && v.label == pressure) d.pressure = axis;
                 if (tilt_x != None && v.label == tilt_x) d.tilt_x = axis;
                 if (tilt_y != None && v.label == tilt_y) d.tilt_y = axis;
+                if (v.label != None && (v.label == wheel || v.label == rotary)) d.turn = axis;  // wacom's art pen; others
             }
             if (d.pressure.number < 0) continue;
             d.eraser = std::strstr(list[i].name, "raser") != nullptr;

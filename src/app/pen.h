@@ -8,7 +8,7 @@ struct GLFWwindow;
 
 namespace tuft::app {
 
-/// Pen tablets through XInput2: pressure, tilt and the eraser end, every sample with the
+/// Pen tablets through XInput2: pressure, tilt, turn about itself and the eraser end, every sample with the
 /// server's time. Listens to the pens themselves on a connection of its own, so that the
 /// window gets its mouse events as before.
 class Pen {

@@ -22,7 +22,7 @@ struct PenAxis {
 
 struct PenDevice {
     std::string name;
-    PenAxis x, y, pressure, tilt_x, tilt_y;
+    PenAxis x, y, pressure, tilt_x, tilt_y, turn;  ///< `turn`: its range is one turn
     bool eraser = false;
 };
 
@@ -30,6 +30,8 @@ struct PenDevice {
 struct PenReport {
     int device = 0;
     bool motion = true;       ///< else a button
+    int button = 0;           ///< its number at the server: 1 left (the tip), 2 middle, 3 right
+    bool pressed = false;
     double time = 0;          ///< seconds on the server's clock
     std::vector<int> axes;    ///< numbers, rising
     std::vector<double> values;
@@ -53,15 +55,20 @@ class PenSamples {
     /// first report and whenever they are a second apart.
     void take(const PenReport& report, const PenScreen& screen, double now);
     /// Puts the samples taken since the last call in the place of the cursor movements that the
-    /// window saw at the same time, and gives presses the pen's pressure.
+    /// window saw of them, and the window's presses and releases where the pen's own stand among them, with its
+    /// pressure. The window may see a button later than the pen tells of it: what follows it is
+    /// held back until then. While the tip is down and shortly after the window's movements are the pen's,
+    /// and dropped.
     void merge(EventQueue& events, double now);
 
   private:
-    void with_pen(Event& event) const;
+    Event with_pen(Event event);
 
     std::map<int, PenDevice> devices_;
-    std::vector<Event> samples_;
+    std::vector<Event> samples_;            ///< and presses and releases among them
     Event last_;
+    bool down_ = false;                     ///< the tip
+    int ahead_ = 0;                         ///< buttons that the window told of before the pen
     double last_sample_ = -1, offset_ = 0;
     bool synchronised_ = false;
 };

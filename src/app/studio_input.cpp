@@ -25,7 +25,10 @@ Aim Studio::aim_of(const Event& e) const {
             .time = e.time,
             .pressure = e.pressure,
             .section = section_plane(session_)};
-    if (e.pressure >= 0) aim.tilt = Vec2(e.tilt.x, -e.tilt.y);
+    if (e.pressure >= 0) {
+        aim.tilt = Vec2(e.tilt.x, -e.tilt.y);
+        aim.turn = e.turn;
+    }
     return aim;
 }
 

@@ -64,6 +64,27 @@ TEST_F(HandOnSheet, APensPressureIsTheDepthWhateverItsSpeed) {
     EXPECT_NEAR(depth_at(0.01, s, 0.5), 0.25 * stroke::working_depth(preset_), 1e-9);
 }
 
+// Drivers leave reports out in which nothing changed.
+TEST_F(HandOnSheet, APenHeldStillWithoutReportsKeepsItsPressureUntilItsNextOne) {
+    Hand hand(*query_, preset_, {});
+    std::vector<brush::Pose> poses;
+    const auto move = [&](double t, double pressure) {
+        for (const HandStep& step : hand.move(above(0, 0, t, pressure))) poses.insert(poses.end(), step.poses.begin(), step.poses.end());
+    };
+    for (int i = 0; i <= 20; ++i) move(0.004 * i, 0.7);
+    const std::size_t before = poses.size();
+    move(1.08, 0);
+    for (std::size_t i = before; i < poses.size(); ++i) {
+        const double depth = preset_.length - (poses[i].position.z - mesh_->bounds.hi.z);
+        // 20 time constants of the pressure had gone by: e^-20 · 0.7.
+        if (poses[i].time < 1.08 - 0.011) {
+            EXPECT_NEAR(depth / stroke::working_depth(preset_), 0.7, 2e-9) << poses[i].time;
+        }
+    }
+    EXPECT_GT(poses.size(), before + 20);
+    EXPECT_NEAR(poses.back().time, 1.08, 1e-9);
+}
+
 TEST_F(HandOnSheet, TheSamePathGivesTheSameStrokeForAnyRateOfSamples) {
     // The low-pass steps at 4 ms whatever the rate, so a path sampled at 4 ms and at 20 ms
     // ends within what the smoothing lags behind in one sample.
@@ -119,6 +140,21 @@ TEST_F(HandOnSheet, LeanTurnsTheHolderAboutTheTip) {
     const Vec3 up = -pose->axis();
     EXPECT_NEAR(std::atan2(up.x, up.z), 0.4, 1e-9);
     EXPECT_NEAR(up.y, 0, 1e-9);
+}
+
+TEST_F(HandOnSheet, ATurnOfThePenTurnsTheTuftAboutItsHolder) {
+    const Hand hand(*query_, preset_, {});
+    Aim aim = above(0, 0, 0, 0.5);
+    aim.tilt = Vec2(0.3, 0.1);
+    const auto before = hand.hover(aim);
+    aim.turn = 0.5;
+    const auto after = hand.hover(aim);
+    ASSERT_TRUE(before && after);
+    EXPECT_LT(glm::distance(before->position, after->position), 1e-15);
+    EXPECT_LT(glm::distance(before->axis(), after->axis()), 1e-12);
+    // Seen along the holder, downwards, clockwise.
+    const Vec3 from = before->rotation * Vec3(1, 0, 0), to = after->rotation * Vec3(1, 0, 0);
+    EXPECT_NEAR(std::atan2(glm::dot(glm::cross(from, to), before->axis()), glm::dot(from, to)), 0.5, 1e-9);
 }
 
 TEST(Orbit, ZoomingKeepsThePlaceUnderTheCursor) {

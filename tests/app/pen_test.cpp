@@ -38,15 +38,87 @@ TEST(PenSamples, AxesThatDidNotChangeKeepTheirValue) {
     EXPECT_NEAR(events[1].time - events[0].time, 0.001, 1e-9);
 }
 
+// Wacom's art pen counts 1800 steps a turn (xinput list: Abs Wheel, -900 to 899).
+TEST(PenSamples, TheTurnOfAnArtPenIsAnAngle) {
+    PenSamples pen;
+    auto devices = tablet();
+    devices[11].turn = {5, -900, 899};
+    pen.set_devices(devices);
+    pen.take({.device = 11, .time = 5, .axes = {0, 1, 2}, .values = {1, 1, 1}}, kScreen, 1);
+    pen.take({.device = 11, .time = 5.1, .axes = {5}, .values = {450}}, kScreen, 1.1);
+    pen.take({.device = 11, .time = 5.2, .axes = {5}, .values = {-900}}, kScreen, 1.2);
+    EventQueue events;
+    pen.merge(events, 1.3);
+    ASSERT_EQ(events.size(), 3u);
+    EXPECT_EQ(events[0].turn, 0);
+    EXPECT_NEAR(events[1].turn, 90 * kDegree, 1e-12);
+    EXPECT_NEAR(events[2].turn, -180 * kDegree, 1e-12);
+}
+
 TEST(PenSamples, TheEraserEndIsToldApart) {
     PenSamples pen;
     pen.set_devices(tablet());
     pen.take({.device = 12, .time = 1, .axes = {0, 1, 2}, .values = {0, 0, 100}}, kScreen, 1);
-    EventQueue events{{.kind = Event::Kind::press}};
+    EventQueue events{{.kind = Event::Kind::press, .x = -100, .y = -50}};
     pen.merge(events, 1);
     ASSERT_EQ(events.size(), 2u);
     EXPECT_TRUE(events[0].eraser);
     EXPECT_TRUE(events[1].eraser);
+}
+
+// The window's own movements and buttons come over another connection, so often a frame later.
+TEST(PenSamples, LateCopiesOfItsMovementsDoNotInterruptTheStroke) {
+    PenSamples pen;
+    pen.set_devices(tablet());
+    pen.take({.device = 11, .time = 5, .axes = {0, 1, 2}, .values = {22400, 14800, 32768}}, kScreen, 1);
+    pen.take({.device = 11, .motion = false, .button = 1, .pressed = true, .time = 5.001}, kScreen, 1.001);
+    EventQueue events{{.kind = Event::Kind::press, .x = 539, .y = 309}};
+    pen.merge(events, 1.01);
+    ASSERT_EQ(events.size(), 2u);
+    EXPECT_EQ(events[1].kind, Event::Kind::press);
+    EXPECT_NEAR(events[1].x, events[0].x, 1e-12) << "where the pen is, to parts of a pixel";
+    for (const double now : {1.02, 5.0, 60.0}) {  // held still, however long
+        events = {{.kind = Event::Kind::move, .x = 538, .y = 308}};
+        pen.merge(events, now);
+        EXPECT_TRUE(events.empty()) << now;
+    }
+    events = {{.kind = Event::Kind::release, .x = 538, .y = 308}};
+    pen.merge(events, 60.1);
+    ASSERT_EQ(events.size(), 1u);
+    EXPECT_NEAR(events[0].pressure, 0.5, 1e-9);
+    // The pen's own word on it comes late and changes nothing; then the mouse is a mouse again.
+    pen.take({.device = 11, .motion = false, .button = 1, .pressed = false, .time = 64.1}, kScreen, 60.11);
+    events = {};
+    pen.merge(events, 60.12);
+    EXPECT_TRUE(events.empty());
+    events = {{.kind = Event::Kind::move, .x = 7}, {.kind = Event::Kind::press, .x = 7}};
+    pen.merge(events, 61);
+    ASSERT_EQ(events.size(), 2u);
+    EXPECT_EQ(events[1].x, 7);
+    EXPECT_LT(events[1].pressure, 0);
+}
+
+TEST(PenSamples, TwoDotsWithinOneFrameAreTwo) {
+    PenSamples pen;
+    pen.set_devices(tablet());
+    double t = 5;
+    const auto at = [&](double x) { pen.take({.device = 11, .time = t += 0.001, .axes = {0, 1, 2}, .values = {x, 14800, 30000}}, kScreen, 1); };
+    const auto button = [&](bool pressed) { pen.take({.device = 11, .motion = false, .button = 1, .pressed = pressed, .time = t += 0.001}, kScreen, 1); };
+    const Event down{.kind = Event::Kind::press}, up{.kind = Event::Kind::release};
+    at(10000), button(true), at(10100), button(false), at(12000), button(true), at(12100), button(false);
+    // The window saw no more than the first three yet; the fourth comes with the next frame.
+    EventQueue events{down, up, down};
+    pen.merge(events, 1.02);
+    std::string order;
+    for (const Event& e : events) order += e.kind == Event::Kind::move ? 'm' : e.kind == Event::Kind::press ? 'd' : 'u';
+    EXPECT_EQ(order, "mdmumdm");
+    at(20000);
+    EventQueue more{up};
+    pen.merge(more, 1.04);
+    ASSERT_EQ(more.size(), 2u);
+    EXPECT_EQ(more[0].kind, Event::Kind::release);
+    EXPECT_EQ(more[0].x, events.back().x);
+    EXPECT_GT(more[1].x, more[0].x);
 }
 
 TEST(PenSamples, AnUnpluggedTabletIsNoticedAndItsLateReportsAreHarmless) {
