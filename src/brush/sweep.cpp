@@ -20,6 +20,8 @@ struct Patch {
     double width = 0;
     double front = std::numeric_limits<double>::infinity();
     double back = -std::numeric_limits<double>::infinity();
+    Vec2 right{0, std::numeric_limits<double>::infinity()};  ///< the points furthest to both sides
+    Vec2 left{0, -std::numeric_limits<double>::infinity()};
     bool empty() const { return front > back; }
 };
 
@@ -39,6 +41,8 @@ void add_section(const Section& s, Patch& patch) {
         hi = std::max(hi, q.y);
         patch.front = std::min(patch.front, q.x);
         patch.back = std::max(patch.back, q.x);
+        if (q.y < patch.right.y) patch.right = Vec2(q);
+        if (q.y > patch.left.y) patch.left = Vec2(q);
     }
     patch.width = std::max(patch.width, hi - lo);
 }
@@ -73,33 +77,49 @@ Patch patch_of(const TuftState& state) {
     return patch;
 }
 
-SweepRow sweep_one(const Preset& preset, double depth) {
+/// The patch of a steady stroke along +x, and where the unbent tip is over the sheet.
+struct Steady {
+    Patch patch;
+    double tip = 0;
+};
+
+Steady drag(const Preset& preset, double depth, const Vec2& lean) {
     constexpr double kStep = 0.02;  // of the length
     constexpr double kDrag = 3;     // lengths
     const int press = 20 + static_cast<int>(std::ceil(depth / (kStep * preset.length)));
     Tuft tuft = make_tuft(preset);
     const ContactPlane sheet;
-    Pose pose{{0, 0, preset.length}, {1, 0, 0, 0}, 0};
+    const Vec3 up = glm::normalize(Vec3{std::tan(lean.x), std::tan(lean.y), 1});
+    const Vec3 tip_to_root = preset.length * up;
+    Pose pose{tip_to_root, {1, 0, 0, 0}, 0};
+    if (lean != Vec2{0}) {
+        const Vec3 x = glm::normalize(Vec3{1, 0, 0} - up.x * up);
+        pose.rotation = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up)));
+    }
     TuftState state = step(tuft, pose, {&sheet, 1}, 0);
-    const int drag = static_cast<int>(kDrag / kStep);
+    const int most = static_cast<int>(kDrag / kStep);
     Vec3 lag{0};
     int still = 0;
-    for (int i = 1; i <= press + drag && still < 5; ++i) {
+    for (int i = 1; i <= press + most && still < 5; ++i) {
         // The hand already moves while it presses, as a stroke begins.
         pose.position.x += kStep * preset.length;
-        pose.position.z = preset.length - depth * std::min(1.0, static_cast<double>(i) / press);
+        pose.position.z = tip_to_root.z - depth * std::min(1.0, static_cast<double>(i) / press);
         pose.time += 0.01;
         state = step(tuft, pose, {&sheet, 1}, 0.01);
         const Vec3 lag_t0 = lag;
         lag = tuft.spine.memory.node.back() * preset.length - pose.position;
         still = i > press && glm::length(lag - lag_t0) < 1e-6 * preset.length ? still + 1 : 0;
     }
-    const Patch patch = patch_of(state);
+    return {patch_of(state), pose.position.x - tip_to_root.x};
+}
+
+SweepRow sweep_one(const Preset& preset, double depth) {
+    const auto [patch, foot] = drag(preset, depth, Vec2{0});
     SweepRow row{depth};
     if (patch.empty()) return row;
     row.width = patch.width;
     row.drag = patch.back - patch.front;
-    row.offset = pose.position.x - patch.back;
+    row.offset = foot - patch.back;
     return row;
 }
 
@@ -110,6 +130,12 @@ std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> 
     rows.reserve(depths.size());
     for (const double depth : depths) rows.push_back(sweep_one(preset, depth));
     return rows;
+}
+
+LinePlace line_place(const Preset& preset, double depth, const Vec2& lean) {
+    const auto [patch, tip] = drag(preset, depth, lean);
+    if (patch.empty()) return {};
+    return {tip - 0.5 * (patch.left.x + patch.right.x), 0.5 * (patch.left.y + patch.right.y)};
 }
 
 std::string sweep_csv(std::span<const SweepRow> rows) {

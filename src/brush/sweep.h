@@ -7,6 +7,7 @@
 
 #include "brush/preset.h"
 #include "core/progress.h"
+#include "core/types.h"
 
 /// What one brush leaves on a flat sheet at each depth, and the fit of a preset to
 /// measurements of it.
@@ -22,6 +23,17 @@ struct SweepRow {
 
 /// Drags each depth until steady (at most three hair lengths). Depths in metres.
 std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> depths);
+
+/// Where the line of a steady straight stroke along +x over the sheet z = 0 lies, seen from the foot
+/// of the unbent tip, metres.
+struct LinePlace {
+    double behind = 0;   ///< mean of the two places where the patch is widest
+    double aside = 0;    ///< middle of the line, to the left (+y)
+};
+
+/// The same for a holder that leans: up ∝ (tan lean.x, tan lean.y, 1), radians. A holder that leans
+/// ahead pulls its hair behind it, one that leans back pushes it ahead. About 4 ms.
+LinePlace line_place(const Preset& preset, double depth, const Vec2& lean);
 
 /// CSV text with the columns z_mm,width_mm,drag_mm,offset_mm.
 std::string sweep_csv(std::span<const SweepRow> rows);

@@ -185,18 +185,28 @@ void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::s
         // close where sections end in a point.
         const double beyond_lo = std::clamp(-1 - strand.lo, 0.0, kBeyond) * widest / cell;
         const double beyond_hi = std::clamp(strand.hi - 1, 0.0, kBeyond) * widest / cell;
+        const auto place = [&](std::size_t k) { return (on_surface(trail.cuts[at[k]], x) - zero) / cell + 0.5 * (beyond_hi - beyond_lo) * across[k]; };
+        const auto half_width = [&](std::size_t k) { return half * trail.cuts[at[k]].a / cell + 0.5 * (beyond_hi + beyond_lo); };
         Vec2 before{0}, step{0};
         double half_before = 0;
         bool had = false, first = true;
         for (std::size_t k = 0; k < at.size(); ++k) {
-            const Cut& cut = trail.cuts[at[k]];
-            if (trail.along[at[k]] > strand.end) continue;
-            const Vec2 here = (on_surface(cut, x) - zero) / cell + 0.5 * (beyond_hi - beyond_lo) * across[k];
-            const double h = half * cut.a / cell + 0.5 * (beyond_hi + beyond_lo);
+            const double along = trail.along[at[k]];
+            if (along > strand.end) continue;
+            const Vec2 here = place(k);
+            const double h = half_width(k);
+            if (!had && k > 0) {
+                // It ends between two cuts.
+                const double f = (strand.end - along) / std::max(trail.along[at[k - 1]] - along, 1e-12);
+                before = glm::mix(here, place(k - 1), f);
+                half_before = glm::mix(h, half_width(k - 1), f);
+                had = true;
+            }
             if (had) {
                 step = here - before;
                 const Vec2 direction = glm::length(step) > 1e-9 ? glm::normalize(step) : Vec2{0};
-                if (first && k == 1) bands.draw(before - widest / cell * direction, before, half_before, half_before, across[k]);
+                if (first && k == 1 && trail.along[at[0]] <= strand.end)
+                    bands.draw(before - widest / cell * direction, before, half_before, half_before, across[k]);
                 bands.draw(before, here, half_before, h, across[k]);
                 first = false;
             }

@@ -204,8 +204,9 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
 
     jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
     const double texel_size = surface.texels.texel_size;
-    const bool swept = motion.turn == 0 && options.prefix_sums > 0 &&
-                       poses_wanted(footprint, motion, texel_size, options) >= options.prefix_sums;
+    const double wanted = motion.turn == 0 ? poses_wanted(footprint, motion, texel_size, options) : 0;
+    const bool passes_over = options.passes_over && wanted > 0;
+    const bool swept = passes_over || (options.prefix_sums > 0 && wanted >= options.prefix_sums);
     if (!swept) jobs.sub_poses = spread_poses(footprint, motion, texel_size, options);
     list_pieces(surface.pieces, footprint, motion, scratch, jobs);
     if (jobs.discrepancy > std::min(options.enter, options.leave))
@@ -216,7 +217,7 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.reach_lo = {lo.x, lo.y};
     jobs.reach_hi = {hi.x, hi.y};
     if (swept) {
-        sweep(footprint, motion.shift, jobs, scratch.sweep);
+        (passes_over ? sweep_over : sweep)(footprint, motion.shift, jobs, scratch.sweep);
         return jobs;
     }
     jobs.width = footprint.width - 1;

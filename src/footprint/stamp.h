@@ -46,6 +46,8 @@ struct StampOptions {
     double sub_pose = 1.0;  ///< longest way of any point between sub-poses, texels
     int max_sub_poses = 64;
     int prefix_sums = 12;   ///< straight ways of so many sub-poses and more are integrated at once
+    bool passes_over = false;  ///< the motion, not turned, leaves what the picture passes over at all, not
+                               ///< the mean over it: for hairs finer than a texel
     Isa isa = best_isa();
 };
 
@@ -91,7 +93,7 @@ struct StampJobs {
 /// Memory of `sweep`.
 struct SweepScratch {
     std::vector<std::uint8_t> line;
-    std::vector<float> lines, sums;
+    std::vector<float> lines, sums, across;
     Footprint swept;
 };
 

@@ -320,6 +320,8 @@ std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
         auto [lead, is_new] = leads_.try_emplace(preset.name);
         if (is_new) lead->second = drag_lead(preset);
         options.lead = lead->second;
+        LeanedLead& leaned = leaned_leads_.try_emplace(preset.name, preset).first->second;
+        options.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
     }
     return hand_path(*ground_of(stroke).query, steady(stroke.trace, stroke.settings), options).poses;
 }

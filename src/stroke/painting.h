@@ -17,6 +17,7 @@
 #include "ink/pigments.h"
 #include "ink/reservoir.h"
 #include "stroke/journal.h"
+#include "stroke/lead.h"
 #include "stroke/model.h"
 #include "stroke/palette.h"
 #include "stroke/placement.h"
@@ -289,6 +290,7 @@ class Painting {
     std::map<std::string, ink::Ink> inks_;
     std::map<std::string, BrushInHand> held_;
     std::map<std::string, std::vector<Lead>> leads_;  ///< by brush
+    std::map<std::string, LeanedLead> leaned_leads_;     ///< by brush
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
     std::unique_ptr<Hand> hand_;

@@ -99,6 +99,21 @@ std::vector<Lead> drag_lead(const brush::Preset& preset) {
     return lead;
 }
 
+namespace {
+
+/// What a lean adds to the lead, `along` the path; that is 1 long where the string is taut.
+Vec2 leaned_lead(const HoldOptions& options, const Vec2& tilt, double depth, const Vec2& along) {
+    const double taut = glm::length(along), lean = glm::length(tilt);
+    if (taut < 1e-9 || lean <= 0) return Vec2{0};
+    const Vec2 ahead = along / taut, left{ahead.y, -ahead.x};  // y of a trace is down
+    const Vec2 held = tilt * (std::min(lean, options.max_tilt) / lean);
+    const Vec2 up{std::tan(held.x), std::tan(held.y)};
+    const Vec2 more = options.leaned(depth, {std::atan(glm::dot(up, ahead)), std::atan(glm::dot(up, left))});
+    return taut * (more.x * ahead + more.y * left);
+}
+
+}  // namespace
+
 Trace lead_hand(Trace trace, const HoldOptions& options) {
     if (options.lead.empty() || trace.samples.empty() || !trace.flat) return trace;
     // The hand knows where it is going to start: the string is taut from the first touch.
@@ -120,7 +135,8 @@ Trace lead_hand(Trace trace, const HoldOptions& options) {
             dragged = p - string;
         }
         const double depth = std::clamp(s.pressure, 0.0, 1.0) * options.working_depth;
-        const Vec2 ahead = p + (lead_length(options.lead, depth) / options.lead_turn) * string;
+        Vec2 ahead = p + (lead_length(options.lead, depth) / options.lead_turn) * string;
+        if (options.leaned) ahead += leaned_lead(options, s.tilt, depth, string / options.lead_turn);
         s.position = Vec3(ahead, s.position.z);
     }
     return trace;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -86,6 +87,9 @@ struct HoldOptions {
     double steady = 0.008;         ///< metres of travel, to both sides, over which the hand levels
                                    ///< out height and normal: it does not dip into narrow grooves
     std::vector<Lead> lead;     ///< rising in depth, linear between, constant outside; empty: none
+    /// What a lean adds to the lead: metres ahead and to the path's left, for a depth (metres) and a
+    /// lean along the path and to its left (radians); see LeanedLead. None: it adds nothing.
+    std::function<Vec2(double depth, const Vec2& lean)> leaned = {};
     double lead_turn = 0.0015;  ///< metres of travel in which the lead follows a turn
 };
 
@@ -100,8 +104,9 @@ HoldOptions hold_options(const brush::Preset& preset);
 /// width behind its end (`brush::sweep_depth`; takes some 50 ms).
 std::vector<Lead> drag_lead(const brush::Preset& preset);
 
-/// A dragged tuft paints behind the hand. Moves the samples of a flat trace ahead along the
-/// path by the lead for their depth, so that the ink will lie where the trace was. The
+/// A dragged tuft paints behind the hand, and under a leaning holder aside of it. Moves the samples
+/// of a flat trace ahead along the path by the lead for their depth, and by what their lean
+/// adds, so that the ink will lie where the trace was. The
 /// direction is that of a point dragged behind the trace on a string of `lead_turn` (a
 /// tractrix), taut from the first touch in the direction in which the trace sets out;
 /// where the path reverses, the lead passes through zero.

@@ -40,7 +40,7 @@ double Stamper::flush() {
     const footprint::Surface surface = model_.surface();
     parallel_for(batch_.size(), 2, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            jobs_[i] = footprint::plan_stamp(surface, batch_[i].footprint, batch_[i].motion, options_,
+            jobs_[i] = footprint::plan_stamp(surface, batch_[i].footprint, batch_[i].motion, options_of(batch_[i]),
                                              scratch_[i], std::move(jobs_[i]));
     });
 
@@ -113,7 +113,7 @@ void Stamper::keep(std::uint32_t slot) {
 }
 
 ink::NodeAreas Stamper::expose(const Stamp& stamp) {
-    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, stamp.motion, options_, scratch_[0],
+    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, stamp.motion, options_of(stamp), scratch_[0],
                                      std::move(jobs_[0]));
     const footprint::StampJobs& plan = jobs_[0];
     exposed_.clear();

@@ -61,6 +61,13 @@ class Stamper {
     std::vector<ink::TileSnapshot> take_before();
 
   private:
+    /// Single hairs drawn sideways ink all that they pass over; sub-poses would leave a comb.
+    footprint::StampOptions options_of(const Stamp& stamp) const {
+        footprint::StampOptions o = options_;
+        o.passes_over = stamp.grain_film > 0;
+        return o;
+    }
+
     using Grain = std::array<float, atlas::kTileTexels>;
     const Grain& grain(std::uint32_t slot);
     struct Exposed;

@@ -151,6 +151,34 @@ TEST(Hair, PartedBundlesLeaveGapsBetweenThem) {
     }
 }
 
+TEST(Hair, EndsOfBristlesFollowTheirLengths) {
+    // They used to end at the next of a dozen sections, many on one line across the tuft.
+    brush::Bundles one = pressed().tuft.bundles;
+    one.bristles.resize(1);
+    one.bristles[0].place = {0, 0};
+    one.bristles[0].readiness = 1;
+    const Trail& trail = pressed().trails[0];
+    std::vector<double> ends;
+    for (double part = 0.2; part < 0.8; part += 0.01) {
+        one.bristles[0].end = static_cast<float>(trail.along.back() + part * (trail.along.front() - trail.along.back()));
+        const Footprint f = marks(one, 0.4);  // too dry for water to draw it to the point
+        double end = -1;                      // the tip trails at smaller x: cells from the root's side
+        for (int i = 0; i < f.width; ++i) {
+            int most = 0;
+            for (int j = 0; j < f.height; ++j) most = std::max<int>(most, f.coverage[static_cast<std::size_t>(j) * f.width + i]);
+            if (most > 40) {
+                end = -i * f.cell;
+                break;
+            }
+        }
+        if (!ends.empty()) {
+            EXPECT_LE(std::abs(end - ends.back()), 5 * kCell) << part << " " << end / kCell;  // a hundredth of the patch is 2 cells
+        }
+        ends.push_back(end);
+    }
+    EXPECT_GT(ends.back() - ends.front(), 40 * kCell);
+}
+
 TEST(Hair, BristlesRollOffAndOnAsTheyAreDrawn) {
     const brush::Bundles& b = pressed().tuft.bundles;
     const Footprint here = marks(b, 0.5, 0), near = marks(b, 0.5, 1e-5), far = marks(b, 0.5, 0.05);

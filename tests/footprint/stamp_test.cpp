@@ -98,6 +98,40 @@ TEST(Stamp, PrefixSumsAreManySubPoses) {
     }
 }
 
+TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
+    Stage stage(testing::sheet(0.06, 2, 200));
+    const double texel = 0.06 / 400;
+    for (const double way : {2.0, 5.3, 40.0}) {
+        for (const double angle : {0.0, 0.3, 1.2, kPi / 2, 2.5, 4.1}) {
+            // A hair a texel wide across the motion, 40 texels long: it leaves a box.
+            const Vec2 along{-std::sin(angle), std::cos(angle)}, on{std::cos(angle), std::sin(angle)};
+            Footprint f = disc(make_frame({0.003, 0.002, 0}, {0, 0, 1}), 0, 30 * texel, 0.5 * texel);
+            f.triangle = stage.triangle_at(f.frame.origin);
+            for (int j = 0; j < f.height; ++j)
+                for (int i = 0; i < f.width; ++i) {
+                    const Vec2 p = f.lo + f.cell * Vec2(i + 0.5, j + 0.5);
+                    const double off = std::abs(glm::dot(p, on)) / f.cell, end = std::abs(glm::dot(p, along)) / texel;
+                    f.coverage[static_cast<std::size_t>(j) * f.width + i] =
+                        end < 20 ? static_cast<std::uint8_t>(255 * std::clamp(1.5 - off, 0.0, 1.0)) : 0;
+                }
+            const StampJobs jobs = stage.plan(f, {way * texel * on, 0}, {.passes_over = true});
+            ASSERT_EQ(jobs.sub_poses.size(), 1u);
+            double inside = 1, outside = 0;
+            for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
+                const Vec3 d = Vec3(stage.map.position(slot, t)) - f.frame.origin;
+                const Vec2 p(glm::dot(d, f.frame.t), glm::dot(d, f.frame.b));
+                const double x = glm::dot(p, on) / texel, y = std::abs(glm::dot(p, along)) / texel;
+                // It came from -way; a texel and a cell of the picture lie at its border.
+                if (x > -way && x < 0 && y < 18.5) inside = std::min(inside, double(e));
+                if (x < -way - 1.8 || x > 1.8 || y > 21.5) outside = std::max(outside, double(e));
+            });
+            // Between the cells of the sheared picture some of the hair's peak is lost, and little goes beyond.
+            EXPECT_GT(inside, 0.75) << way << " " << angle;
+            EXPECT_LT(outside, 0.01) << way << " " << angle;
+        }
+    }
+}
+
 TEST(Stamp, ATurnAboutTheOriginSweepsTheAngle) {
     // A bar turned by 60° exposes a texel at radius ρ for (bar's angular width) / 60° of the
     // motion.
