@@ -117,16 +117,18 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
     for (int i = 0; i < stamps; ++i)
         path.push_back(disc(model, texels, 0.3 + i * model.atlas.texel_size / radius));
     std::vector<double> runs;
+    footprint::StampJobs jobs;
     for (int repeat = 0; repeat < 7; ++repeat) {
         bool piecewise = false;
         const double start = cpu_seconds();
         for (const footprint::Footprint& f : path) {
-            footprint::StampJobs jobs = footprint::plan_stamp(surface, f, {}, options, scratch);
+            jobs = footprint::plan_stamp(surface, f, {}, options, scratch, std::move(jobs));
             piecewise = footprint::choose_mode(jobs, piecewise, options);
+            const ink::DepositLaw law = ink::deposit_law(params, model.atlas.texel_size);
             for (const footprint::TileJob& job : jobs.tiles) {
                 const atlas::TexelTile& tile = model.texels.tiles[job.slot];
                 if (footprint::evaluate_tile(model.texels, jobs, job, unpacked, exposure))
-                    ink::deposit(canvas, job.slot, exposure, tile.area, model.atlas.texel_size, params);
+                    ink::deposit(canvas, job.slot, exposure, tile.area, params, law);
             }
         }
         runs.push_back((cpu_seconds() - start) / stamps * 1e6);

@@ -6,6 +6,7 @@
 
 #include "atlas/log_map.h"
 #include "footprint/picture.h"
+#include "footprint/quarters.h"
 #include "footprint/sweep.h"
 #include "footprint/walk.h"
 
@@ -15,19 +16,15 @@ namespace {
 constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // pieces that surely face the stamp
 constexpr double kShadow = 0.1;  // of its distance: what a piece behind an opening may be off by
 
-std::array<float, 3> to_array(const Vec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
 /// Frame of texels whose log map in `frame` lands at `place` + turn · (u, v) in the stamp.
 PieceFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn,
                          const Footprint& footprint) {
     PieceFrame f;
     const double scale = 1 / footprint.cell;
-    f.origin = to_array(frame.origin);
-    f.normal = to_array(frame.n);
-    f.tu = to_array(scale * (turn.x * frame.t - turn.y * frame.b));
-    f.tv = to_array(scale * (turn.y * frame.t + turn.x * frame.b));
+    f.origin = Vec3f(frame.origin);
+    f.normal = Vec3f(frame.n);
+    f.tu = Vec3f(scale * (turn.x * frame.t - turn.y * frame.b));
+    f.tv = Vec3f(scale * (turn.y * frame.t + turn.x * frame.b));
     f.u0 = static_cast<float>((place.x - footprint.lo.x) * scale - 0.5);
     f.v0 = static_cast<float>((place.y - footprint.lo.y) * scale - 0.5);
     return f;
@@ -92,34 +89,54 @@ double disagreement(const Frame& frame, const atlas::Piece& piece, const PlanScr
                        Vec2(n.u, n.v));
 }
 
+bool surely_faces(const atlas::Piece& piece, const Vec3f& normal) {
+    return piece.cone_cos > kSureCos && glm::dot(piece.normal, normal) > kSureNormal;
+}
+
+/// Where the texels of the reached pieces may lie in either mode and in whatever pose, and the next
+/// cell; with the disagreement of the modes.
+void cover_of_pieces(const atlas::PieceGraph& graph, const Footprint& footprint, const Motion& motion,
+                     Isa isa, PlanScratch& scratch) {
+    const auto cell = static_cast<float>(footprint.cell);
+    const Vec2f zero = Vec2f(footprint.lo / footprint.cell + 0.5);
+    const Vec2f half_way = Vec2f(0.5 * motion.shift);
+    const float way = glm::length(half_way), turn = static_cast<float>(std::abs(motion.turn));
+    scratch.apart.clear();
+    scratch.discs.clear();
+    for (const std::uint32_t i : scratch.reached) {
+        const atlas::Piece& piece = graph.pieces[i];
+        const PlanScratch::Node& at = scratch.nodes[i];
+        scratch.apart.push_back(disagreement(footprint.frame, piece, at));
+        const Vec2f place = Vec2f{at.u, at.v} + half_way;
+        const float r = kPieceSlack * piece.radius, swing = turn * (glm::length(place) + way + r);
+        const float reach = r + static_cast<float>(scratch.apart.back()) + way + swing;
+        scratch.discs.add(place / cell - zero, reach / cell + 1.5f);
+    }
+    scratch.tally.look(scratch.discs, isa);
+}
+
 /// Lists the reached pieces that the picture may cover, with what is known of its coverage
 /// there, and takes the greatest disagreement; scratch.reached is left with those listed.
 void list_pieces(const atlas::PieceGraph& graph, const Footprint& footprint, const Motion& motion,
                  PlanScratch& scratch, StampJobs& jobs) {
-    BlockTally& tally = scratch.tally;
-    tally.count(footprint);
-    const auto cell = static_cast<float>(footprint.cell);
-    const Vec2f zero = Vec2f(footprint.lo / footprint.cell + 0.5);
-    const Vec2f half_way = Vec2f(0.5 * motion.shift);
+    scratch.tally.count(footprint);
+    cover_of_pieces(graph, footprint, motion, jobs.isa, scratch);
     const Vec3f normal(footprint.frame.n);
     std::size_t n = 0;
     jobs.frames.reserve(scratch.reached.size());
-    for (const std::uint32_t i : scratch.reached) {
+    for (std::size_t k = 0; k < scratch.reached.size(); ++k) {
+        const std::uint32_t i = scratch.reached[k];
         const atlas::Piece& piece = graph.pieces[i];
         const PlanScratch::Node& at = scratch.nodes[i];
         PieceFrame f;
-        const double apart = disagreement(footprint.frame, piece, at);
+        const double apart = scratch.apart[k];
         if (jobs.mapping == Mapping::log) {
-            // Wherever its texels lie in either mode and in whatever pose, and the next cell.
-            const Vec2f place = Vec2f{at.u, at.v} + half_way;
-            const float way = glm::length(half_way), r = kPieceSlack * piece.radius;
-            const float swing = static_cast<float>(std::abs(motion.turn)) * (glm::length(place) + way + r);
-            const float reach = (r + static_cast<float>(apart) + way + swing) / cell + 1.5f;
-            const Vec2f centre = place / cell - zero;
-            const Cover cover = tally.look(centre, reach);
+            const Cover cover = scratch.discs.cover(k);
             if (cover == Cover::empty) continue;
-            f.full = piece.cone_cos > kSureCos && glm::dot(piece.normal, normal) > kSureNormal &&
-                     cover == Cover::full;
+            if (cover == Cover::full && surely_faces(piece, normal)) {
+                f.full = kAllQuarters;
+                f.part = 0;
+            }
         }
         // Behind an opening the walk itself is in doubt: it went round.
         if (at.lit || apart > kShadow * static_cast<double>(glm::length(Vec2f{at.u, at.v})))
@@ -163,8 +180,39 @@ void place_pieces(const atlas::PieceGraph& graph, const Footprint& footprint,
         f.first_row = old.first_row;
         f.last_row = old.last_row;
         f.full = old.full;
+        f.part = old.part;
         jobs.frames[k] = f;
     }
+}
+
+/// Looks closer at pieces of whole tiles that the picture covers in part. Between the two thresholds
+/// of discrepancy a piece may be mapped by either frame.
+void sort_pieces(const Surface& surface, const Footprint& footprint, const Motion& motion, const StampOptions& options,
+                 PlanScratch& scratch, StampJobs& jobs) {
+    if (jobs.mapping != Mapping::log) return;
+    const auto [low, high] = std::minmax(options.enter, options.leave);
+    const bool either = jobs.discrepancy > low && jobs.discrepancy <= high;
+    const bool own = jobs.discrepancy > high;
+    const auto cell = static_cast<float>(footprint.cell);
+    const Vec3f normal(footprint.frame.n);
+    Drift drift{Vec2f(footprint.lo / footprint.cell + 0.5), Vec2f(0.5 * motion.shift) / cell,
+                static_cast<float>(std::abs(motion.turn))};
+    if (either) drift.extra = 1 + static_cast<float>(jobs.discrepancy * footprint.radius) / cell;
+    scratch.asked.clear();
+    scratch.discs.clear();
+    for (const TileJob& job : jobs.tiles) {
+        for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
+            const PieceFrame& f = jobs.frames[k];
+            const std::uint32_t i = scratch.reached[k];
+            if (f.part == 0 || f.first_row > 0 || f.last_row + 1 < atlas::kTile) continue;
+            if (!surely_faces(surface.pieces.pieces[i], normal) || (either && !scratch.nodes[i].lit)) continue;
+            if (add_quarters(own ? f : jobs.stamp_frame, f.piece, surface.texels, job.slot, drift, scratch.discs))
+                scratch.asked.push_back(k);
+        }
+    }
+    scratch.tally.look(scratch.discs, jobs.isa);
+    for (std::size_t n = 0; n < scratch.asked.size(); ++n)
+        sort_quarters(scratch.discs, kQuarters * n, jobs.frames[scratch.asked[n]]);
 }
 
 }  // namespace
@@ -211,11 +259,10 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     list_pieces(surface.pieces, footprint, motion, scratch, jobs);
     if (jobs.discrepancy > std::min(options.enter, options.leave))
         place_pieces(surface.pieces, footprint, scratch, jobs);
+    sort_pieces(surface, footprint, motion, options, scratch, jobs);
     const Vec2f to_cells = Vec2f(footprint.lo / footprint.cell + 0.5);
-    const Vec2f lo = reach.lo / float(footprint.cell) - to_cells - 2.0f;
-    const Vec2f hi = reach.hi / float(footprint.cell) - to_cells + 2.0f;
-    jobs.reach_lo = {lo.x, lo.y};
-    jobs.reach_hi = {hi.x, hi.y};
+    jobs.reach_lo = reach.lo / float(footprint.cell) - to_cells - 2.0f;
+    jobs.reach_hi = reach.hi / float(footprint.cell) - to_cells + 2.0f;
     if (swept) {
         (passes_over ? sweep_over : sweep)(footprint, motion.shift, jobs, scratch.sweep);
         return jobs;

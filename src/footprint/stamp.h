@@ -21,10 +21,6 @@ enum class Mapping : std::uint8_t {
     plane,  ///< paper: from the projection plane along the surface's normals
 };
 
-/// Instruction sets of the kernel; all give the same bits.
-enum class Isa : std::uint8_t { baseline, avx2, avx512 };
-Isa best_isa();  ///< of this machine
-
 struct Surface {
     const mesh::TriangleMesh& mesh;
     const atlas::Atlas& atlas;
@@ -51,13 +47,17 @@ struct StampOptions {
     Isa isa = best_isa();
 };
 
+/// Quarters of a tile, a bit each: rows 0–7 with columns 0–7, then 8–15; rows 8–15 likewise.
+inline constexpr std::uint8_t kAllQuarters = 0xf;
+
 /// Where the log map puts the texels of one piece in the footprint's picture:
 /// d = p − origin, (fu, fv) = (u0, v0) + (tu, tv)·d + ½ (a − g) (tu, tv)·m, in cells.
 struct PieceFrame {
-    std::array<float, 3> origin, normal, tu, tv;
+    Vec3f origin{0}, normal{0}, tu{0}, tv{0};
     float u0 = 0, v0 = 0;
     std::uint8_t piece = 0, first_row = 0, last_row = 0;
-    bool full = false;  ///< the picture covers the whole piece in all its poses
+    std::uint8_t full = 0;             ///< quarters in which the picture covers all of the piece in all poses
+    std::uint8_t part = kAllQuarters;  ///< other quarters in which it may cover some of it
 };
 
 struct TileJob {
@@ -77,7 +77,7 @@ struct StampJobs {
     std::vector<std::uint16_t> pairs;             ///< see `pack_picture`
     float gain = 1;                               ///< what full cells of it stand for
     std::vector<SubPose> sub_poses;               ///< evenly spread over the motion
-    std::array<float, 2> reach_lo{}, reach_hi{};  ///< cells: the picture in all its sub-poses
+    Vec2f reach_lo{0}, reach_hi{0};               ///< cells: the picture in all its sub-poses
     PieceFrame stamp_frame;                       ///< serves all pieces when not piecewise
     std::vector<PieceFrame> frames;               ///< one for each piece reached, by slot; without
                                                   ///< a place where discrepancy is below `leave`
@@ -111,6 +111,9 @@ struct PlanScratch {
     std::vector<std::pair<float, std::uint32_t>> heap;
     std::vector<std::uint32_t> reached;
     BlockTally tally;
+    Discs discs;
+    std::vector<double> apart;  ///< metres, by reached piece
+    std::vector<std::uint32_t> asked;  ///< frames whose quarters are looked at
     SweepScratch sweep;
 };
 

@@ -1,219 +1,290 @@
 #include <algorithm>
 
-#include "atlas/log_map.h"
-#include "footprint/stamp.h"
+#include "footprint/isa.h"
+#include "footprint/picture_map.h"
 
 // The loops below are compiled once for each instruction set from the same source. They
 // hold neither reductions nor calls, and contraction is off, so all give the same bits.
-
-#if defined(__x86_64__) || defined(__i386__)
-#define TUFT_X86 1
-#ifdef __clang__
-#define TUFT_AVX512 "avx512f,avx512vl,avx512bw,avx512dq"
-#else
-#define TUFT_AVX512 "avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512"
-#endif
-#endif
 
 namespace tuft::footprint {
 namespace {
 
 using atlas::kTile;
 using atlas::kTileTexels;
-using atlas::TexelShape;
-using atlas::TexelTile;
 
 /// Neighbouring words of the picture, read at once from where they lie.
 using TwoPairs [[gnu::may_alias, gnu::aligned(2)]] = std::uint32_t;
 
 constexpr float kOutside = -1e9f;  // cells; in no picture
 
-/// The part of a tile that one piece covers.
-struct Rows {
-    int begin, end;  ///< texels
+// A tile is worked on in units of eight texels side by side, a bit each: bit 2 row + half.
+constexpr int kUnit = 8, kUnits = kTileTexels / kUnit;
+using Units = std::uint32_t;
+
+/// The units of a piece's rows that lie in some quarters of the tile.
+[[gnu::always_inline]] inline Units units_of(const PieceFrame& f, unsigned quarters) {
+    constexpr Units kLeft = 0x5555, kRight = 0xaaaa;
+    const Units upper = ((quarters & 1) ? kLeft : 0) | ((quarters & 2) ? kRight : 0);
+    const Units lower = ((quarters & 4) ? kLeft : 0) | ((quarters & 8) ? kRight : 0);
+    const Units rows = (~Units{0} >> (kUnits - 2 * (f.last_row + 1))) & (~Units{0} << (2 * f.first_row));
+    return (upper | lower << (kUnits / 2)) & rows;
+}
+
+/// The units of a piece to be evaluated, and those known to be full. Next to a quarter that is evaluated
+/// in runs of both, a full one is evaluated as well.
+template <int lanes>
+[[gnu::always_inline]] inline Units part_units(const PieceFrame& f) {
+    const unsigned rows = lanes == 2 * kUnit ? ((f.part | f.part >> 1) & 5u) * 3u : 0u;
+    return units_of(f, f.part | (f.full & rows));
+}
+
+template <int lanes>
+[[gnu::always_inline]] inline Units full_units(const PieceFrame& f) {
+    const unsigned rows = lanes == 2 * kUnit ? ((f.part | f.part >> 1) & 5u) * 3u : 0u;
+    return units_of(f, f.full & ~rows);
+}
+
+/// Where runs of `lanes` texels begin that hold given units.
+struct Runs {
+    std::uint16_t start[kUnits];
+    int count;
 };
 
-/// Texel → picture, in cells, for the texels that are `mine`; see `atlas::log_map` for the formula.
-/// The others stay as they are, or lie outside when this is the `only` frame.
-template <bool plane, bool only>
-[[gnu::always_inline]] inline void map_texels(const TexelShape& shape, const PieceFrame& f, Rows rows,
-                                              const std::int32_t* __restrict mine,
+/// One bit for each run.
+template <int lanes>
+[[gnu::always_inline]] inline Units joined(Units units) {
+    return lanes == 2 * kUnit ? (units | units >> 1) & 0x55555555u : units;
+}
+
+[[gnu::always_inline]] inline Runs runs_of(Units units) {
+    Runs runs;
+    runs.count = 0;
+    for (; units != 0; units &= units - 1)
+        runs.start[runs.count++] = static_cast<std::uint16_t>(kUnit * __builtin_ctz(units));
+    return runs;
+}
+
+/// What the kernel is called with, as plain pointers: a standard function called there would not be
+/// inlined into code for another instruction set.
+struct Task {
+    const StampJobs& jobs;
+    const PieceFrame* frames;
+    const SubPose* poses;
+    const std::uint16_t* pairs;
+    std::uint32_t n_frames, n_poses;
+    const std::uint8_t* piece;                 ///< of the tile, as the rest
+    const float *px, *py, *pz, *nx, *ny, *nz;
+    Vec2f reach_lo, reach_hi;
+};
+
+/// Texel → picture, in cells, for the texels that are `mine`, or all when `whole`; see `atlas::log_map`
+/// for the formula. The others stay as they are, or lie outside when this is the `only` frame.
+template <int lanes, bool plane, bool only, bool whole>
+[[gnu::always_inline]] inline void map_texels(const Task& task, const PieceFrame& f,
+                                              const Runs& runs, const std::int32_t* __restrict mine,
                                               float* __restrict fu, float* __restrict fv) {
-    const float ox = f.origin[0], oy = f.origin[1], oz = f.origin[2];
-    const float nx = f.normal[0], ny = f.normal[1], nz = f.normal[2];
-    const float ux = f.tu[0], uy = f.tu[1], uz = f.tu[2], u0 = f.u0;
-    const float vx = f.tv[0], vy = f.tv[1], vz = f.tv[2], v0 = f.v0;
-    constexpr auto& q = atlas::kLogMapSeries;
-    constexpr float q0 = float(0.5 * q[0]), q1 = float(0.5 * q[1]), q2 = float(0.5 * q[2]);
-    constexpr float q3 = float(0.5 * q[3]), q4 = float(0.5 * q[4]), q5 = float(0.5 * q[5]);
-    constexpr float q6 = float(0.5 * q[6]), q7 = float(0.5 * q[7]);
     constexpr float least_cos = float(atlas::kLogMapMinCos);
-    const float *px = shape.px.data(), *py = shape.py.data(), *pz = shape.pz.data();
-    const float *mx = shape.nx.data(), *my = shape.ny.data(), *mz = shape.nz.data();
+    for (int run = 0; run < runs.count; ++run) {
+        const int begin = runs.start[run];
+        const float *px = task.px + begin, *py = task.py + begin, *pz = task.pz + begin;
+        const float *mx = task.nx + begin, *my = task.ny + begin, *mz = task.nz + begin;
+        const std::int32_t* __restrict own = mine + begin;
+        float *__restrict to_u = fu + begin, *__restrict to_v = fv + begin;
 #pragma omp simd
-    for (int t = rows.begin; t < rows.end; ++t) {
-        const float dx = px[t] - ox, dy = py[t] - oy, dz = pz[t] - oz;
-        const float c = mx[t] * nx + my[t] * ny + mz[t] * nz;
-        const float nd = nx * dx + ny * dy + nz * dz;
-        const float inside = c > least_cos ? c : 0.0f;
-        float h;
-        if constexpr (plane) {
-            const float slope = inside > 0.05f ? inside : 0.05f;
-            h = -nd / slope;
-        } else {
-            const float md = mx[t] * dx + my[t] * dy + mz[t] * dz;
-            const float x = 1 - inside;
-            const float half_series =
-                ((((((q7 * x + q6) * x + q5) * x + q4) * x + q3) * x + q2) * x + q1) * x + q0;
-            h = half_series * (md - nd) - (md + nd) / (2 + 2 * inside);
-        }
-        const float u =
-            u0 + (dx * ux + dy * uy + dz * uz) + h * (mx[t] * ux + my[t] * uy + mz[t] * uz);
-        const float v =
-            v0 + (dx * vx + dy * vy + dz * vz) + h * (mx[t] * vx + my[t] * vy + mz[t] * vz);
-        const bool seen = (mine[t] != 0) & (c > least_cos);
-        if constexpr (only) {
-            fu[t] = seen ? u : kOutside;
-            fv[t] = seen ? v : kOutside;
-        } else {
-            fu[t] = seen ? u : fu[t];
-            fv[t] = seen ? v : fv[t];
+        for (int t = 0; t < lanes; ++t) {
+            const MappedTexel at = map_texel<plane>(f, px[t], py[t], pz[t], mx[t], my[t], mz[t]);
+            const bool seen = whole ? at.cos > least_cos : (own[t] != 0) & (at.cos > least_cos);
+            if constexpr (only) {
+                to_u[t] = seen ? at.u : kOutside;
+                to_v[t] = seen ? at.v : kOutside;
+            } else {
+                to_u[t] = seen ? at.u : to_u[t];
+                to_v[t] = seen ? at.v : to_v[t];
+            }
         }
     }
 }
 
-template <bool only>
-[[gnu::always_inline]] inline void map_texels(const TexelShape& shape, const PieceFrame& f, Rows rows,
-                                              bool plane, const std::int32_t* __restrict mine,
-                                              float* __restrict fu, float* __restrict fv) {
-    if (plane) map_texels<true, only>(shape, f, rows, mine, fu, fv);
-    else map_texels<false, only>(shape, f, rows, mine, fu, fv);
+/// Whether all texels of a tile belong to one piece.
+[[gnu::always_inline]] inline bool is_alone(const std::uint8_t* __restrict id, std::uint8_t piece) {
+    std::uint8_t others = 0;
+#pragma omp simd reduction(| : others)
+    for (int t = 0; t < kTileTexels; ++t) others |= id[t] ^ piece;
+    return others == 0;
 }
 
-/// Adds one to `mine` at the texels of a piece.
-[[gnu::always_inline]] inline void mark(const TexelTile& tile, int piece, Rows rows,
-                                        std::int32_t* __restrict mine) {
-    const std::uint8_t* id = tile.piece.data();
+/// Adds `value` at the texels of a piece in some units.
+template <class T>
+[[gnu::always_inline]] inline void mark(const std::uint8_t* __restrict id, std::uint8_t piece, Units units,
+                                        T value, T* __restrict out) {
+    for (; units != 0; units &= units - 1) {
+        const int begin = kUnit * __builtin_ctz(units);
 #pragma omp simd
-    for (int t = rows.begin; t < rows.end; ++t) mine[t] += id[t] == piece ? 1 : 0;
+        for (int t = begin; t < begin + kUnit; ++t) out[t] += id[t] == piece ? value : T{0};
+    }
 }
 
-/// The rows that some pose of the picture may reach.
-[[gnu::always_inline]] inline Rows rows_in_picture(const StampJobs& jobs, Rows rows,
-                                                   const float* __restrict fu,
+/// Keeps the runs that some pose of the picture may reach.
+template <int lanes>
+[[gnu::always_inline]] inline void keep_in_picture(const Task& task, Runs& runs, const float* __restrict fu,
                                                    const float* __restrict fv) {
-    const float lo_u = jobs.reach_lo[0], lo_v = jobs.reach_lo[1];
-    const float hi_u = jobs.reach_hi[0], hi_v = jobs.reach_hi[1];
-    Rows hit{rows.end, rows.begin};
-    for (int row = rows.begin; row < rows.end; row += kTile) {
+    const float lo_u = task.reach_lo.x, lo_v = task.reach_lo.y;
+    const float hi_u = task.reach_hi.x, hi_v = task.reach_hi.y;
+    int kept = 0;
+    for (int run = 0; run < runs.count; ++run) {
+        const std::uint16_t begin = runs.start[run];
+        const float *u = fu + begin, *v = fv + begin;
         int any = 0;
 #pragma omp simd reduction(| : any)
-        for (int t = row; t < row + kTile; ++t)
-            any |= (fu[t] >= lo_u) & (fu[t] <= hi_u) & (fv[t] >= lo_v) & (fv[t] <= hi_v);
-        if (any == 0) continue;
-        hit.begin = std::min(hit.begin, row);
-        hit.end = row + kTile;
+        for (int t = 0; t < lanes; ++t) any |= (u[t] >= lo_u) & (u[t] <= hi_u) & (v[t] >= lo_v) & (v[t] <= hi_v);
+        runs.start[kept] = begin;
+        kept += any;
     }
-    return hit;
+    runs.count = kept;
 }
 
-/// Adds the picture's value at each texel, 255 for full coverage.
-[[gnu::always_inline]] inline void gather(const StampJobs& jobs, const SubPose& pose, Rows rows,
-                                          const float* __restrict fu, const float* __restrict fv,
-                                          float* __restrict sum) {
-    const std::uint16_t* __restrict pairs = jobs.pairs.data();
+/// What turns coverage, 255 for full, into exposure; and the greatest exposure met by each lane.
+template <int lanes>
+struct Finish {
+    float scale;
+    float most[lanes];
+};
+
+/// Adds the picture's value at each texel, 255 for full coverage; the `last` pose finishes.
+template <int lanes, bool last>
+[[gnu::always_inline]] inline void gather(const StampJobs& jobs, const std::uint16_t* __restrict pairs,
+                                          const SubPose& pose, const Runs& runs, const float* __restrict fu,
+                                          const float* __restrict fv, float* __restrict sum, Finish<lanes>& finish) {
     const int stride = jobs.width + 1;
     // The last coordinates inside: below the number of cells.
     const float last_x = static_cast<float>(jobs.width) * (1 - 1e-6f);
     const float last_y = static_cast<float>(jobs.height) * (1 - 1e-6f);
     const float xu = pose.xu, xv = pose.xv, yu = pose.yu, yv = pose.yv, du = pose.du, dv = pose.dv;
+    const float scale = finish.scale;
+    float* __restrict most = finish.most;
+    for (int run = 0; run < runs.count; ++run) {
+        const int begin = runs.start[run];
+        const float *u = fu + begin, *v = fv + begin;
+        float* __restrict to = sum + begin;
 #pragma omp simd
-    for (int t = rows.begin; t < rows.end; ++t) {
-        const float x = xu * fu[t] + xv * fv[t] + du, y = yu * fu[t] + yv * fv[t] + dv;
-        const float xp = x > 0.0f ? x : 0.0f, yp = y > 0.0f ? y : 0.0f;
-        const float xi = xp < last_x ? xp : last_x, yi = yp < last_y ? yp : last_y;
-        // A factor, not a selection: that would become a branch around the gather.
-        const float inside = ((xi == x) & (yi == y)) ? 1.0f : 0.0f;
-        const int i = static_cast<int>(xi), j = static_cast<int>(yi);
-        const float fx = xi - static_cast<float>(i), fy = yi - static_cast<float>(j);
-        const std::uint32_t q = *reinterpret_cast<const TwoPairs*>(pairs + (j * stride + i));
-        const float q00 = static_cast<float>(static_cast<int>(q & 255));
-        const float q01 = static_cast<float>(static_cast<int>((q >> 8) & 255));
-        const float q10 = static_cast<float>(static_cast<int>((q >> 16) & 255));
-        const float q11 = static_cast<float>(static_cast<int>(q >> 24));
-        const float low = q00 + fx * (q10 - q00), high = q01 + fx * (q11 - q01);
-        const float value = low + fy * (high - low);
-        sum[t] += inside * value;
+        for (int t = 0; t < lanes; ++t) {
+            const float x = xu * u[t] + xv * v[t] + du, y = yu * u[t] + yv * v[t] + dv;
+            const float xp = x > 0.0f ? x : 0.0f, yp = y > 0.0f ? y : 0.0f;
+            const float xi = xp < last_x ? xp : last_x, yi = yp < last_y ? yp : last_y;
+            // A factor, not a selection: that would become a branch around the gather.
+            const float inside = ((xi == x) & (yi == y)) ? 1.0f : 0.0f;
+            const int i = static_cast<int>(xi), j = static_cast<int>(yi);
+            const float fx = xi - static_cast<float>(i), fy = yi - static_cast<float>(j);
+            const std::uint32_t q = *reinterpret_cast<const TwoPairs*>(pairs + (j * stride + i));
+            const float q00 = static_cast<float>(static_cast<int>(q & 255));
+            const float q01 = static_cast<float>(static_cast<int>((q >> 8) & 255));
+            const float q10 = static_cast<float>(static_cast<int>((q >> 16) & 255));
+            const float q11 = static_cast<float>(static_cast<int>(q >> 24));
+            const float low = q00 + fx * (q10 - q00), high = q01 + fx * (q11 - q01);
+            const float value = low + fy * (high - low);
+            const float all = to[t] + inside * value;
+            if constexpr (last) {
+                const float scaled = all * scale;
+                to[t] = scaled < 1.0f ? scaled : 1.0f;
+                most[t] = scaled > most[t] ? scaled : most[t];
+            } else {
+                to[t] = all;
+            }
+        }
     }
 }
 
-[[gnu::always_inline]] inline bool evaluate(const TexelTile& tile, const TexelShape& shape,
-                                            const StampJobs& jobs, const TileJob& job, float* __restrict exposure) {
-    alignas(64) float fu[kTileTexels], fv[kTileTexels], sum[kTileTexels] = {};
-    alignas(64) std::int32_t mine[kTileTexels] = {}, full[kTileTexels] = {};
-    const bool plane = jobs.mapping == Mapping::plane;
-    const auto rows_of = [](const PieceFrame& f) {
-        return Rows{f.first_row * kTile, (f.last_row + 1) * kTile};
-    };
-    Rows all{kTileTexels, 0}, covered{kTileTexels, 0};
-    for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
-        const PieceFrame& own = jobs.frames[k];
-        const Rows rows = rows_of(own);
-        Rows& range = own.full ? covered : all;
-        range = {std::min(range.begin, rows.begin), std::max(range.end, rows.end)};
-        if (own.full || !jobs.piecewise) mark(tile, own.piece, rows, own.full ? full : mine);
-    }
-    if (all.begin < all.end) {
-        if (jobs.piecewise) {
-            for (int t = all.begin; t < all.end; ++t) fu[t] = fv[t] = kOutside;
-            for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
-                const PieceFrame& own = jobs.frames[k];
-                if (own.full) continue;
-                const Rows rows = rows_of(own);
-                std::fill(mine + rows.begin, mine + rows.end, 0);
-                mark(tile, own.piece, rows, mine);
-                map_texels<false>(shape, own, rows, plane, mine, fu, fv);
-            }
-        } else {
-            map_texels<true>(shape, jobs.stamp_frame, all, plane, mine, fu, fv);
-        }
-        const Rows hit = rows_in_picture(jobs, all, fu, fv);
-        for (const SubPose& pose : jobs.sub_poses) gather(jobs, pose, hit, fu, fv, sum);
-    }
-    const float whole = 255.0f * static_cast<float>(jobs.sub_poses.size());
+/// Finishes runs that no pose was gathered on.
+template <int lanes>
+[[gnu::always_inline]] inline void finish_runs(const Runs& runs, float* __restrict exposure, Finish<lanes>& finish) {
+    for (int run = 0; run < runs.count; ++run) {
+        float* __restrict e = exposure + runs.start[run];
 #pragma omp simd
-    for (int t = covered.begin; t < covered.end; ++t) sum[t] += full[t] != 0 ? whole : 0.0f;
-    const float scale = jobs.gain / (255.0f * static_cast<float>(jobs.sub_poses.size()));
-    int any = 0;
-#pragma omp simd reduction(| : any)
-    for (int t = 0; t < kTileTexels; ++t) {
-        const float e = sum[t] * scale;
-        exposure[t] = e < 1.0f ? e : 1.0f;
-        any |= e > 0.0f ? 1 : 0;
+        for (int t = 0; t < lanes; ++t) {
+            const float scaled = e[t] * finish.scale;
+            e[t] = scaled < 1.0f ? scaled : 1.0f;
+            finish.most[t] = scaled > finish.most[t] ? scaled : finish.most[t];
+        }
     }
+}
+
+/// Texel → picture for all runs, by the frame of the stamp or those of the pieces.
+template <int lanes, bool plane>
+[[gnu::always_inline]] inline void map_tile(const Task& task, const Runs& runs, float* __restrict fu,
+                                            float* __restrict fv) {
+    const StampJobs& jobs = task.jobs;
+    const std::uint8_t* id = task.piece;
+    alignas(64) std::int32_t mine[kTileTexels];
+    if (task.n_frames == 1 && is_alone(id, task.frames[0].piece)) {
+        map_texels<lanes, plane, true, true>(task, jobs.piecewise ? task.frames[0] : jobs.stamp_frame, runs, mine,
+                                             fu, fv);
+        return;
+    }
+    if (!jobs.piecewise) {
+        for (int t = 0; t < kTileTexels; ++t) mine[t] = 0;
+        for (std::uint32_t k = 0; k < task.n_frames; ++k)
+            mark(id, task.frames[k].piece, part_units<lanes>(task.frames[k]), 1, mine);
+        map_texels<lanes, plane, true, false>(task, jobs.stamp_frame, runs, mine, fu, fv);
+        return;
+    }
+    for (int t = 0; t < kTileTexels; ++t) fu[t] = fv[t] = kOutside;
+    for (std::uint32_t k = 0; k < task.n_frames; ++k) {
+        const PieceFrame& own = task.frames[k];
+        const Units units = part_units<lanes>(own);
+        for (int t = 0; t < kTileTexels; ++t) mine[t] = 0;
+        mark(id, own.piece, units, 1, mine);
+        map_texels<lanes, plane, false, false>(task, own, runs_of(joined<lanes>(units)), mine, fu, fv);
+    }
+}
+
+template <int lanes, bool plane>
+[[gnu::always_inline]] inline bool evaluate(const Task& task, float* __restrict exposure) {
+    const std::uint8_t* id = task.piece;
+    const float whole = 255.0f * static_cast<float>(task.n_poses);
+    Units part = 0, full = 0;
+    for (std::uint32_t k = 0; k < task.n_frames; ++k) {
+        part |= part_units<lanes>(task.frames[k]);
+        full |= full_units<lanes>(task.frames[k]);
+    }
+    for (int t = 0; t < kTileTexels; ++t) exposure[t] = 0;
+    for (std::uint32_t k = 0; full != 0 && k < task.n_frames; ++k)
+        mark(id, task.frames[k].piece, full_units<lanes>(task.frames[k]), whole, exposure);
+    alignas(64) Finish<lanes> finish{task.jobs.gain / whole, {}};
+    Units known = joined<lanes>(full);
+    if (part != 0) {
+        alignas(64) float fu[kTileTexels], fv[kTileTexels];
+        Runs runs = runs_of(joined<lanes>(part));
+        map_tile<lanes, plane>(task, runs, fu, fv);
+        if (task.n_poses > 1) keep_in_picture<lanes>(task, runs, fu, fv);
+        std::uint32_t k = 0;
+        for (; k + 1 < task.n_poses; ++k)
+            gather<lanes, false>(task.jobs, task.pairs, task.poses[k], runs, fu, fv, exposure, finish);
+        gather<lanes, true>(task.jobs, task.pairs, task.poses[k], runs, fu, fv, exposure, finish);
+        for (int run = 0; run < runs.count; ++run) known &= ~(Units{1} << (runs.start[run] / kUnit));
+    }
+    finish_runs(runs_of(known), exposure, finish);
+    int any = 0;
+    for (int t = 0; t < lanes; ++t) any |= finish.most[t] > 0.0f ? 1 : 0;
     return any != 0;
 }
 
-using Evaluate = bool (*)(const TexelTile&, const TexelShape&, const StampJobs&, const TileJob&,
-                          float* __restrict);
-
-bool evaluate_baseline(const TexelTile& tile, const TexelShape& shape, const StampJobs& jobs,
-                       const TileJob& job, float* __restrict sum) {
-    return evaluate(tile, shape, jobs, job, sum);
+template <int lanes>
+[[gnu::always_inline]] inline bool evaluate(const Task& task, float* __restrict exposure) {
+    return task.jobs.mapping == Mapping::plane ? evaluate<lanes, true>(task, exposure)
+                                               : evaluate<lanes, false>(task, exposure);
 }
+
+using Evaluate = bool (*)(const Task&, float* __restrict);
+
+bool evaluate_baseline(const Task& task, float* __restrict exposure) { return evaluate<8>(task, exposure); }
 
 #ifdef TUFT_X86
-[[gnu::target("avx2,tune=haswell")]] bool evaluate_avx2(const TexelTile& tile,
-                                                        const TexelShape& shape,
-                                                        const StampJobs& jobs, const TileJob& job,
-                                                        float* __restrict sum) {
-    return evaluate(tile, shape, jobs, job, sum);
+[[gnu::target(TUFT_AVX2)]] bool evaluate_avx2(const Task& task, float* __restrict exposure) {
+    return evaluate<8>(task, exposure);
 }
 
-[[gnu::target(TUFT_AVX512)]] bool evaluate_avx512(const TexelTile& tile, const TexelShape& shape,
-                                                  const StampJobs& jobs, const TileJob& job,
-                                                  float* __restrict sum) {
-    return evaluate(tile, shape, jobs, job, sum);
+[[gnu::target(TUFT_AVX512)]] bool evaluate_avx512(const Task& task, float* __restrict exposure) {
+    return evaluate<16>(task, exposure);
 }
 #endif
 
@@ -249,15 +320,29 @@ bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const T
         std::fill(exposure.begin(), exposure.end(), 0.0f);
         return false;
     }
-    const TexelShape* shape = texels.packed.empty() ? &texels.shapes[job.slot] : &unpacked.shape;
+    const atlas::TexelShape* shape = texels.packed.empty() ? &texels.shapes[job.slot] : &unpacked.shape;
     const auto frames = std::span(jobs.frames).subspan(job.first, job.count);
-    const bool known = std::all_of(frames.begin(), frames.end(), [](const PieceFrame& f) { return f.full; });
+    const bool known = std::all_of(frames.begin(), frames.end(), [](const PieceFrame& f) { return f.part == 0; });
     if (!texels.packed.empty() && !known && unpacked.slot != job.slot) {
         atlas::shape_of(texels, job.slot, unpacked.shape);
         unpacked.slot = job.slot;
     }
-    return kernel(std::min(jobs.isa, best_isa()))(texels.tiles[job.slot], *shape, jobs, job,
-                                                  exposure.data());
+    const Task task{jobs,
+                    jobs.frames.data() + job.first,
+                    jobs.sub_poses.data(),
+                    jobs.pairs.data(),
+                    job.count,
+                    static_cast<std::uint32_t>(jobs.sub_poses.size()),
+                    texels.tiles[job.slot].piece.data(),
+                    shape->px.data(),
+                    shape->py.data(),
+                    shape->pz.data(),
+                    shape->nx.data(),
+                    shape->ny.data(),
+                    shape->nz.data(),
+                    jobs.reach_lo,
+                    jobs.reach_hi};
+    return kernel(std::min(jobs.isa, best_isa()))(task, exposure.data());
 }
 
 }  // namespace tuft::footprint

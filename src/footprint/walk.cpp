@@ -26,6 +26,8 @@ constexpr float kCorner = 0.8f;   // of a hop, what it adds to a way that bends
 constexpr float kBeside = 1.6f;   // piece radii: the source may lie beside the piece itself
 constexpr float kBetween = 0.8f;  // of the distance it began at: may lead between two neighbours
 
+constexpr std::uint32_t kMostEdges = 64;  // of a piece that are looked at
+
 enum : std::uint8_t { kOpen, kFinal, kOutside };
 
 /// Signed angle from p to q, |p||q| = `lengths`, within 5e-5 of itself below 62°; beyond, not a
@@ -74,12 +76,19 @@ struct Walk {
     void place(const atlas::Piece& piece, std::uint32_t index, PlanScratch::Node& n) {
         const float least = least_place2(piece);
         std::array<Hint, 24> hints;
-        std::size_t count = 0, best = 0, n_straight = 0;
-        const std::uint32_t end = graph.edge_start[index + 1];
-        for (std::uint32_t k = graph.edge_start[index]; k < end && count < hints.size(); ++k) {
-            const atlas::PieceEdge& e = graph.edges[k];
+        std::size_t count = 0, best = 0, n_straight = 0, n_settled = 0;
+        const std::uint32_t first = graph.edge_start[index];
+        const std::uint32_t end = std::min(graph.edge_start[index + 1], first + kMostEdges);
+        // Listed first: which ones are settled no processor guesses.
+        std::array<std::uint32_t, kMostEdges> settled;
+        for (std::uint32_t k = first; k < end; ++k) {
+            const PlanScratch::Node& from = scratch.nodes[graph.edges[k].to];
+            settled[n_settled] = k;
+            n_settled += (from.epoch == scratch.epoch) & (from.state == kFinal);
+        }
+        for (std::size_t i = 0; i < n_settled && count < hints.size(); ++i) {
+            const atlas::PieceEdge& e = graph.edges[settled[i]];
             const PlanScratch::Node& from = scratch.nodes[e.to];
-            if (from.epoch != scratch.epoch || from.state != kFinal) continue;
             const float ci = from.c * e.c + from.s * e.s, si = from.s * e.c - from.c * e.s;
             const float hu = ci * e.hop_u - si * e.hop_v, hv = si * e.hop_u + ci * e.hop_v;
             const float pu = from.u - hu, pv = from.v - hv;
@@ -204,13 +213,11 @@ struct Walk {
             const float x = h.edge->hop_u, y = h.edge->hop_v, length = std::sqrt(h.hop2);
             const float cos = (x * sx + y * sy) / length;
             const bool is_left = sx * y - sy * x > 0;
-            if (is_left && cos > left_cos) {
-                left = &h;
-                left_cos = cos;
-            } else if (!is_left && cos > right_cos) {
-                right = &h;
-                right_cos = cos;
-            }
+            const bool more_left = is_left & (cos > left_cos), more_right = !is_left & (cos > right_cos);
+            left = more_left ? &h : left;
+            left_cos = more_left ? cos : left_cos;
+            right = more_right ? &h : right;
+            right_cos = more_right ? cos : right_cos;
         }
         if (!left || !right) return;
         const PlanScratch::Node &a = scratch.nodes[left->edge->to], &b = scratch.nodes[right->edge->to];

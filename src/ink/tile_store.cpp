@@ -1,20 +1,19 @@
 #include "ink/tile_store.h"
 
-#include "atlas/texel_map.h"
 #include "ink/simd.h"
 
 namespace tuft::ink {
 namespace {
 
-constexpr int kN = atlas::kTileTexels;
 constexpr int kLanes = 16;
+static_assert(atlas::kTile % kLanes == 0);
 
 }  // namespace
 
 TUFT_CLONES double store_change(float* __restrict w, const float* __restrict dw, float part,
-                                const float* __restrict area) {
+                                const float* __restrict area, int n) {
     double sum[kLanes] = {};
-    for (int t = 0; t < kN; t += kLanes) {
+    for (int t = 0; t < n; t += kLanes) {
         for (int lane = 0; lane < kLanes; ++lane) {
             const float before = w[t + lane];
             const float after = before + part * dw[t + lane];

@@ -72,6 +72,8 @@ double Stamper::flush() {
     }
     if (grain_.empty() && std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.grain_film > 0; }))
         grain_.resize(model_.texels.n_slots());
+    std::array<ink::DepositLaw, kBatch> laws;
+    for (std::size_t i = 0; i < batch_.size(); ++i) laws[i] = ink::deposit_law(batch_[i].ink, batch_[i].ds);
     std::vector<double> given(order.size(), 0.0);
     std::vector<ink::Amounts> erased(erases ? order.size() : 0);
     parallel_for(runs.size() - 1, 4, [&](std::size_t begin, std::size_t end) {
@@ -97,7 +99,7 @@ double Stamper::flush() {
                 if (stamp.grain_film > 0)
                     ink::expose_relief(exposure, grain(slot), grain_rms_,
                                        static_cast<float>(stamp.grain_film));
-                given[k] = ink::deposit(canvas_, slot, exposure, tile.area, stamp.ds, stamp.ink);
+                given[k] = ink::deposit(canvas_, slot, exposure, tile.area, stamp.ink, laws[job.stamp]);
             }
         }
     });

@@ -25,9 +25,8 @@ inline Vec2 place_of(const atlas::TexelMap& map, const StampJobs& jobs, const Fo
         for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
             if (jobs.frames[k].piece != map.tiles[slot].piece[t]) continue;
             const PieceFrame& p = jobs.piecewise ? jobs.frames[k] : jobs.stamp_frame;
-            const auto vec = [](const std::array<float, 3>& a) { return Vec3{a[0], a[1], a[2]}; };
             // log_map is linear in t and b: the picture's axes take their place.
-            const Frame frame{vec(p.origin), f.cell * vec(p.tu), f.cell * vec(p.tv), vec(p.normal)};
+            const Frame frame{Vec3(p.origin), f.cell * Vec3(p.tu), f.cell * Vec3(p.tv), Vec3(p.normal)};
             const Vec3 m = glm::normalize(Vec3(map.normal(slot, t)));
             return atlas::log_map(frame, Vec3(map.position(slot, t)), m) +
                    (Vec2(p.u0, p.v0) + 0.5) * f.cell + f.lo;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -228,35 +229,46 @@ TEST(Stamp, SixteenBitTexelsAreExposedAsFloatOnes) {
     EXPECT_LT(std::abs(difference) / total, 1e-5);
 }
 
-TEST(Stamp, PiecesCalledFullAreFullToTheBit) {
+TEST(Stamp, QuartersCalledFullOrEmptyAreSoToTheBit) {
     Stage stage(testing::sphere(0.02, 300));
     Random random(3);
-    std::size_t full = 0;
-    for (int i = 0; i < 12; ++i) {
+    std::size_t full = 0, empty = 0;
+    for (int i = 0; i < 36; ++i) {
         const Vec3 n = glm::normalize(
             Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
         Footprint f = disc(make_frame(0.02 * n, n), stage.triangle_at(0.02 * n),
                            random.uniform(0.003, 0.012), 0.5e-4);
+        if (i % 2 == 1)  // A bristle's thin line instead of a disc.
+            for (int j = 0; j < f.height; ++j)
+                for (int k = 0; k < f.width; ++k)
+                    if (std::abs(2 * j - k - f.height / 2) > 7) f.coverage[std::size_t(j) * f.width + k] = 0;
         // A hole off the middle.
         const int hole = f.width / 3;
         for (int j = hole; j < hole + 7; ++j)
             std::fill_n(f.coverage.begin() + std::size_t(j) * f.width + hole, 5, std::uint8_t{0});
         const Motion motion{Vec2{random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4)},
                             i % 3 == 0 ? 0.05 : 0.0};
-        StampJobs known = stage.plan(f, motion);
+        // As many poses as it takes, and 27: 27 / 27 in floats is not 1.
+        StampJobs known = stage.plan(f, motion, {.sub_pose = i % 4 == 0 ? 0.01 : 1.0, .max_sub_poses = 27});
         StampJobs plain = known;
         for (PieceFrame& frame : plain.frames) {
-            full += frame.full;
-            frame.full = false;
+            full += static_cast<std::size_t>(std::popcount(frame.full));
+            empty += static_cast<std::size_t>(std::popcount(static_cast<std::uint8_t>(~(frame.full | frame.part) & kAllQuarters)));
+            frame.full = 0;
+            frame.part = kAllQuarters;
         }
         std::array<float, atlas::kTileTexels> a, b;
-        for (const TileJob& job : known.tiles) {
-            evaluate(stage.map, known, job, a);
-            evaluate(stage.map, plain, job, b);
-            EXPECT_EQ(a, b);
+        for (const Isa isa : {Isa::baseline, Isa::avx2, Isa::avx512}) {
+            known.isa = isa;
+            for (const TileJob& job : known.tiles) {
+                evaluate(stage.map, known, job, a);
+                evaluate(stage.map, plain, job, b);
+                EXPECT_EQ(a, b);
+            }
         }
     }
-    EXPECT_GT(full, 100u);  // else the test says nothing
+    EXPECT_GT(full, 1000u);  // else the test says nothing
+    EXPECT_GT(empty, 1000u);
 }
 
 TEST(Stamp, ChangesNothingWhenTheModelIsMoved) {
