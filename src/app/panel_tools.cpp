@@ -258,6 +258,7 @@ void writing_section(Session& s) {
     }
     const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (names) ui.toggle("Brush and ink of the file", w.own_ink);
+    if (has_widths(w)) ui.toggle("Line widths of the drawing", w.own_width);
     ui.note(ui.tr("Wheel: size    Shift + wheel: turn    Click: lay it down"));
 }
 

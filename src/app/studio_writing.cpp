@@ -57,6 +57,7 @@ void Studio::lay_writing() {
         if (!s.writing.own_ink || trace.brush.empty()) trace.brush = s.brush;
         if (!s.writing.own_ink || trace.ink.empty()) trace.ink = s.ink;
     }
+    draw_to_widths(traces);
     s.painter->post(PaintTraces{std::move(traces), s.symmetry, s.layer, s.mask, s.wet});
 }
 

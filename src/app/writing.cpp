@@ -6,6 +6,7 @@
 #include "brush/preset.h"
 #include "core/error.h"
 #include "io/svg.h"
+#include "stroke/line_width.h"
 #include "stroke/placement.h"
 
 namespace tuft::app {
@@ -70,10 +71,26 @@ std::vector<stroke::Trace> placed_traces(const Writing& w, const stroke::Placeme
         for (stroke::TraceSample& s : trace.samples) {
             s.position *= w.scale;
             s.time *= std::max(0.2, w.scale);  // the same pace for larger letters
-            if (!trace.pressed) s.pressure = std::min(1.0, s.pressure * pressure);
+            if (!trace.pressed && !(w.own_width && trace.line_width > 0)) s.pressure = std::min(1.0, s.pressure * pressure);
         }
+        trace.line_width = w.own_width && !trace.pressed ? w.scale * trace.line_width : 0;
     }
     return traces;
+}
+
+bool has_widths(const Writing& w) {
+    return std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return t.line_width > 0 && !t.pressed; });
+}
+
+void draw_to_widths(std::vector<stroke::Trace>& traces) {
+    stroke::WidthTables widths;
+    for (stroke::Trace& trace : traces) {
+        if (trace.line_width > 0) {
+            trace.brush = stroke::brush_for_width(trace.brush, widths.of(trace.brush), trace.line_width);
+            stroke::press_to_width(trace, widths.of(trace.brush));
+        }
+        trace.line_width = 0;
+    }
 }
 
 std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& w, const stroke::Placement& placement, std::size_t most) {

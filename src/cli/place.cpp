@@ -10,6 +10,7 @@
 
 #include "brush/preset.h"
 #include "core/units.h"
+#include "stroke/line_width.h"
 
 namespace tuft::cli {
 
@@ -26,9 +27,15 @@ std::pair<Vec3, Vec3> upright(const Vec3& n, double turn) {
 constexpr const char* kBrush = "wolf-medium";  // where nothing names one
 constexpr double kWriting = 0.06;              // metres of drawing that it suits
 
+/// Whether the hand is to press as the drawing's line widths say.
+bool has_width(const stroke::Stroke& s) {
+    return s.action == stroke::Action::stroke && s.trace.flat && !s.trace.pressed && s.trace.line_width > 0 &&
+           s.settings.pressure == "none";
+}
+
 /// Gives the drawing's brushes its scale, also for what is done with them before a stroke; the
-/// one that nobody named suits its width.
-void size_brushes(std::vector<stroke::Stroke>& strokes, const std::vector<stroke::Trace*>& drawing, double scale, double width) {
+/// one that nobody named suits its width. Where lines have widths, brushes come in sizes that draw them.
+void size_brushes(std::vector<stroke::Stroke>& strokes, const std::vector<stroke::Trace*>& drawing, double scale, double width, stroke::WidthTables& widths) {
     std::string own, sized;
     for (auto s = strokes.rbegin(); s != strokes.rend(); ++s) {
         stroke::Trace& trace = s->trace;
@@ -38,6 +45,7 @@ void size_brushes(std::vector<stroke::Stroke>& strokes, const std::vector<stroke
                 const brush::SizedName name = brush::sized_name(own.empty() ? kBrush : own);
                 sized = brush::name_of({name.base, own.empty() ? std::min(1.0, width / kWriting) : name.factor * scale});
             }
+            if (has_width(*s)) sized = stroke::brush_for_width(sized, widths.of(sized), trace.line_width);
             trace.brush = sized;
         } else if (trace.brush == own) {
             trace.brush = sized;
@@ -45,11 +53,32 @@ void size_brushes(std::vector<stroke::Stroke>& strokes, const std::vector<stroke
     }
 }
 
+void press_to_widths(std::vector<stroke::Stroke>& strokes, stroke::WidthTables& tables, Console& console) {
+    double least = 1e30, most = 0;
+    const stroke::Stroke* missed = nullptr;
+    for (stroke::Stroke& s : strokes) {
+        if (has_width(s)) {
+            const stroke::LineWidths& widths = tables.of(s.trace.brush);
+            stroke::press_to_width(s.trace, widths);
+            if (s.trace.line_width < widths.least() || s.trace.line_width > widths.most()) {
+                missed = &s;
+                least = std::min(least, s.trace.line_width), most = std::max(most, s.trace.line_width);
+            }
+        }
+        s.trace.line_width = 0;
+    }
+    if (!missed) return;
+    const stroke::LineWidths& widths = tables.of(missed->trace.brush);
+    const std::string asked = most > least ? fmt::format("{:.3g} to {:.3g}", least / kMillimetre, most / kMillimetre) : fmt::format("{:.3g}", most / kMillimetre);
+    console.note(fmt::format("the drawing has lines {} mm wide; {} draws {:.2g} to {:.2g} mm (without --brush it is made to fit)", asked, missed->trace.brush,
+                             widths.least() / kMillimetre, widths.most() / kMillimetre));
+}
+
 double extent_along(const Box& box, const Vec3& direction) {
     return glm::dot(box.size(), glm::abs(direction));
 }
 
-void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, Console& console) {
+void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, stroke::WidthTables& widths, Console& console) {
     std::vector<stroke::Trace*> drawing;
     Box area;
     for (stroke::Stroke& s : strokes) {
@@ -62,11 +91,13 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
     }
     if (area.empty()) return;
     const Box& box = model.mesh->bounds;
-    const Vec3 before = box.centre() - Vec3{0, box.diagonal(), 0};
+    // What lies flat, such as a sheet or a plate, is written on from above.
+    const bool lies = box.size().z < 0.25 * std::min(box.size().x, box.size().y);
+    const Vec3 look = lies ? Vec3{0, 0, -1} : Vec3{0, 1, 0}, before = box.centre() - box.diagonal() * look;
     std::optional<mesh::SurfacePoint> at;
     if (!a.place_mm.empty())
         at = model.query->closest_point(kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]));
-    else if (at = model.query->ray(before, {0, 1, 0}); !at)
+    else if (at = model.query->ray(before, look); !at)
         at = model.query->closest_point(before);
     const auto [right, down] = upright(at->normal, a.place_turn_deg * kDegree);
     const double width = std::max(area.size().x, 0.05 * area.size().y);
@@ -78,14 +109,15 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
         const double fill = std::max(area.size().x / extent_along(box, right), area.size().y / extent_along(box, down));
         if (fill > 1 || fill < 0.01) {
             scale = 0.6 / fill;
-            note = fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide with brushes of that scale (see --place-width, --brush)",
-                               area.size().x / kMillimetre, scale * area.size().x / kMillimetre);
+            note = fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide{} (see --place-width, --brush)", area.size().x / kMillimetre,
+                               scale * area.size().x / kMillimetre, a.brush.empty() ? " with brushes of that scale" : "");
         }
     }
     if (a.place_mm.empty())
-        console.note(fmt::format("the strokes name no place; they go to the front of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",
-                                 at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre, note));
-    if (a.brush.empty()) size_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y));
+        console.note(fmt::format("the strokes name no place; they go to the {} of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",
+                                 lies ? "top" : "front", at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre, note));
+    for (stroke::Trace* trace : drawing) trace->line_width *= scale;
+    if (a.brush.empty()) size_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), widths);
     for (stroke::Trace* trace : drawing) {
         for (stroke::TraceSample& sample : trace->samples) {
             sample.position = scale * (sample.position - area.centre());
@@ -102,9 +134,11 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
 
 void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a,
                    Console& console) {
-    lay_drawing(strokes, model, a, console);
+    stroke::WidthTables widths;
+    lay_drawing(strokes, model, a, widths, console);
     for (stroke::Stroke& s : strokes)
         if (s.trace.brush.empty() && stroke::has_brush(s.action)) s.trace.brush = kBrush;
+    press_to_widths(strokes, widths, console);
 }
 
 void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, const stroke::Model& model) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <pugixml.hpp>
 #include <sstream>
@@ -20,6 +21,18 @@ constexpr int kDeepest = 64;             // of nested groups
 constexpr int kMostChords = 4096;        // of one curve
 using Matrix = glm::dmat3;
 using Line = std::vector<Vec2>;
+
+// A line of the drawing; metres.
+struct Drawn {
+    Line line;
+    double width = 0;  // of its stroke; 0: it has none
+};
+
+// What elements hand down to those within them.
+struct Style {
+    bool stroked = false;
+    double width = 1;  // units of the drawing
+};
 
 // Reads numbers, flags and words from an attribute.
 class Reader {
@@ -71,15 +84,19 @@ class Drawing {
   public:
     Drawing(const std::string& source, const SvgOptions& options) : source_(source), options_(options) {}
 
-    void walk(const pugi::xml_node& node, Matrix matrix, int depth) {
+    void walk(const pugi::xml_node& node, Matrix matrix, Style style, int depth) {
         if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
         const std::string name = local(node.name());
         static constexpr const char* skipped[] = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "metadata", "style", "title", "desc"};
         if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped)) return;
-        const std::string style = node.attribute("style").value();
-        if (std::strcmp(node.attribute("display").value(), "none") == 0 || style.find("display:none") != std::string::npos) return;
+        if (property(node, "display") == "none") return;
+        if (const std::string paint = property(node, "stroke"); !paint.empty() && paint != "inherit") style.stroked = paint != "none";
+        if (const std::string width = property(node, "stroke-width"); !width.empty() && width != "inherit" && width.back() != '%')
+            style.width = std::max(0.0, length(width) / kPixel);
         if (const auto transform = node.attribute("transform")) matrix = matrix * transform_of(transform.value());
         matrix_ = matrix;
+        width_ = style.stroked ? std::min(style.width * growth(), options_.ink.max_extent) : 0;
+        if (!std::isfinite(width_)) width_ = 0;
         if (name == "path") path(node.attribute("d").value());
         else if (name == "polyline" || name == "polygon") points(node.attribute("points").value(), name == "polygon");
         else if (name == "line") emit({{number(node, "x1"), number(node, "y1")}, {number(node, "x2"), number(node, "y2")}});
@@ -87,7 +104,7 @@ class Drawing {
         else if (name == "circle") ellipse(number(node, "cx"), number(node, "cy"), number(node, "r"), number(node, "r"));
         else if (name == "ellipse") ellipse(number(node, "cx"), number(node, "cy"), number(node, "rx"), number(node, "ry"));
         for (const pugi::xml_node& child : node.children())
-            if (child.type() == pugi::node_element) walk(child, matrix, depth + 1);
+            if (child.type() == pugi::node_element) walk(child, matrix, style, depth + 1);
     }
 
     // Metres per unit of the drawing and the corner that becomes (0, 0).
@@ -103,13 +120,64 @@ class Drawing {
         return scaling(kPixel, kPixel);
     }
 
-    const std::vector<Line>& lines() const { return lines_; }
+    // Rules for classes (".line, .thin { stroke-width: 2 }") from the style sheets of the file; others are passed over.
+    void read_sheets(const pugi::xml_node& node, int depth) {
+        if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
+        for (const pugi::xml_node& child : node.children()) {
+            if (child.type() != pugi::node_element) continue;
+            if (local(child.name()) != "style") {
+                read_sheets(child, depth + 1);
+                continue;
+            }
+            std::string sheet;
+            for (const pugi::xml_node& text : child.children()) sheet += text.value();
+            for (std::size_t at = 0, open; (open = sheet.find('{', at)) != std::string::npos;) {
+                const std::size_t close = std::min(sheet.find('}', open), sheet.size());
+                const auto rules = declarations(std::string_view(sheet).substr(open + 1, close - open - 1));
+                std::istringstream selectors(sheet.substr(at, open - at));
+                for (std::string one; std::getline(selectors, one, ',');)
+                    if (const std::string_view name = bare(one); name.size() > 1 && name.front() == '.')
+                        for (const auto& [key, value] : rules) classes_[std::string(name.substr(1))][key] = value;
+                at = std::min(close + 1, sheet.size());
+            }
+        }
+    }
+
+    const std::vector<Drawn>& lines() const { return lines_; }
     static std::string local(const char* name) {
         const char* colon = std::strchr(name, ':');
         return colon ? colon + 1 : name;
     }
 
   private:
+    // The declarations of a style, "name: value; name: value".
+    static std::map<std::string, std::string> declarations(std::string_view text) {
+        std::map<std::string, std::string> out;
+        while (!text.empty()) {
+            const std::string_view one = text.substr(0, text.find(';'));
+            text.remove_prefix(std::min(text.size(), one.size() + 1));
+            if (const std::size_t colon = one.find(':'); colon != std::string_view::npos)
+                out[std::string(bare(one.substr(0, colon)))] = bare(one.substr(colon + 1));
+        }
+        return out;
+    }
+    static std::string_view bare(std::string_view s) {
+        const char* white = " \t\r\n";
+        const auto from = s.find_first_not_of(white);
+        return from == std::string_view::npos ? std::string_view() : s.substr(from, s.find_last_not_of(white) - from + 1);
+    }
+    // A property of an element itself: of its style, of its classes, as an attribute.
+    std::string property(const pugi::xml_node& node, const char* name) const {
+        const auto own = declarations(node.attribute("style").value());
+        if (const auto at = own.find(name); at != own.end()) return at->second;
+        std::istringstream classes(node.attribute("class").value());
+        std::string value;
+        for (std::string one; classes >> one;)
+            if (const auto rules = classes_.find(one); rules != classes_.end())
+                if (const auto at = rules->second.find(name); at != rules->second.end()) value = at->second;
+        return value.empty() ? node.attribute(name).value() : value;
+    }
+
     // A length with its unit, metres; 0: none, or a part of an unknown page.
     double length(const std::string& text) const {
         if (text.empty() || text.back() == '%') return 0;
@@ -153,6 +221,8 @@ class Drawing {
         return m;
     }
 
+    // Of lengths, by the transforms in force.
+    double growth() const { return std::sqrt(std::abs(matrix_[0][0] * matrix_[1][1] - matrix_[1][0] * matrix_[0][1])); }
     Vec2 moved(const Vec2& p) const { return Vec2(matrix_ * Vec3(p, 1)); }
     void emit(const Line& line) {
         Line out;
@@ -168,15 +238,14 @@ class Drawing {
         if (out.size() < 2) return;
         n_points_ += out.size();
         if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
-        lines_.push_back(std::move(out));
+        lines_.push_back({std::move(out), width_});
     }
 
     // Chords of a curve over t in (0, 1]; `bend` bounds the length of its second derivative in user units.
     template <class Curve>
     void chords(Line& line, double bend, const Curve& curve) const {
-        const double scale = std::sqrt(std::abs(matrix_[0][0] * matrix_[1][1] - matrix_[1][0] * matrix_[0][1]));
         // A chord over a step h leaves a curve by at most h² |c''| / 8.
-        const double steps = std::ceil(std::sqrt(bend * scale / (8 * options_.tolerance)));
+        const double steps = std::ceil(std::sqrt(bend * growth() / (8 * options_.tolerance)));
         const int n = static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMostChords)));
         for (int i = 1; i <= n; ++i) line.push_back(curve(static_cast<double>(i) / n));
     }
@@ -302,7 +371,9 @@ class Drawing {
     const std::string& source_;
     const SvgOptions& options_;
     Matrix matrix_{1};
-    std::vector<Line> lines_;
+    double width_ = 0;
+    std::map<std::string, std::map<std::string, std::string>> classes_;  // declarations of style sheets
+    std::vector<Drawn> lines_;
     std::size_t n_points_ = 0;
 };
 
@@ -315,18 +386,21 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     const pugi::xml_node svg = document.document_element();
     if (Drawing::local(svg.name()) != "svg") throw Error(source, "not an SVG drawing");
     Drawing drawing(source, options);
-    drawing.walk(svg, drawing.frame(svg), 0);
+    drawing.read_sheets(svg, 0);
+    drawing.walk(svg, drawing.frame(svg), {}, 0);
     if (drawing.lines().empty()) throw Error(source, "nothing is drawn in this file; text must be turned into paths first");
     std::ostringstream ink;
     ink.precision(12);
     ink << "<ink xmlns='http://www.w3.org/2003/InkML'>";
-    for (const Line& line : drawing.lines()) {
+    for (const auto& [line, width] : drawing.lines()) {
         ink << "<trace>";
         for (std::size_t i = 0; i < line.size(); ++i) ink << (i ? "," : "") << 1e3 * line[i].x << ' ' << 1e3 * line[i].y;
         ink << "</trace>";
     }
     ink << "</ink>";
-    return parse_inkml(ink.str(), source, options.ink);
+    std::vector<stroke::Trace> traces = parse_inkml(ink.str(), source, options.ink);
+    for (std::size_t i = 0; i < traces.size(); ++i) traces[i].line_width = drawing.lines().at(i).width;
+    return traces;
 }
 
 std::vector<stroke::Trace> read_svg(const std::filesystem::path& path, const SvgOptions& options) {

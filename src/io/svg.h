@@ -14,7 +14,9 @@ namespace tuft::io {
 /// The outlines of a drawing as flat traces, in the order of the file: `path` (all commands),
 /// `line`, `polyline`, `polygon`, `rect`, `circle`, `ellipse`, under the `transform`s of their groups.
 /// Curves become chords that stay within `tolerance` of them; elliptical arcs after appendix F.6.5. What
-/// is not displayed, and what lies in `defs`, is left out; fill and stroke styles are not looked at.
+/// is not displayed, and what lies in `defs`, is left out. `stroke-width` (as an attribute, in a style, by a class
+/// of a style sheet, inherited, grown by transforms) becomes `Trace::line_width` where there is a `stroke`;
+/// other styles are not looked at.
 /// One user unit is what `width` and `viewBox` say, else 1/96 inch. Pace and pressure are those of
 /// `parse_inkml` for traces that have none.
 ///

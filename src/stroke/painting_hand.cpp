@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "footprint/hair.h"
+#include "stroke/line_width.h"
 
 namespace tuft::stroke {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 // Bending moment of a firm press over B0/L: what a hand reaches at the working depth.
 constexpr double kFirmPress = 0.1;
 constexpr double kSpeedLength = 2e-3;   // metres of travel over which the hand's speed is taken
-constexpr double kSkinFilm = 0.1e-3;    // metres of ink round wet hair
 // Metres of ink under hair that brings just what closes its gaps: twice the grain of rough
 // paper, three times that of bisque.
 constexpr double kGrainFilm = 30e-6;

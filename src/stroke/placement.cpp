@@ -112,10 +112,39 @@ Vec2 leaned_lead(const HoldOptions& options, const Vec2& tilt, double depth, con
     return taut * (more.x * ahead + more.y * left);
 }
 
+// The hand of a trace that begins pressed goes the lead while it presses: the tip touches where the trace
+// begins and trails from there. Set down from above it would bend to any side, and a tuft that is
+// pushed before the hand turns over only after centimetres.
+void set_down(Trace& trace, const HoldOptions& options) {
+    constexpr double kStep = 2.5e-4;                 // metres between samples
+    constexpr double kShortest = 0.01, kLongest = 0.3;  // seconds
+    constexpr double kWay = 3e-3;                    // metres over which the pace is taken
+    const TraceSample first = trace.samples.front();
+    const double way = lead_length(options.lead, std::clamp(first.pressure, 0.0, 1.0) * options.working_depth);
+    const int n = static_cast<int>(std::min(std::ceil(way / kStep), 100.0));
+    if (n < 2) return;
+    double gone = 0, taken = 0;
+    for (std::size_t i = 1; i < trace.samples.size() && gone < kWay; ++i) {
+        gone += glm::length(trace.samples[i].position - trace.samples[i - 1].position);
+        taken = trace.samples[i].time - first.time;
+    }
+    if (gone <= 0) return;
+    const double duration = std::clamp(taken / gone * way, kShortest, kLongest);
+    for (TraceSample& s : trace.samples) s.time += duration;
+    std::vector<TraceSample> touch(static_cast<std::size_t>(n), first);
+    for (int i = 0; i < n; ++i) {
+        TraceSample& s = touch[static_cast<std::size_t>(i)];
+        s.pressure = first.pressure * i / n;
+        s.time = first.time + duration * i / n;
+    }
+    trace.samples.insert(trace.samples.begin(), touch.begin(), touch.end());
+}
+
 }  // namespace
 
 Trace lead_hand(Trace trace, const HoldOptions& options) {
     if (options.lead.empty() || trace.samples.empty() || !trace.flat) return trace;
+    set_down(trace, options);
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
     Vec2 dragged = first;

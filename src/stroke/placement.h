@@ -109,7 +109,9 @@ std::vector<Lead> drag_lead(const brush::Preset& preset);
 /// adds, so that the ink will lie where the trace was. The
 /// direction is that of a point dragged behind the trace on a string of `lead_turn` (a
 /// tractrix), taut from the first touch in the direction in which the trace sets out;
-/// where the path reverses, the lead passes through zero.
+/// where the path reverses, the lead passes through zero. A trace that begins pressed gets samples
+/// before its first, at the same place, in which the pressure rises to it at the trace's pace: the tip
+/// touches first and trails then.
 Trace lead_hand(Trace trace, const HoldOptions& options);
 
 /// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the

@@ -95,6 +95,7 @@ struct Trace {
     std::uint64_t seed = 0;
     std::string label;                   ///< free text for people: a character, a stroke's name
     bool pressed = true;                 ///< false: pressures were made up, the device gave none
+    double line_width = 0;               ///< metres, as a drawing has it; 0: it says nothing
     std::vector<Care> before;            ///< what a file wants done with the brush first
     std::string settings;                ///< as a file wants them, see `to_json` in journal.h; empty: as
                                          ///< the command line says

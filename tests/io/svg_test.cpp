@@ -99,5 +99,21 @@ TEST(Svg, MistakesAreNamedWithTheFile) {
     EXPECT_NE(fault("<svg>" + deep + "</svg>"), "");
 }
 
+TEST(Svg, LinesHaveTheWidthOfTheirStroke) {
+    const auto width = [](const std::string& inside) { return 1e3 * drawn(inside).at(0).line_width; };
+    const std::string line = "x1='0' y1='0' x2='9' y2='0'";
+    EXPECT_EQ(width("<line " + line + "/>"), 0) << "the initial value of stroke is none";
+    EXPECT_EQ(width("<line " + line + " stroke-width='2'/>"), 0);
+    EXPECT_NEAR(width("<line " + line + " stroke='red'/>"), 1, 1e-9) << "the initial width";
+    EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='2.5'/>"), 2.5, 1e-9);
+    EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='1' style='fill:none; stroke-width : 4'/>"), 4, 1e-9) << "a style counts more";
+    EXPECT_EQ(width("<line " + line + " stroke='red' style='stroke:none'/>"), 0);
+    EXPECT_NEAR(width("<g stroke='red' stroke-width='3'><g transform='scale(2) rotate(30)'><line " + line + "/></g></g>"), 6, 1e-9) << "inherited; drawn under the transform";
+    EXPECT_NEAR(width("<style>.a, .b{stroke:#000;stroke-width:2px} .b {stroke-width:3}</style><line " + line + " class='x b'/>"), 3, 1e-9);
+    EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='50%'/>"), 1, 1e-9) << "parts of the page are passed over";
+    EXPECT_NO_THROW(drawn("<style>.a{stroke .b } } {{ .c,</style><line " + line + " class='a c' stroke='red'/>"));
+    EXPECT_THROW(drawn("<line " + line + " stroke='red' stroke-width='wide'/>"), Error);
+}
+
 }  // namespace
 }  // namespace tuft::io

@@ -218,15 +218,25 @@ TEST(Placement, SteadyHandKeepsItsHeightOnCurvedSurfaces) {
 }
 
 TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
-    // Straight: ahead by the length for the depth, from the first touch.
+    // Straight: ahead by the length for the depth, once the tip has touched.
     std::vector<Vec2> points;
     for (int i = 0; i <= 100; ++i) points.push_back({1e-4 * i, 0});
     Trace trace = make_trace({}, points);
     const HoldOptions options{
         .working_depth = 0.008, .lead = {{0.002, 0.001}, {0.006, 0.005}}, .lead_turn = 1e-3};
     Trace led = lead_hand(trace, options);
-    EXPECT_NEAR(led.samples[0].position.x, 0.003, 1e-12);
-    EXPECT_NEAR(led.samples[100].position.x, 0.01 + 0.003, 1e-12);  // depth 4 mm
+    ASSERT_GT(led.samples.size(), trace.samples.size());
+    std::size_t touch = led.samples.size() - trace.samples.size();
+    EXPECT_NEAR(led.samples[touch].position.x, 0.003, 1e-12);
+    EXPECT_NEAR(led.samples[touch + 100].position.x, 0.01 + 0.003, 1e-12);  // depth 4 mm
+    // The tip touches where the trace begins, and trails while the hand presses.
+    EXPECT_EQ(led.samples[0].pressure, 0);
+    EXPECT_NEAR(led.samples[0].position.x, 0, 1e-3) << "the shortest lead of the table";
+    for (std::size_t i = 1; i <= touch; ++i) {
+        EXPECT_GT(led.samples[i].pressure, led.samples[i - 1].pressure);
+        EXPECT_GE(led.samples[i].position.x, led.samples[i - 1].position.x);
+        EXPECT_GT(led.samples[i].time, led.samples[i - 1].time);
+    }
     // On a circle a string of length l lags by asin(l/2R)-like angle: steady tractrix,
     // sin φ = l/R with the string tangent to the inner circle of radius sqrt(R² - l²).
     const double radius = 0.01, l = options.lead_turn;
@@ -243,8 +253,9 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     points.clear();
     for (int i = 0; i <= 200; ++i) points.push_back({1e-4 * (i <= 100 ? i : 200 - i), 0});
     led = lead_hand(make_trace({}, points), options);
-    EXPECT_NEAR(led.samples[110].position.x, 0.009, 1e-9);  // the string is slack after one length
-    EXPECT_NEAR(led.samples[200].position.x, -0.003, 1e-9);
+    touch = led.samples.size() - points.size();
+    EXPECT_NEAR(led.samples[touch + 110].position.x, 0.009, 1e-9);  // the string is slack after one length
+    EXPECT_NEAR(led.samples[touch + 200].position.x, -0.003, 1e-9);
     // A dot has no direction.
     led = lead_hand(make_trace({}, {{0.01, 0.02}, {0.01, 0.02}}), options);
     EXPECT_EQ(led.samples[1].position, Vec3(0.01, 0.02, 0));
