@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ink/colorimetry.h"
 #include "ink/elementary.h"
 #include "ink/simd.h"
 #include "ink/tile_store.h"
@@ -81,10 +82,18 @@ float extinction_of(const Ink& ink) {
                 sum += part.fraction * kLuminance[c] * curve.scale * (2 * curve.k[c] + curve.s[c]);
             continue;
         }
-        for (int b = 0; b < kBands; ++b)
+        if (curve.k.empty()) {  // made from bands, not from a file
+            for (int b = 0; b < kBands; ++b)
+                for (int c = 0; c < 3; ++c)
+                    sum += part.fraction * kLuminance[c] * band_weights()[c][b] * (2 * part.pigment.k[b] + part.pigment.s[b]);
+            continue;
+        }
+        // Over all wavelengths: what is laid down must not depend on the choice of bands.
+        for (int i = 0; i < kWavelengths; ++i) {
+            const Coefficients at = coefficients_at(curve, static_cast<float>(wavelength_nm(i)));
             for (int c = 0; c < 3; ++c)
-                sum += part.fraction * kLuminance[c] * band_weights()[c][b] *
-                       (2 * part.pigment.k[b] + part.pigment.s[b]);
+                sum += part.fraction * static_cast<double>(kLuminance[c]) * rgb_matching()[c][i] * (2 * at.k + at.s);
+        }
     }
     return static_cast<float>(std::max(sum, 0.0));
 }

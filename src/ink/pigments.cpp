@@ -17,8 +17,8 @@ using preset::shortest_float;
 namespace {
 
 constexpr std::size_t kMaxSamples = 1000;
+constexpr double kThickest = 8, kThickestPaste = 100;  // film units that a full brush leaves
 
-/// Linear between the samples, level beyond the first and the last.
 float sample(const std::vector<float>& nm, const std::vector<float>& values, float at) {
     const auto next = std::upper_bound(nm.begin(), nm.end(), at);
     if (next == nm.begin()) return values.front();
@@ -97,18 +97,23 @@ std::string pigment_text(const Pigment& p) {
 
 }  // namespace
 
+Coefficients coefficients_at(const PigmentCurve& curve, float nm) {
+    return {static_cast<double>(curve.scale * sample(curve.nm, curve.k, nm)),
+            static_cast<double>(curve.scale * sample(curve.nm, curve.s, nm))};
+}
+
 void use_curve(Pigment& pigment) {
-    const PigmentCurve& curve = pigment.curve;
-    std::vector<float> nm = curve.nm, k = curve.k, s = curve.s;
-    if (nm.empty()) {
-        const Curves smooth = upsample_pigment({k[0], k[1], k[2]}, {s[0], s[1], s[2]});
-        k.assign(smooth.k.begin(), smooth.k.end());
-        s.assign(smooth.s.begin(), smooth.s.end());
-        for (int i = 0; i < kWavelengths; ++i) nm.push_back(static_cast<float>(wavelength_nm(i)));
+    PigmentCurve curve = pigment.curve;
+    if (curve.nm.empty()) {
+        const Curves smooth = upsample_pigment({curve.k[0], curve.k[1], curve.k[2]}, {curve.s[0], curve.s[1], curve.s[2]});
+        curve.k.assign(smooth.k.begin(), smooth.k.end());
+        curve.s.assign(smooth.s.begin(), smooth.s.end());
+        for (int i = 0; i < kWavelengths; ++i) curve.nm.push_back(static_cast<float>(wavelength_nm(i)));
     }
     for (int b = 0; b < kBands; ++b) {
-        pigment.k[b] = curve.scale * sample(nm, k, band_nm()[b]);
-        pigment.s[b] = curve.scale * sample(nm, s, band_nm()[b]);
+        const Coefficients at = coefficients_at(curve, band_nm()[b]);
+        pigment.k[b] = static_cast<float>(at.k);
+        pigment.s[b] = static_cast<float>(at.s);
     }
 }
 
@@ -122,11 +127,12 @@ Ink parse_ink(std::string_view text, const std::string& source) {
     const toml::table table = preset::parse_table(text, source);
     const preset::Reader in(table, source);
     in.only(
-        {"name", "title", "film", "supply", "supply_length_mm", "transfer_length_mm", "pigment"});
+        {"name", "title", "film", "supply", "supply_length_mm", "transfer_length_mm", "yield_pa", "pigment"});
     Ink ink;
     ink.name = in.text("name", "");
     ink.title = in.text("title", ink.name);
-    ink.film = in.number("film", 0.01, 8, ink.film);
+    ink.yield = in.number("yield_pa", 0, 1e4, ink.yield);
+    ink.film = in.number("film", 0.01, ink.yield > 0 ? kThickestPaste : kThickest, ink.film);
     ink.supply = in.number("supply", 1e-6, 1, ink.supply);
     ink.supply_length = in.number("supply_length_mm", 0.001, 100, ink.supply_length * 1e3) * 1e-3;
     ink.transfer_length =
@@ -157,6 +163,7 @@ std::string ink_toml(const Ink& ink) {
         << "\nfilm = " << shortest(ink.film) << "\nsupply = " << shortest(ink.supply)
         << "\nsupply_length_mm = " << shortest(ink.supply_length * 1e3)
         << "\ntransfer_length_mm = " << shortest(ink.transfer_length * 1e3) << "\n";
+    if (ink.yield > 0) out << "yield_pa = " << shortest(ink.yield) << "\n";
     if (ink.parts.empty()) out << "pigment = []\n";
     for (const InkPart& part : ink.parts) {
         out << "\n[[pigment]]\nname = " << quoted(part.pigment.name)

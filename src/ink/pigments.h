@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ink/kubelka_munk.h"
 #include "ink/spectrum.h"
 
 /// What inks are made of and what they are put on. Colour is computed from amounts,
@@ -30,6 +31,10 @@ struct PigmentCurve {
     std::vector<float> k, s;  ///< one number per wavelength, times `scale` per film unit
     float scale = 1;
 };
+
+/// K and S per film unit at a wavelength, of a curve that has some: linear between its samples,
+/// level beyond the first and the last.
+Coefficients coefficients_at(const PigmentCurve& curve, float nm);
 
 struct Pigment {
     std::string name;           ///< identifies the pigment across inks
@@ -65,6 +70,9 @@ struct Ink {
     double transfer_length =
         0.08e-3;  ///< s0, metres of travel in which a texel takes up its film:
                   ///< short beside the thinnest hairline, which must be black too
+
+    double yield = 0;  ///< Pa: stress below which the wet ink stands as it was put, as a paste does
+                       ///< (heavy oil colour some 100 to 1000); 0: it flows
 
     /// Sum of the fractions: 1 for undiluted ink.
     double strength() const;

@@ -71,7 +71,7 @@ inline std::vector<Mixture> random_mixtures(int n, int n_pigments, std::uint64_t
         for (int f = 0; f < films; ++f) {
             Mixture::Film film;
             const int parts = 1 + static_cast<int>(3.999 * u() * u());
-            const double x = 0.05 * std::pow(160.0, u());  // 0.05 to 8 film units
+            const double x = 0.05 * std::pow(1000.0, u());  // 0.05 to 50 film units
             double sum = 0;
             for (int p = 0; p < parts; ++p) {
                 film.pigment.push_back(static_cast<int>(u() * 0.9999 * n_pigments));
