@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "brush/rod_energy.h"
 #include "brush/rod_newton.h"
@@ -233,18 +234,31 @@ struct Solver {
         return (1 - at.s) * x[at.node] + at.s * x[at.node + 1];
     }
 
+    /// Without the edge where x lies so far from it over one face that it feels only that one.
+    Obstacle within_reach(const Obstacle& o, const Vec3& x) const {
+        if (!o.at_edge()) return o;
+        const double own = glm::dot(x - o.origin, o.normal), beyond = glm::dot(x - o.beyond_origin, o.beyond_normal);
+        constexpr double kRoundings = 3;  // more than hair goes in one solve beside the edge's own rounding
+        if (std::min(own, beyond) > -kRoundings * law.edge) return o;
+        return own >= beyond ? Obstacle{o.origin, o.normal, o.radius} : Obstacle{o.beyond_origin, o.beyond_normal, o.radius};
+    }
+
     /// The two planes of a point over a crease: those of an edge near the nodes beside it, or of
     /// the nodes themselves.
-    void lay_crease(std::size_t p, const PointPlace& at) {
-        const Obstacle &from = obstacles[at.node], &to = obstacles[at.node + 1];
+    void lay_crease(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
+        const bool inner = at.s > 0 && at.s < 1;
         const bool near_first = at.s < 1 && from.at_edge(), near_last = at.s > 0 && to.at_edge();
         if (near_first || near_last) {
             const bool both = near_first && near_last;
             const Obstacle &edge = near_first ? from : to, &other = near_first ? to : from;
-            const double part = at.s == 0 || at.s == 1 ? 0 : near_first ? at.s : 1 - at.s;
+            const double part = !inner ? 0 : near_first ? at.s : 1 - at.s;
             if (lay_edge(p, edge, other, both, part)) return;
+            // The other node is nearer, and on a third face.
+            if (both) lay_edge(p, other, edge, false, 0);
+            else std::tie(fine[p].origin, fine[p].normal) = std::tie(other.origin, other.normal);
+            return;
         }
-        lay_parted(p, at);
+        lay_parted(p, at, from, to);
     }
 
     /// The planes of the edge near node `a`, those that node `b` has too interpolated towards
@@ -269,20 +283,26 @@ struct Solver {
         return true;
     }
 
+    /// A node's plane, or the one beyond the edge near it where that is more like n: which of the
+    /// two is its own may change from step to step where it hangs over the edge.
+    static Obstacle facing(const Obstacle& o, const Vec3& n) {
+        if (!o.at_edge() || glm::dot(o.beyond_normal, n) <= glm::dot(o.normal, n)) return o;
+        return {o.beyond_origin, o.beyond_normal, o.radius, o.origin, o.normal};
+    }
+
     /// The planes of the nodes beside a point, or a node's own and the one next to it that
     /// differs most, where they part.
-    void lay_parted(std::size_t p, const PointPlace& at) {
-        int i = at.node, k = at.node + 1;
+    void lay_parted(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
+        Obstacle a = from, b = to;
         if (at.s == 0 || at.s == 1) {
-            i = at.s == 0 ? at.node : at.node + 1;
-            k = i + 1 <= n() ? i + 1 : i - 1;
-            if (i > 1 && i < n() &&
-                glm::dot(obstacles[i].normal, obstacles[i - 1].normal) <
-                    glm::dot(obstacles[i].normal, obstacles[k].normal)) {
-                k = i - 1;
+            const int i = at.s == 0 ? at.node : at.node + 1;
+            if (at.s == 1) a = to;
+            b = facing(obstacles[i + 1 <= n() ? i + 1 : i - 1], a.normal);
+            if (i > 1 && i < n()) {
+                const Obstacle before = facing(obstacles[i - 1], a.normal);
+                if (glm::dot(a.normal, before.normal) < glm::dot(a.normal, b.normal)) b = before;
             }
         }
-        const Obstacle &a = obstacles[i], &b = obstacles[k];
         const double alike = glm::dot(a.normal, b.normal);
         constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°, as over smooth surfaces
         const double w = std::clamp((kAlike - alike) / (kAlike - kApart), 0.0, 1.0);
@@ -315,13 +335,14 @@ struct Solver {
         frozen.weight.assign(fine.size(), 0);
         for (std::size_t p = 0; p < fine.size(); ++p) {
             const PointPlace at = place(p);
-            const Obstacle &a = obstacles[at.node], &b = obstacles[at.node + 1];
+            const Vec3 x = point(memory.node, p);
+            const Obstacle a = within_reach(obstacles[at.node], x), b = within_reach(obstacles[at.node + 1], x);
             const Vec3 normal_sum = (1 - at.s) * a.normal + at.s * b.normal;
             const double size = glm::length(normal_sum);
             fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
             fine[p].normal = size > 1e-6 ? normal_sum / size : a.normal;
             fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
-            if (law.edge > 0) lay_crease(p, at);
+            if (law.edge > 0) lay_crease(p, at, a, b);
             if (p + 1 < fine.size()) {
                 const double half = 0.5 * rod.length[at.node] / per;
                 frozen.weight[p] += half;
