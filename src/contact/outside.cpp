@@ -59,6 +59,9 @@ std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_
         else far = i;
     }
     if (a < 0 || b < 0 || far < 0) return {};
+    // Both faces share their normals on a smooth surface: nothing to compute.
+    const auto& normal = mesh.corner_normals;
+    if (normal[3 * t + k] == normal[3 * other + a] && normal[3 * t + l] == normal[3 * other + b]) return {};
     const Vec3 from = mesh.position(t, k), way = mesh.position(t, l) - from;
     const double w = std::clamp(glm::dot(q - from, way) / glm::dot(way, way), 0.0, 1.0);
     const Vec3 own = corner_normal(mesh, t, k, l, w);
