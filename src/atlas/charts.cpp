@@ -189,6 +189,7 @@ StretchBudget::StretchBudget(const CutMesh& cut, double l2) {
     for (const FlatChart& c : cut.charts) {
         used_ += stretch_of(c);
         all_ += l2 * l2 * c.mesh.area;
+        area_ += c.mesh.area;
     }
 }
 

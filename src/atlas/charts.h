@@ -62,9 +62,11 @@ class StretchBudget {
     /// Whether `now` may take the place of `before`: stretches less or within the budget.
     bool allows(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now) const;
     void spend(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now);
+    /// Part that is left of what charts may stretch.
+    double left() const { return all_ > area_ ? (all_ - used_) / (all_ - area_) : 0; }
 
   private:
-    double used_ = 0, all_ = 0;
+    double used_ = 0, all_ = 0, area_ = 0;
 };
 
 /// Gives charts that have none their version.

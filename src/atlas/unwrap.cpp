@@ -22,6 +22,9 @@ constexpr int kMostRepairs = 24;
 constexpr int kImprovements = 2;  // rounds of moving seams and merging charts anew
 constexpr std::size_t kDear = 500000;  // triangles of a mesh that gets one such round
 
+// Part of the stretch allowed that is left: with less, which charts grow hangs on roundings.
+constexpr double kWorthMerging = 0.4;
+
 class Stopwatch {
   public:
     void lap(AtlasReport& report, const std::string& phase) {
@@ -153,50 +156,46 @@ Limits chart_limits(const mesh::TriangleMesh& mesh, const UnwrapOptions& options
         limits.chart.grown = std::min(limits.chart.grown, 0.4 * page * page);
         limits.merge.longest = std::min(limits.merge.longest, 0.8 * page);
         limits.merge.largest_chart = std::min(limits.merge.largest_chart, 0.4 * page * page);
+        limits.merge.largest_at_last = std::min(limits.merge.largest_at_last, 0.4 * page * page);
     }
     return limits;
 }
 
-Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
-    Unwrapped out;
-    Stopwatch watch;
-    const auto [chart_options, merge_options] = chart_limits(mesh, options);
-    CutMesh cut = cut_into_charts(mesh, chart_options, options.progress);
-    watch.lap(out.report, "charts");
-    merge_charts(mesh, cut, chart_options, merge_options, options.progress);
-    watch.lap(out.report, "merge");
-    const int rounds = mesh.n_triangles() < kDear ? kImprovements : 1;
-    for (int round = 0; round < rounds; ++round) {
-        const bool moved = move_seams(mesh, cut, chart_options, options.progress);
-        watch.lap(out.report, "move");
-        if (!moved) break;
-        merge_charts(mesh, cut, chart_options, merge_options, options.progress);
-        watch.lap(out.report, "merge");
-    }
+/// Charts and their places.
+struct Layout {
+    CutMesh cut;
+    Atlas atlas;
+    double use = 0;  ///< covered part of the pages
+};
+
+/// Finds every chart its place. Slivers that vanish in rounding become charts of their own; charts that
+/// overlap after all are cut. Both end, at single triangles at the latest. A quick layout is enough to
+/// find them; the best one is made at the end and checked again.
+void lay_out(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, const ChartOptions& chart_options,
+             Layout& layout, Stopwatch& watch, AtlasReport& out) {
+    CutMesh& cut = layout.cut;
+    Atlas& atlas = layout.atlas;
     polish_charts(cut, chart_options, options.progress);
-    watch.lap(out.report, "polish");
-    Atlas& atlas = out.atlas;
+    watch.lap(out, "polish");
     atlas.gutter = options.gutter;
     atlas.corner_uvs.resize(3 * mesh.n_triangles());
     atlas.triangle_chart.resize(mesh.n_triangles());
-    // Slivers that vanish in rounding become charts of their own; charts that overlap
-    // after all are cut. Both end, at single triangles at the latest. A quick layout is
-    // enough to find them; the best one is made at the end and checked again.
     bool quick = true;
     std::optional<Packing> made;
     for (int round = 0; round < kMostRepairs; ++round) {
         const Packing packing = made ? std::move(*made) : pack_charts(cut, options, quick);
         made.reset();
-        watch.lap(out.report, "pack");
+        watch.lap(out, "pack");
         if (!packing.too_large.empty()) {
             cut_again(mesh, cut, packing.too_large, chart_options, options.progress);
-            watch.lap(out.report, "repair");
+            watch.lap(out, "repair");
             continue;
         }
         std::vector<std::uint32_t> roomless = place_charts(cut, packing, atlas);
         const Coverage coverage = cover(atlas.corner_uvs, atlas.triangle_chart, atlas.size);
+        layout.use = double(coverage.covered) / (double(packing.size) * packing.size * packing.pages);
         report(options.progress, "check", 1);
-        watch.lap(out.report, "check");
+        watch.lap(out, "check");
         if (roomless.empty() && coverage.twice == 0) {
             if (!quick) break;
             quick = false;
@@ -206,7 +205,7 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
                 made = cut_to_pack(mesh, cut, chart_options.gap, pack_options(cut, options),
                                    tight ? kTightUse : kGoodUse)
                            .packing;
-                watch.lap(out.report, "pack");
+                watch.lap(out, "pack");
             }
             continue;
         }
@@ -216,10 +215,46 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
         } else {
             cut_again(mesh, cut, coverage.charts_twice, chart_options, options.progress);
         }
-        watch.lap(out.report, "repair");
+        watch.lap(out, "repair");
     }
     if (atlas.size == 0) refuse_size(options, cut, 2.0 * options.size);
-    atlas.texel_size = mean_texel_size(mesh, atlas);
+}
+
+Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
+    Unwrapped out;
+    Stopwatch watch;
+    auto [chart_options, merge_options] = chart_limits(mesh, options);
+    Layout layout;
+    CutMesh& cut = layout.cut;
+    cut = cut_into_charts(mesh, chart_options, options.progress);
+    watch.lap(out.report, "charts");
+    merge_charts(mesh, cut, chart_options, merge_options, options.progress);
+    watch.lap(out.report, "merge");
+    const bool dear = mesh.n_triangles() >= kDear;
+    for (int round = 0; round < (dear ? 1 : kImprovements); ++round) {
+        const bool moved = move_seams(mesh, cut, chart_options, options.progress);
+        watch.lap(out.report, "move");
+        if (!moved) break;
+        merge_charts(mesh, cut, chart_options, merge_options, options.progress);
+        watch.lap(out.report, "merge");
+    }
+    // A few large charts have shorter seams, but may leave more of the page bare.
+    std::optional<Layout> smaller;
+    const bool can_grow = merge_options.largest_chart < merge_options.largest_at_last;
+    if (!dear && can_grow && StretchBudget(cut, chart_options.l2_all).left() > kWorthMerging) {
+        smaller = layout;
+        merge_options.largest_chart = merge_options.largest_at_last;
+        merge_charts(mesh, cut, chart_options, merge_options, options.progress);
+        if (cut.charts.size() == smaller->cut.charts.size()) smaller.reset();
+        watch.lap(out.report, "merge");
+    }
+    lay_out(mesh, options, chart_options, layout, watch, out.report);
+    if (smaller && layout.use < kGoodUse) {
+        lay_out(mesh, options, chart_options, *smaller, watch, out.report);
+        if (smaller->use > layout.use) layout = std::move(*smaller);
+    }
+    out.atlas = std::move(layout.atlas);
+    out.atlas.texel_size = mean_texel_size(mesh, out.atlas);
     return out;
 }
 
