@@ -67,7 +67,7 @@ class Project {
     int format() const;
     std::string written_by() const;  ///< program and version that made it
 
-    ProjectModel model() const;        ///< checked: sizes agree, indices in range, numbers finite
+    ProjectModel model() const;        ///< checked: sizes agree, indices in range, numbers finite, UVs sound
     std::uint64_t model_hash() const;  ///< of positions and triangles
 
     void put_brush(const PresetText& preset);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "atlas/fault.h"
 #include "core/hash.h"
 #include "core/units.h"
 #include "io/project_db.h"
@@ -53,6 +54,8 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
     for (const std::uint32_t udim : model.atlas.udims)
         if (udim < 1001 || udim > 2000) damaged(path, "a page of the atlas has no valid number");
     if (!metres_per(model.frame.unit)) damaged(path, "the model's unit is unknown");
+    if (const std::string fault = atlas::fault_of(model.atlas); !fault.empty())
+        damaged(path, "its atlas cannot be painted on: " + fault);
 }
 
 }  // namespace

@@ -136,6 +136,7 @@ TEST(Project, PagesOfTheAtlasComeBack) {
     EXPECT_EQ(model.atlas.pages, 1u);
     model.atlas.pages = 3;
     model.atlas.size = 2 * 64;
+    for (Vec2f& uv : model.atlas.corner_uvs) uv *= 0.5f;  // all on the first page
     Project::create(folder / "a.tuft", model);
     EXPECT_EQ(Project::open(folder / "a.tuft").model().atlas.pages, 3u);
     EXPECT_TRUE(Project::open(folder / "a.tuft").model().atlas.udims.empty());
@@ -149,6 +150,41 @@ TEST(Project, PagesOfTheAtlasComeBack) {
     model.atlas.size = 2 * 64 + 1;  // no whole page
     Project::create(folder / "b.tuft", model);
     EXPECT_THROW(Project::open(folder / "b.tuft").model(), Error);
+}
+
+TEST(Project, AnAtlasThatCannotBePaintedOnIsRefusedInOneLine) {
+    const Folder folder("project_uvs");
+    const auto fault = [&](auto damage) {
+        ProjectModel model = sample_model();
+        damage(model.atlas);
+        Project::create(folder / "a.tuft", model);
+        try {
+            Project::open(folder / "a.tuft").model();
+        } catch (const Error& e) {
+            EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    using atlas::Atlas;
+    EXPECT_EQ(fault([](Atlas&) {}), "");
+    const auto says = [&](const char* what, auto damage) {
+        const std::string line = fault(damage);
+        EXPECT_NE(line.find(what), std::string::npos) << line;
+    };
+    says("not finite", [](Atlas& a) { a.corner_uvs[7].x = NAN; });
+    says("off the page", [](Atlas& a) { a.corner_uvs[7].y = 1e9f; });
+    says("off the page", [](Atlas& a) { a.corner_uvs[0].x = -0.01f; });
+    says("mirrored", [](Atlas& a) { std::swap(a.corner_uvs[3], a.corner_uvs[4]); });
+    says("overlap", [](Atlas& a) {  // the second row of triangles over the first
+        const std::size_t row = 6 * testing::kAround;
+        std::copy_n(a.corner_uvs.begin(), row, a.corner_uvs.begin() + row);
+    });
+    says("room", [](Atlas& a) { std::fill(a.corner_uvs.begin(), a.corner_uvs.end(), Vec2f(0.5f)); });
+    says("no page", [](Atlas& a) {
+        a.pages = 3;
+        a.size = 2 * 64;
+    });
 }
 
 TEST(Project, StrokesComeBackToTheBitInOrder) {
