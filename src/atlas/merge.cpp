@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kDear = 16384;    // triangles
 constexpr double kNearEnds = 1.0 / 32;  // of the border's length
+constexpr double kAsLong = 1.05;        // as another
 constexpr double kUsualWork = 5;        // triangles in all trials, over those of the mesh
 
 /// A rigid motion of the plane.
@@ -241,9 +242,12 @@ class Merger {
         t.flat.worst = check.linf;
         t.flat.l2 = check.l2;
         const std::vector<Vec2> hull = chart_hull(t.flat);
-        const double parts = std::min(hull_fill(a, chart_hull(a)), hull_fill(b, chart_hull(b)));
+        const std::vector<Vec2> hull_a = chart_hull(a), hull_b = chart_hull(b);
+        const double parts = std::min(hull_fill(a, hull_a), hull_fill(b, hull_b));
         const bool ragged = hull_fill(t.flat, hull) < std::min(merge_.least_fill, parts);
-        const bool too_long = smallest_rectangle(hull).length > merge_.longest;
+        // Two that lie beside each other may be as long as the longer of them.
+        const double longer = std::max(smallest_rectangle(hull_a).length, smallest_rectangle(hull_b).length);
+        const bool too_long = smallest_rectangle(hull).length > std::max(merge_.longest, kAsLong * longer);
         t.outcome = ragged || too_long ? Outcome::misshapen : Outcome::merged;
     }
 

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "atlas/hull.h"
 #include "core/hash.h"
@@ -13,6 +15,16 @@ namespace {
 
 double turn(const Vec2& o, const Vec2& a, const Vec2& b) {
     return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+/// The first bit from `i` on that differs from those of `all`, all zeros or all ones; the end where
+/// there is none.
+std::size_t next_bit(std::span<const std::uint64_t> line, std::size_t i, std::uint64_t all) {
+    for (; i < 64 * line.size(); i = (i / 64 + 1) * 64) {
+        const std::uint64_t rest = (line[i / 64] ^ all) >> (i % 64);
+        if (rest != 0) return i + static_cast<std::size_t>(std::countr_zero(rest));
+    }
+    return 64 * line.size();
 }
 
 }  // namespace
@@ -47,7 +59,7 @@ Mask make_mask(const Shape& shape, double scale, double angle, double cell) {
     mask.height = static_cast<std::uint32_t>(side.y) + 1;
     const std::size_t words = (mask.width + 63) / 64;
     std::vector<std::uint64_t> bits(words * mask.height, 0);
-    std::vector<std::vector<double>> crossings(mask.height);
+    std::vector<std::pair<std::uint32_t, double>> crossings;  // rows, and where the border crosses their middles
     const auto fill = [&](std::size_t row, double a, double b) {
         const auto first = static_cast<std::size_t>(std::max(a, 0.0));
         const auto last =
@@ -75,19 +87,18 @@ Mask make_mask(const Shape& shape, double scale, double angle, double cell) {
             fill(row, xa, xb);
             const double middle = row + 0.5;
             if ((a.y <= middle) != (b.y <= middle))
-                crossings[row].push_back(a.x + slope * (middle - a.y));
+                crossings.emplace_back(row, a.x + slope * (middle - a.y));
         }
     }
+    std::sort(crossings.begin(), crossings.end());
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)  // an even number in every row
+        fill(crossings[i].first, crossings[i].second, crossings[i + 1].second);
     for (std::uint32_t row = 0; row < mask.height; ++row) {
-        auto& x = crossings[row];
-        std::sort(x.begin(), x.end());
-        for (std::size_t i = 0; i + 1 < x.size(); i += 2) fill(row, x[i], x[i + 1]);
-        for (std::uint32_t i = 0; i < mask.width; ++i) {
-            if (!(bits[row * words + i / 64] >> (i % 64) & 1)) continue;
-            const std::uint32_t first = i;
-            while (i + 1 < mask.width && (bits[row * words + (i + 1) / 64] >> ((i + 1) % 64) & 1))
-                ++i;
-            mask.runs.push_back({row, first, i});
+        const std::span line(bits.data() + row * words, words);
+        for (std::size_t i = next_bit(line, 0, 0); i < 64 * words;) {
+            const std::size_t end = next_bit(line, i, ~std::uint64_t{0});
+            mask.runs.push_back({row, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(end - 1)});
+            i = next_bit(line, end, 0);
         }
     }
     // The widest runs of sparse rows first: most places are ruled out by the first few tests.
