@@ -39,10 +39,13 @@ say "brush"
 ATLAS=2048 paint wet-sheet sheet wet-sheet "--film wet --dry 0" --view 0,89 --size 1400x1400 --zoom 1.7
 ATLAS=2048 paint wet-bowl bowl wet-bowl "--film wet --dry 0 --substrate bisque" \
   --view -6,12 --size 1020x460 --zoom 2 --target -7,-68,43
+paint wet-vase vase wet-vase "--film wet --dry 0" --view 20,5 --size 740x460 --zoom 2.7 --target 0,-70,97
+ATLAS=2048 paint backrun sheet backrun "--film wet --dry 0 --substrate bisque" --view 0,89 --size 740x460 --zoom 3.3
 sheet=$out/wet-sheet.png
-oiiotool "$out/wet-bowl.png" "$sheet" --cut 460x460+147+796 "$sheet" --cut 560x460+712+744 \
-  "$sheet" --cut 460x460+770+200 "$sheet" --cut 460x460+155+200 --create 1480x920 3 \
-  --paste +0+0 --paste +460+0 --paste +920+0 --paste +0+460 --paste +460+460 -d uint8 -o "$out/wet.png"
+oiiotool "$out/backrun.png" "$out/wet-vase.png" "$out/wet-bowl.png" "$sheet" --cut 460x460+147+796 "$sheet" --cut 560x460+712+744 \
+  "$sheet" --cut 460x460+770+200 "$sheet" --cut 460x460+155+200 --create 1480x1380 3 \
+  --paste +0+0 --paste +460+0 --paste +920+0 --paste +0+460 --paste +460+460 --paste +0+920 --paste +740+920 \
+  -d uint8 -o "$out/wet.png"
 
 say "colour chart"
 build/release/samples/chart/tuft-chart "$out/colour-chart.png"

@@ -19,6 +19,10 @@ std::vector<stroke::Trace> stroke_sheet();
 std::vector<stroke::Trace> wet_sheet();
 /// Drops of three inks into water, and one of water into them, on the outside of the bowl.
 std::vector<stroke::Trace> wet_bowl();
+/// Clean water dropped into a half-dry wash, on the flat sheet.
+std::vector<stroke::Trace> backrun();
+/// A dripping stroke round the shoulder of the vase.
+std::vector<stroke::Trace> wet_vase();
 /// Pinstripes along the right flank of the car.
 std::vector<stroke::Trace> car_pinstripe();
 

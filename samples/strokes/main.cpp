@@ -29,6 +29,8 @@ int main(int argc, char** argv) {
         save("stroke-sheet.inkml", "Strokes of wolf, goat and mixed hair", samples::stroke_sheet());
         save("wet-sheet.inkml", "Wet ink", samples::wet_sheet());
         save("wet-bowl.inkml", "Wet in wet", samples::wet_bowl());
+        save("backrun.inkml", "Water into a half-dry wash", samples::backrun());
+        save("wet-vase.inkml", "Ink that runs down", samples::wet_vase());
         save("car-pinstripe.inkml", "Pinstripes", samples::car_pinstripe());
     } catch (const Error& e) {
         fmt::print(stderr, "tuft-strokes: {}\n", e.what());

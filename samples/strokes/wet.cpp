@@ -131,4 +131,29 @@ std::vector<stroke::Trace> wet_bowl() {
     return std::move(w.out);
 }
 
+std::vector<stroke::Trace> backrun() {
+    Writer w = on_sheet(0, 0);
+    for (int k = 0; k < 3; ++k) {
+        const double y = 9.0 * k - 9;
+        w.add({"wash", {{-30, y, 0}, {-28, y, 8}, {-24, y, 13}, {0, y + 0.5, 13}, {24, y, 13}, {28, y, 8}, {30, y, 0}}},
+              {.brush = "mixed-large", .ink = "samples/inks/indigo-wash.toml", .options = {.speed = 0.05}});
+    }
+    // When it has lost its shine, clean water.
+    const double drops[][2] = {{-13, 3}, {12, -4}};
+    for (const auto& [x, y] : drops)
+        w.add({"drop of water", {{x - 1, y, 0, 0.5}, {x, y, 5, 0.5}, {x + 1, y + 0.5, 6, 0.5}, {x + 2, y + 0.5, 0, 0.5}}},
+              {.brush = "mixed-large", .ink = "water",
+               .options = {.speed = 0.02},
+               .before = x < 0 ? std::vector<Care>{{.action = Action::dry, .seconds = 25}, {.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}} : std::vector<Care>{{.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}}});
+    return std::move(w.out);
+}
+
+std::vector<stroke::Trace> wet_vase() {
+    Writer w{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::Laying::wrap}};
+    // Dripping wet: what the hair does not hold runs down the wall.
+    w.add({"dripping stroke", {{-32, 2, 0, 0.6}, {-29, 1, 7, 0.5}, {-18, -3, 12, 0.6}, {-4, -1, 9, 1}, {10, 3, 11, 0.7}, {24, 0, 8, 1}, {36, -5, 0, 1}}},
+          {.brush = "mixed-large", .ink = "indigo", .options = {.speed = 0.03}, .before = {{.action = Action::dip, .ink = "indigo", .extent = {.amount = 1.045}}}});
+    return std::move(w.out);
+}
+
 }  // namespace tuft::samples

@@ -11,12 +11,11 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kCapillaryLength = 2.7e-3;  // metres: √(σ / ρ g) of water
 constexpr double kLeastSteepness = 0.1;      // sin α: beads on flatter places would be puddles
-constexpr double kTrailWidth = 1;            // of the bead's
-constexpr double kSoft = 0.06;               // of the trail's half width: its edge
 constexpr int kShifts = 6;                   // to the middle of the liquid, and from the critical radius to its own
 constexpr int kTilts = 3;
 constexpr double kCatchment = 2;             // radii from which a bead draws liquid in
-constexpr double kStart = 1.8;               // volumes that run on: with less a bead does not come off a film
+constexpr double kStart = 1.3;               // volumes that run on: with less a bead does not come off a film
+constexpr double kRing = 1.5;                // radii: about a bead lies the film that it stands on
 constexpr double kRim = 1.1;                 // a bead's own radius, and what it may have spread meanwhile
 constexpr double kBead = 2;                  // hold: a film as thick as that is likely a bead
 constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -45,43 +44,50 @@ Drips::Drips(const atlas::TexelMap& map, const atlas::SeamLinks& seams)
     : map_(map), seams_(seams), seen_of_slot_(map.n_slots(), kNone) {}
 
 double Drips::least(const FilmParams& p) {
-    // Over the bead's disc all above the trail, over the ring round it what is above hold.
+    // A bead on a dry wall, or what is above hold of a film, over the bead's disc and the ring round it.
     const double r = critical_radius(p.bead_angle, 1), ring = kCatchment * kCatchment - 1;
     const double mean = std::pow(kLeastGrain, 1.5) * amount_of(r, p.bead_angle) / (kPi * r * r);
-    return std::min((mean + p.trail + ring * p.hold) / (1 + ring), mean + p.trail);
+    return std::min(p.hold + kStart * mean / (1 + ring), mean + p.trail);
 }
 
 /// The texels within `radius` of `centre` that hang together with `start`.
 void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radius) {
     disc_.clear();
+    std::uint32_t last_slot = kNone, last_seen = 0;
+    const auto bits_of = [&](std::uint32_t slot) -> std::array<std::uint64_t, atlas::kTileTexels / 64>& {
+        if (slot != last_slot) {
+            std::uint32_t& seen = seen_of_slot_[slot];
+            if (seen == kNone) {
+                seen = static_cast<std::uint32_t>(seen_slots_.size());
+                seen_slots_.push_back(slot);
+                if (seen_.size() < seen_slots_.size()) seen_.emplace_back();
+                seen_[seen].fill(0);
+            }
+            last_slot = slot;
+            last_seen = seen;
+        }
+        return seen_[last_seen];
+    };
     const auto visit = [&](const atlas::TexelRef& ref, const Vec3* from, double reach) {
+        std::uint64_t& bits = bits_of(ref.slot)[ref.texel / 64];
+        const std::uint64_t bit = std::uint64_t{1} << (ref.texel % 64);
+        if (bits & bit) return;
         const Vec3 at(map_.position(ref.slot, ref.texel));
         const double distance = glm::distance(at, centre);
         if (from && distance > radius) return;
         if (from && reach > 0 && glm::distance(at, *from) > reach) return;
-        std::uint32_t& seen = seen_of_slot_[ref.slot];
-        if (seen == kNone) {
-            seen = static_cast<std::uint32_t>(seen_slots_.size());
-            seen_slots_.push_back(ref.slot);
-            if (seen_.size() < seen_slots_.size()) seen_.emplace_back();
-            seen_[seen].fill(0);
-        }
-        std::uint64_t& bits = seen_[seen][ref.texel / 64];
-        const std::uint64_t bit = std::uint64_t{1} << (ref.texel % 64);
-        if (bits & bit) return;
         bits |= bit;
         disc_.push_back({ref, at, static_cast<double>(map_.tiles[ref.slot].area[ref.texel]), distance});
     };
     visit(start, nullptr, 0);
     for (std::size_t i = 0; i < disc_.size(); ++i) {
         const Near here = disc_[i];
-        const std::uint32_t tile = map_.tile_of_slot[here.ref.slot];
-        const std::int64_t x = std::int64_t{tile % map_.tiles_per_side} * atlas::kTile + here.ref.texel % atlas::kTile;
-        const std::int64_t y = std::int64_t{tile / map_.tiles_per_side} * atlas::kTile + here.ref.texel / atlas::kTile;
+        const int column = here.ref.texel % atlas::kTile, row = here.ref.texel / atlas::kTile;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
-            if (const atlas::TexelRef next = atlas::texel_ref(map_, x + dx, y + dy); next.valid())
+            if (const atlas::TexelRef next = beside(here.ref, column + dx, row + dy); next.valid())
                 visit(next, &here.at, static_cast<double>(std::max(map_.reach[here.ref.slot], map_.reach[next.slot])));
         const auto links = std::span(seams_.links).subspan(seams_.start[here.ref.slot], seams_.start[here.ref.slot + 1] - seams_.start[here.ref.slot]);
+        if (links.empty()) continue;
         const auto first = std::lower_bound(links.begin(), links.end(), here.ref.texel,
                                             [](const atlas::SeamLink& l, std::uint8_t t) { return l.texel < t; });
         for (auto l = first; l != links.end() && l->texel == here.ref.texel; ++l)
@@ -89,6 +95,18 @@ void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radi
     }
     for (const std::uint32_t slot : seen_slots_) seen_of_slot_[slot] = kNone;
     seen_slots_.clear();
+}
+
+/// The texel in this column and row of a tile, or of one of those round it.
+atlas::TexelRef Drips::beside(const atlas::TexelRef& ref, int column, int row) const {
+    constexpr int n = atlas::kTile;
+    if (column >= 0 && column < n && row >= 0 && row < n) {
+        const auto texel = static_cast<std::uint8_t>(row * n + column);
+        return map_.tiles[ref.slot].piece[texel] == atlas::kNoPiece ? atlas::TexelRef{} : atlas::TexelRef{ref.slot, texel};
+    }
+    const std::uint32_t tile = map_.tile_of_slot[ref.slot];
+    return atlas::texel_ref(map_, std::int64_t{tile % map_.tiles_per_side} * n + column,
+                            std::int64_t{tile / map_.tiles_per_side} * n + row);
 }
 
 struct Drips::Bead {
@@ -110,25 +128,28 @@ class Drips::Run {
         Bead bead{.place = seed.place, .at = Vec3(d_.map_.position(seed.place.slot, seed.place.texel))};
         if (steepness(seed.place) < kLeastSteepness) return;
         const double enough = amount_of(start_radius, p_.bead_angle);
+        for (const Seen& other : seen_)
+            if (glm::distance(other.at, bead.at) < other.radius) return;
         double reach = start_radius;
         for (int i = 0; i < kShifts; ++i) {
             if (!centre(bead, reach) || bead.amount < kHopeful * enough) return;
             reach = std::max(start_radius, kRim * radius_of(bead.amount, p_.bead_angle));
         }
-        for (const Vec3& other : middles_)
-            if (glm::distance(other, bead.at) < kApart * start_radius) return;
+        for (const Seen& other : seen_)
+            if (glm::distance(other.at, bead.at) < kApart * start_radius) return;
         const double grain = 1 + kGrainPart * (seed.grain - 1), radius = critical(bead, grain);
         const double runs = amount_of(kAtRest * radius, p_.bead_angle), starts = kStart * runs;
         d_.gather(bead.place, bead.at, kCatchment * reach);
-        const auto [inside, round] = amounts(reach);
+        const Ground ground = ground_of(bead, reach);
+        const auto [inside, round] = amounts(bead, ground, reach);
         if (inside < runs && inside + round < starts) return;
+        seen_.push_back({bead.at, reach});
         bead.amount = 0;
-        if (inside < runs) draw_in(bead, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
-        else draw_in(bead, reach, std::min(p_.drain * seconds, 1.0), kBead * p_.hold);  // leaves other beads whole
-        middles_.push_back(bead.at);
+        if (inside < runs) draw_in(bead, ground, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
+        else draw_in(bead, ground, reach, std::min(p_.drain * seconds, 1.0), kBead * p_.hold);  // leaves other beads whole
         move(bead, grain, seconds);
         lay_down(bead);
-        middles_.push_back(bead.at);
+        seen_.push_back({bead.at, radius_of(bead.amount, p_.bead_angle)});
     }
 
   private:
@@ -182,25 +203,73 @@ class Drips::Run {
         bead.at = at - n * glm::dot(n, at - nearest->at);
     }
 
-    /// Above the trail within `radius`, and above hold round it.
-    std::pair<double, double> amounts(double radius) const {
+    /// The trail of a bead whose middle is here: round in front, and straight where it came from.
+    struct Trail {
+        Vec3 at{0}, down{0};
+        double half = 0;
+    };
+    Trail trail_of(const Bead& bead, double radius) const {
+        const Vec3 down = downhill(bead.place);
+        // Fast drops are pointed behind.
+        const double steep = glm::length(down), critical = critical_radius(p_.bead_angle, steep);
+        return {bead.at, down / steep, std::min(radius, std::sqrt(radius * critical))};
+    }
+    double trail(const Near& n, const Trail& t) const {
+        const Vec3 d = n.at - t.at;
+        const double along = std::min(0.0, glm::dot(d, t.down)), square = glm::dot(d, d) - along * along;
+        return p_.trail * std::sqrt(std::max(0.0, 1 - square / (t.half * t.half)));
+    }
+
+
+    /// The film a bead stands on, from what lies round it: `hold` at most.
+    struct Ground {
+        double mean = 0;
+        Vec3 slope{0};
+        Trail trail;
+    };
+    /// `gather` has been as far as kRing.
+    Ground ground_of(const Bead& bead, double radius) const {
+        double sum = 0, area = 0, square = 0;
+        Vec3 moment{0}, middle{0};
+        for (const Near& n : d_.disc_) {
+            if (n.distance < radius || n.distance > kRing * radius) continue;
+            const double w = std::min(static_cast<double>(liquid(n.ref)), p_.hold) * n.area;
+            const Vec3 d = n.at - bead.at;
+            sum += w;
+            area += n.area;
+            moment += w * d;
+            middle += n.area * d;
+            square += n.area * glm::dot(d, d);
+        }
+        const Trail trail = trail_of(bead, radius_of(bead.amount, p_.bead_angle));
+        if (!(area > 0)) return {.trail = trail};
+        const double mean = sum / area;
+        return {mean, (moment - mean * middle) * (2 / square), trail};  // least squares on a full ring
+    }
+    /// What it leaves there when it goes: the ground, or its trail.
+    double rest(const Bead& bead, const Ground& ground, const Near& n) const {
+        return std::max(std::clamp(ground.mean + glm::dot(ground.slope, n.at - bead.at), 0.0, p_.hold), trail(n, ground.trail));
+    }
+    /// Above the ground within `radius`, and above hold round it.
+    std::pair<double, double> amounts(const Bead& bead, const Ground& ground, double radius) const {
         double inside = 0, round = 0;
         for (const Near& n : d_.disc_) {
             const auto w = static_cast<double>(liquid(n.ref));
-            (n.distance < radius ? inside : round) += std::max(0.0, w - (n.distance < radius ? p_.trail : p_.hold)) * n.area;
+            if (n.distance < radius) inside += std::max(0.0, w - rest(bead, ground, n)) * n.area;
+            else round += std::max(0.0, w - p_.hold) * n.area;
         }
         return {inside, round};
     }
     /// All of the one and `part` of the other, where it is less than `thick`, go into the bead.
-    void draw_in(Bead& bead, double radius, double part, double thick) {
+    void draw_in(Bead& bead, const Ground& ground, double radius, double part, double thick) {
         for (const Near& n : d_.disc_) {
             const auto w = static_cast<double>(liquid(n.ref));
-            if (n.distance < radius) take(bead, n, p_.trail);
+            if (n.distance < radius) take(bead, n, rest(bead, ground, n));
             else if (w > p_.hold && w < thick) take(bead, n, w - part * (w - p_.hold));
         }
     }
 
-    /// What the bead meets on its way; another bead that it touches comes whole.
+    /// What the bead meets on its way, above `hold`; another bead that it touches comes whole.
     void take_up(Bead& bead, double radius) {
         const Near* thickest = &d_.disc_.front();
         for (const Near& n : d_.disc_)
@@ -208,11 +277,13 @@ class Drips::Run {
         if (static_cast<double>(liquid(thickest->ref)) > kBead * p_.hold) {
             Bead other{.place = thickest->ref, .at = thickest->at};
             for (int i = 0; i < kShifts && centre(other, radius); ++i) {}
-            d_.gather(other.place, other.at, kRim * radius);
-            for (const Near& n : d_.disc_) take(bead, n, p_.trail);
+            d_.gather(other.place, other.at, kRing * radius);
+            const Ground ground = ground_of(other, kRim * radius);
+            for (const Near& n : d_.disc_)
+                if (n.distance < kRim * radius) take(bead, n, rest(other, ground, n));
             d_.gather(bead.place, bead.at, radius);
         }
-        for (const Near& n : d_.disc_) take(bead, n, p_.trail);
+        for (const Near& n : d_.disc_) take(bead, n, std::max(p_.hold, p_.trail));
     }
 
     /// What is thicker than `rest`, with its pigments.
@@ -253,10 +324,9 @@ class Drips::Run {
     }
 
     void leave_trail(Bead& bead, double radius) {
-        const double half = kTrailWidth * radius, soft = std::max(kSoft * half, d_.map_.texel_size);
+        const Trail here = trail_of(bead, radius);
         for (const Near& n : d_.disc_) {
-            const double wanted = p_.trail * std::clamp((half - n.distance) / soft, 0.0, 1.0);
-            const double lacking = (wanted - static_cast<double>(liquid(n.ref))) * n.area;
+            const double lacking = (trail(n, here) - static_cast<double>(liquid(n.ref))) * n.area;
             if (lacking > 0 && bead.amount > 0) give(bead, n, std::min(lacking / bead.amount, 1e-3));
         }
         book(bead);
@@ -264,6 +334,8 @@ class Drips::Run {
 
     void move(Bead& bead, double grain, double seconds) {
         double radius = radius_of(bead.amount, p_.bead_angle);
+        d_.gather(bead.place, bead.at, radius);
+        leave_trail(bead, radius);
         const double least_step = 0.5 * d_.map_.texel_size;
         while (seconds > 0) {
             const Vec3 down = downhill(bead.place);
@@ -312,7 +384,11 @@ class Drips::Run {
     const BeforeFn& before_;
     int n_pigments_;
     Bead given_{};
-    std::vector<Vec3> middles_;  ///< of beads looked at
+    struct Seen {
+        Vec3 at;
+        double radius;
+    };
+    std::vector<Seen> seen_;     ///< beads, where they were and where they went
 };
 
 std::vector<std::uint32_t> Drips::run(Canvas& canvas, std::span<const Seed> seeds, const FilmParams& params,

@@ -16,9 +16,9 @@ namespace tuft::ink::wet {
 ///
 /// times the roughness of the place (`grain`). A larger one moves with bead_speed ((R / R_c)² − 1)
 /// (Le Grand, Daerr, Limat 2005: linear in the weight beyond the critical one), 1.5 bead_speed at
-/// most, takes up what lies thicker than `trail` under it, with its pigments, draws in what is above
-/// `hold` within 2 R, and leaves the trail where it passed over less. It stops when the trail has used
-/// it up. A film that is no bead yet starts one where 1.8 times what runs on lies within 2 R.
+/// most, takes up what lies thicker than `hold` on its way, with its pigments, draws in what is above
+/// `hold` within 2 R, and leaves a trail of half width √(R R_c), rounded across, where it passed over
+/// less. It stops when the trail has used it up. A film that is no bead yet starts one where 1.3 times what runs on lies above `hold` within 2 R.
 /// Nothing is kept between steps: what lies on the texels says where beads are.
 ///
 /// Discs are measured in space along the texels that hang together, over seams too, so that
@@ -52,6 +52,7 @@ class Drips {
     class Run;
 
     void gather(const atlas::TexelRef& start, const Vec3& centre, double radius);
+    atlas::TexelRef beside(const atlas::TexelRef& ref, int column, int row) const;
 
     const atlas::TexelMap& map_;
     const atlas::SeamLinks& seams_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 
@@ -12,6 +13,7 @@ namespace {
 constexpr double kCapillarySupply = 0.25;
 constexpr double kFlowStep = 0.005;  // seconds
 constexpr double kSoftEdge = 0.1;  // of the width
+constexpr double kWeight = 9810, kViscosity = 2e-3;  // N/m³, Pa·s: watery ink
 constexpr int kNeighbours = 4;       // of a bundle that it shares ink with, at least
 constexpr std::size_t kMostSteps = 1000;  // of flow at once: 5 s, after which all is even
 
@@ -177,7 +179,7 @@ double dip(Reservoir& tuft, const Mix& mix, const Dip& how) {
     for (std::size_t i = 0; i < tuft.content.size(); ++i) {
         const double within = part_within(tuft.layout, i, {how.depth, how.side});
         // The dipped part of the cell is filled; what it holds is spread over all of it.
-        const double want = within * (std::min(how.level, 1.0) * tuft.room[i] - sum_of(tuft.content[i]));
+        const double want = within * (std::min(how.level, kMostLevel) * tuft.room[i] - sum_of(tuft.content[i]));
         if (!(want > 0)) continue;
         for (int p = 0; p < kMaxPigments; ++p) tuft.content[i][p] += want * static_cast<double>(mix[p]);
         tuft.content[i][kMaxPigments] += want * std::max(0.0, 1 - pigments);
@@ -274,6 +276,15 @@ void flow(Reservoir& tuft, double dt) {
     std::vector<double> total(tuft.content.size());
     const std::size_t steps = std::min(static_cast<std::size_t>(std::min(due, 1e9)), kMostSteps);
     for (std::size_t k = 0; k < steps; ++k) flow_step(tuft, change, total);
+}
+
+double shed(const Reservoir& tuft, const Drain& drain, double dt) {
+    const double free = (tuft.remaining() - tuft.capacity) / kFilmPerVolume;
+    const double area = std::numbers::pi * drain.radius * drain.length;
+    if (!(free > 0) || !(dt > 0) || !(area > 0)) return 0;
+    const double c = 2 * std::numbers::pi * drain.radius * std::clamp(drain.slope, 0.0, 1.0) * kWeight /
+                     (3 * kViscosity * area * area * area);
+    return (free - free / std::sqrt(1 + 2 * c * free * free * dt)) * kFilmPerVolume;
 }
 
 double paper_quantity(double eta, double moment_factor, double remaining) {

@@ -31,7 +31,7 @@ struct CellLink {
 
 /// Ink held by the tuft, film·m² of wet ink, in cells. Plane p of a cell is the canvas' pigment
 /// plane p; the last one is water. All amounts are ≥ 0 and no cell holds more than its room,
-/// unless `absorb` was given more than fits.
+/// unless it was dipped dripping wet or `absorb` was given more than fits.
 struct Reservoir {
     static constexpr int kPlanes = kMaxPigments + 1;
     using Content = std::array<double, kPlanes>;
@@ -68,10 +68,13 @@ struct Reach {
     double side = 0;   ///< of its width, from the side of the sections' +x (> 0) or −x (< 0), −1–1; 0: all
 };
 
+inline constexpr double kMostLevel = 1.5;  ///< more drips off before the tuft comes anywhere
+
 /// How far a tuft is dipped.
 struct Dip {
     double depth = 1;  ///< as `Reach`
-    double level = 1;  ///< part of their room up to which cells are filled
+    double level = 1;  ///< part of their room up to which cells are filled; what is above 1 hangs on the
+                       ///< hair and runs off it (`shed`), kMostLevel at most
     double side = 0;   ///< as `Reach`
 };
 
@@ -112,6 +115,21 @@ double saturation_at(const Reservoir& tuft, const Touch& touch);
 /// step. What one cell loses another gains: the sum of each plane is kept to rounding.
 /// About 2 µs a step for 40 bundles of 4 cells.
 void flow(Reservoir& tuft, double dt);
+
+/// How liquid that hangs on a tuft runs down it.
+struct Drain {
+    double length = 0.03, radius = 3e-3;  ///< metres, of the tuft
+    double slope = 1;      ///< part of its weight that drives it to where it touches, 0–1
+};
+
+/// What of the liquid that its hair does not hold by capillarity (beyond the capacity) leaves a tuft
+/// that touches something in `dt` seconds, film·m². It hangs on the tuft as a film of thickness
+/// δ = V / (π R L), and runs down by its weight, dV/dt = −2 π R slope ρ g δ³ / 3 μ (Jeffreys 1930), so
+///
+///     V(t) = V / √(1 + 2 c V² t),   c = 2 π R slope ρ g / (3 μ (π R L)³).
+///
+/// Ink of 2 mPa s. Takes nothing from the tuft.
+double shed(const Reservoir& tuft, const Drain& drain, double dt);
 
 /// The source paper's recurrence (variable stiffness brush): what leaves at one stamp,
 /// Q_i = η k_i (Z − Σ_{j<i} Q_j), with `remaining` = Z − ΣQ and k_i = |M_i| / M_max.

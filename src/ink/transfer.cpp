@@ -36,16 +36,15 @@ struct Volumes {
 
 TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict goal,
                          const float* __restrict w, const float* __restrict total,
-                         const float* __restrict film, float room, float target, float capacity,
-                         float rate, float exchange, float thirst) {
+                         const float* __restrict film, const TransferParams& p, float rate) {
     for (int t = 0; t < kN; ++t) {
         const float touched = coverage[t] > 0 ? 1.0f : 0.0f;
-        const float lack = positive(smaller(goal[t] - w[t], capacity - total[t])) * rate;
-        const float n = smaller(lack, film[t] * touched);
-        const float part = coverage[t] * exchange;
+        const float lack = positive(smaller(goal[t] - w[t], p.deposit.capacity - total[t])) * rate;
+        const float n = smaller(lack + coverage[t] * p.pour, film[t] * touched);
+        const float part = coverage[t] * p.exchange;
         const float x = part * smaller(w[t], film[t] - n);
-        const float over = positive(w[t] - larger(goal[t], target)) * part * thirst;
-        const float lift = smaller(over, smaller(room, w[t] - x));
+        const float over = positive(w[t] - larger(goal[t], p.deposit.target)) * part * p.thirst;
+        const float lift = smaller(over, smaller(p.room, w[t] - x));
         out.down[t] = n + x;
         out.up[t] = x + lift;
     }
@@ -131,13 +130,13 @@ void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& 
 }
 
 void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes, const NodeAreas& areas,
-             double dt) {
+             double dt, double pour) {
     const double wet = std::min(1.0, saturation_at(tuft, touch) / kHalfFull);
     const double part = -std::expm1(-std::max(dt, 0.0) / kSkinTime);
     std::array<double, kNodes> want, lack;
     NodeContents back{};
     for (int node = 0; node < kNodes; ++node) {
-        want[node] = kSkinFilm * wet * areas[node];
+        want[node] = (kSkinFilm * wet + pour) * areas[node];
         const double volume = skin.volume(node);
         if (!(volume > 0)) continue;
         // Where the hair has left the surface, what was on it spreads among the rest.
@@ -196,8 +195,7 @@ void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
     for (int t = 0; t < kN; ++t) total[t] = s ? w[t] + (*s)[t] : w[t];
     Volumes v;
     const auto rate = static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
-    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), params.room,
-            params.deposit.target, params.deposit.capacity, rate, params.exchange, params.thirst);
+    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), params, rate);
     given_part(part.data(), v.down.data(), film.data());
     Booked booked;
     for (int k = 0; k < tents.count; ++k) {

@@ -23,8 +23,9 @@ struct Skin {
 /// Before a touch: what is on the skin changes places with what is in the cells behind it with a
 /// time constant of 0.3 s, and each node is filled up to a film of 40 µm over its area (less
 /// where the hair is not half full). What skin and tuft hold together stays the same.
+/// `pour`: film units more, that run off a dripping tuft in this touch.
 void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes, const NodeAreas& areas,
-             double dt);
+             double dt, double pour = 0);
 /// After a stroke: all of it goes back into the hair.
 void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes);
 
@@ -33,6 +34,7 @@ struct TransferParams {
     float exchange = 0;           ///< part of the liquid that a touch renews: 1 − exp(−...)
     float thirst = 0;             ///< 0–1: how much of what stands above the target is drawn up
     float room = 0;               ///< film units that the hair can take beyond what it gives
+    float pour = 0;               ///< film units that run off the tuft, however thick the film is already
     /// Film units that the skin can give in this touch at each node, by plane, water last.
     std::array<std::array<float, kNodes>, Reservoir::kPlanes> film{};
 };
@@ -46,7 +48,8 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
 /// One touch on one tile. With f the coverage, w the liquid on the surface, q what the skin over
 /// the texel can give, c the target and g(f) as in `deposit`:
 ///
-///     n = min(⟨g(f) − w⟩ (1 − exp(−ds/s0)), q)      laid down until the film is as thick as it shall be
+///     n = min(⟨g(f) − w⟩ (1 − exp(−ds/s0)) + f pour, q)   laid down until the film is as thick as it
+///                                                   shall be, and what drips
 ///     x = f R min(w, q − n)                         renewed: as much up as down
 ///     l = min(f R ⟨w − c⟩ thirst, room)             drawn up by hair that is not full
 ///     down = (n + x) of the skin's mixture there,  up = (x + l) of the surface's

@@ -111,18 +111,23 @@ double seconds_of(const InkmlText& file, const xml_node& node, std::string_view 
     return x;
 }
 
-stroke::Extent extent_of(const InkmlText& file, const xml_node& node) {
+stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::Action action) {
     stroke::Extent extent;
-    const auto read = [&](const char* name, double& value, double least) {
+    const auto read = [&](const char* name, double& value) {
         const std::string_view text = node.attribute(name).value();
         if (text.empty()) return;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc{} || end != text.data() + text.size() || !(value >= least && value <= 1))
-            file.fail(node, std::string(name) + " of a dip or wipe is a number from " + (least < 0 ? "-1" : "0") + " to 1");
+        if (error != std::errc{} || end != text.data() + text.size())
+            file.fail(node, std::string(name) + " of a dip or wipe is a number, not '" + std::string(text) + "'");
     };
-    read("depth", extent.depth, 0);
-    read("amount", extent.amount, 0);
-    read("side", extent.side, -1);
+    read("depth", extent.depth);
+    read("amount", extent.amount);
+    read("side", extent.side);
+    try {
+        stroke::check_extent(extent, action);
+    } catch (const Error& e) {
+        file.fail(node, e.what());
+    }
     return extent;
 }
 
@@ -242,7 +247,7 @@ std::vector<stroke::Care> care_of(const InkmlText& file, const xml_node& trace) 
             one.ink = trimmed(text);
         if (action == stroke::Action::fill) one.fill = fill_of(file, node);
         if (action == stroke::Action::dry) one.seconds = seconds_of(file, node, trimmed(text));
-        one.extent = extent_of(file, node);
+        one.extent = extent_of(file, node, action);
     }
     return care;
 }

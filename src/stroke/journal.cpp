@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "ink/reservoir.h"
 #include "stroke/entry_json.h"
 
 namespace tuft::stroke {
@@ -139,7 +140,7 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     } catch (const nlohmann::json::exception&) {
         throw Error("how far a brush was dipped or wiped cannot be read");
     }
-    check_extent(entry.extent);
+    check_extent(entry.extent, entry.action);
 }
 
 std::string name_of(Action action) { return kActions[static_cast<int>(action)]; }
@@ -151,9 +152,10 @@ Action action_of(const std::string& name) {
     throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash");
 }
 
-void check_extent(const Extent& e) {
+void check_extent(const Extent& e, Action action) {
     if (!(e.depth >= 0 && e.depth <= 1)) throw Error("the depth of a dip or wipe is a part of the tuft, 0 to 1");
-    if (!(e.amount >= 0 && e.amount <= 1)) throw Error("the amount of a dip or wipe is 0 to 1");
+    if (!(e.amount >= 0 && e.amount <= (action == Action::dip ? ink::kMostLevel : 1.0)))
+        throw Error("the amount of a wipe is 0 to 1, of a dip 0 to 1.5, above 1 dripping wet");
     if (!(std::abs(e.side) <= 1)) throw Error("the side of a dip or wipe is a part of the tuft's width, -1 to 1");
 }
 
@@ -197,7 +199,7 @@ Care care_of_text(const std::string& text) {
         if (error != std::errc{} || rest != last) throw Error("'" + part + "' in '" + text + "' is no number");
         end = next;
     }
-    check_extent(care.extent);
+    check_extent(care.extent, care.action);
     return care;
 }
 

@@ -38,7 +38,7 @@ Settings settings_from_json(const std::string& json);
 void check_settings(const Settings& settings);
 /// Throws `Error` for a time that ink cannot dry for.
 void check_seconds(double seconds);
-void check_extent(const Extent& extent);
+void check_extent(const Extent& extent, Action action);
 
 /// An entry of the journal: a stroke, or an action between strokes. An action has no samples;
 /// it names a brush, and for a dip the ink. Drying, fills and changes of layers and masks leave the brush

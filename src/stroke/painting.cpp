@@ -262,7 +262,8 @@ void Painting::draw_poses() {
         stamp.ds = h.step;
         if (h.stroke.trace.erases) stamp.erases = 0.25 + 0.75 * touch.moment_factor;  // as ink is given
         if (h.wet) {
-            h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, h.nodes, touch.moment_factor);
+            h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, h.nodes, touch.moment_factor,
+                                                h.drain(pose, contact.frame.origin));
             continue;
         }
         if (h.mixed) {

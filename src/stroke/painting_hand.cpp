@@ -105,6 +105,14 @@ double Painting::Hand::lay_mixed(const Stamp& stamp) {
     return sum;
 }
 
+ink::Drain Painting::Hand::drain(const brush::Pose& pose, const Vec3& contact) const {
+    const Vec3 way = contact - pose.position, &down = stroke.settings.down;
+    const double weight = glm::length(down) * glm::length(way);
+    // All of it from a tuft that hangs, half from a level one, whose underside it runs along.
+    return {.length = tuft.preset.length, .radius = tuft.preset.radius,
+            .slope = weight > 0 ? 0.5 + 0.5 * glm::dot(way, down) / weight : 0};
+}
+
 Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
     const int branches = static_cast<int>(contact.tuft.branches.size());
     std::vector<footprint::Trail> trails = footprint::trails(

@@ -61,6 +61,9 @@ struct Painting::Hand {
     /// Lays down a stamp of mixed ink. Returns the ink given, film·m².
     double lay_mixed(const Stamp& stamp);
 
+    /// How what hangs on the tuft runs to where it touches.
+    ink::Drain drain(const brush::Pose& pose, const Vec3& contact) const;
+
     /// The hair on the surface: `touched`, and the footprint with the gaps that lack of ink leaves.
     Stamp make_stamp(const contact::Result& contact, double dt);
 };

@@ -58,8 +58,8 @@ enum class Action {
 /// How far a brush is dipped, or wiped.
 struct Extent {
     double depth = 1;    ///< part of the tuft's length, from the tip, 0–1
-    double amount = 1;   ///< dip: part of its room up to which hair is filled; wipe: part of its ink
-                         ///< that goes; 0–1
+    double amount = 1;   ///< dip: part of its room up to which hair is filled, 0–1.5, above 1 dripping wet:
+                         ///< the rest runs down onto what wet ink touches; wipe: part of its ink that goes, 0–1
     double side = 0;     ///< part of the tuft's width, from the right flank (> 0) or the left one (< 0), −1–1;
                          ///< 0: all of it. Right is the side of the ferrule's +x, of the stroke's right hand
                          ///< edge where that is drawn away from the hand

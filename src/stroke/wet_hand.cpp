@@ -1,5 +1,7 @@
 #include "stroke/wet_hand.h"
 
+#include <numeric>
+
 namespace tuft::stroke {
 namespace {
 
@@ -16,15 +18,19 @@ void WetHand::pass(Stamper& stamper, double seconds) {
     if (!(seconds > 0)) return;
     pending_ += seconds;
     since_ += seconds;
+    step_ = seconds;
     if (pending_ >= kTick) advance(stamper);
 }
 
 double WetHand::lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
-                    const ink::NodeTouch& nodes, double stress) {
+                    const ink::NodeTouch& nodes, double stress, const ink::Drain& drain) {
     const ink::NodeAreas areas = stamper.expose(stamp);
-    ink::refresh(skin_, tuft, touch, nodes, areas, since_);
-    const ink::TransferParams params =
+    const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+    const double pour = area > 0 ? ink::shed(tuft, drain, step_) / area : 0;
+    ink::refresh(skin_, tuft, touch, nodes, areas, since_, pour);
+    ink::TransferParams params =
         ink::transfer_params(skin_, tuft, touch, areas, stamp.ink, stamp.ds, since_, stress);
+    params.pour = static_cast<float>(pour);
     since_ = 0;
     const ink::NodeContents given = stamper.exchange(params, stamp.ds);
     double sum = 0;

@@ -16,10 +16,10 @@ class WetHand {
 
     /// Time goes by, touching or not.
     void pass(Stamper& stamper, double seconds);
-    /// One stamp, pressed by `stress` (0–1): ink goes both ways. Returns the liquid given less what
-    /// was taken, film·m².
+    /// One stamp, pressed by `stress` (0–1): ink goes both ways, and what the hair does not hold runs
+    /// down. Returns the liquid given less what was taken, film·m².
     double lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
-               const ink::NodeTouch& nodes, double stress);
+               const ink::NodeTouch& nodes, double stress, const ink::Drain& drain);
     /// The tuft is lifted for good: what is on the hair goes into it.
     void end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes);
 
@@ -32,6 +32,7 @@ class WetHand {
     ink::Skin skin_;
     double pending_ = 0;   ///< seconds
     double since_ = 0;     ///< seconds since the last stamp
+    double step_ = 0;      ///< seconds since the last sample, touching or not
 };
 
 }  // namespace tuft::stroke

@@ -94,11 +94,12 @@ FilmParams porcelain(const Vec3& down = {0, 0, -1}) { return film_params(load_su
 /// A drop of three times the critical volume.
 void drop(Wall& w) { w.blot(8, 1.5e-3); }
 
-/// Σ |a − b| over Σ a of means over squares of 1 mm.
+/// Σ |a − b| over Σ a of means over squares of 1 mm, down to 3 mm above the lowest ink: of the trails.
 double difference(const Wall& a, const Wall& b) {
     const std::vector<double> one = a.squares(1e-3, 40), other = b.squares(1e-3, 40);
+    const auto rows = static_cast<std::size_t>(20 - std::max(a.lowest(), b.lowest()) / 1e-3 - 3);
     double sum = 0, apart = 0;
-    for (std::size_t i = 0; i < one.size(); ++i) apart += std::abs(one[i] - other[i]), sum += one[i];
+    for (std::size_t i = 0; i < 40 * rows; ++i) apart += std::abs(one[i] - other[i]), sum += one[i];
     return apart / sum;
 }
 
@@ -141,9 +142,9 @@ TEST(Drips, ADropRunsInANarrowTrailUntilTheTrailHasUsedItUpAndEndsInABead) {
     EXPECT_GT(most_bead, 4 * most_trail);
 }
 
-// 3 % as measured, most of it by the head of the drop, which holds half of the ink: it stands 0.03 mm
-// lower or higher after 13 mm. Other places of the texels stop it up to 0.2 mm away.
-constexpr double kTexelsOfSquares = 0.06;
+// Texels lie otherwise at the edges of the squares, but the trail gets thin towards its edges.
+constexpr double kTexelsOfSquares = 0.05;
+constexpr double kRoughness = 0.2e-3;  // metres, where drops have come to after 17 mm: as texels lie, 0.1 mm apart
 
 TEST(Drips, TheDirectionOfTexelsDoesNotShow) {
     Wall straight, turned(std::numbers::pi / 6);
@@ -152,7 +153,7 @@ TEST(Drips, TheDirectionOfTexelsDoesNotShow) {
         w->film.advance(w->canvas, 6, porcelain());
     }
     EXPECT_LT(difference(straight, turned), kTexelsOfSquares);
-    EXPECT_NEAR(straight.lowest(), turned.lowest(), 0.5e-3);
+    EXPECT_NEAR(straight.lowest(), turned.lowest(), kRoughness);
 }
 
 TEST(Drips, BeadsCrossASeamAsIfThereWereNone) {
@@ -162,7 +163,7 @@ TEST(Drips, BeadsCrossASeamAsIfThereWereNone) {
         w->film.advance(w->canvas, 6, porcelain(glm::normalize(Vec3{0.3, 0, -1})));
     }
     EXPECT_LT(difference(whole, cut), kTexelsOfSquares);
-    EXPECT_NEAR(whole.lowest(), cut.lowest(), 0.5e-3);
+    EXPECT_NEAR(whole.lowest(), cut.lowest(), kRoughness);
 }
 
 TEST(Drips, ABeadDriesRoundWhereItStopped) {

@@ -386,14 +386,24 @@ TEST(WetFilm, CleanWaterPushesInkAway) {
     s.wet([](const Vec3& at) { return 0.8 + 5 * disc(at, 1.5e-3); });
     FilmParams p = film_params(load_substrate("bisque"));
     p.pores = p.absorbency = 0;
-    s.film.advance(s.canvas, 10, p);
-    double middle = 1, front = 0;
-    s.each([&](std::uint32_t slot, int t, const Vec3& at) {
-        if (glm::length(at) < 1e-3) middle = std::min(middle, s.amount(slot, t));
-        if (glm::length(at) < 6e-3) front = std::max(front, s.amount(slot, t));
-    });
-    EXPECT_LT(middle, 0.7);
-    EXPECT_GT(front, 1.1);
+    const double before = s.canvas.total(s.map, 0);
+    for (const bool dry : {false, true}) {
+        if (dry) s.film.dry(s.canvas, p);
+        else s.film.advance(s.canvas, 10, p);
+        // Means over rings of 0.2 mm.
+        std::array<double, 40> sum{}, n{};
+        s.each([&](std::uint32_t slot, int t, const Vec3& at) {
+            const auto ring = static_cast<std::size_t>(glm::length(at) / 0.2e-3);
+            if (ring < 40) sum[ring] += s.amount(slot, t), n[ring] += 1;
+        });
+        for (std::size_t i = 0; i < 40; ++i) sum[i] /= n[i];
+        const auto front = static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
+        for (int i = 0; i < 5; ++i) EXPECT_LT(sum[i], 0.75) << "within a millimetre";
+        EXPECT_GT(sum[front], 1.1) << "of the wash far away";
+        EXPECT_NEAR(sum[39], 1, 0.01);
+        EXPECT_GT(front, 7u) << "beyond the drop's radius of 1.5 mm";
+        EXPECT_NEAR(s.canvas.total(s.map, 0) / before, 1, 1e-6);
+    }
 }
 
 }  // namespace

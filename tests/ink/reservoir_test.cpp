@@ -293,6 +293,31 @@ TEST(Reservoir, AShallowDipLoadsAGradientThatSpreadsSlowly) {
     EXPECT_GT(mix_at(tuft, tip)[0], 5 * mix_at(tuft, root)[0]);
 }
 
+TEST(Reservoir, WhatItsHairDoesNotHoldRunsOffADrippingTuft) {
+    Canvas canvas(1);
+    const Mix black = mix_of(canvas, plain("black"));
+    const Drain drain{.length = 0.04, .radius = 4e-3, .slope = 0.5};
+    Reservoir full = make_reservoir(0.5), wet = full;
+    dip(full, black);
+    EXPECT_EQ(shed(full, drain, 1), 0);
+    dip(wet, black, {.level = 1.1});
+    EXPECT_NEAR(wet.remaining() / wet.capacity, 1.1, 1e-12);
+    // 50 mm³ on 503 mm²: a film of 0.0995 mm, ρ g δ³ / 3 μ = 1610 mm²/s, halved, round 25.1 mm.
+    const double at_once = shed(wet, drain, 1e-6) / 1e-6 * kFilmUnit;
+    EXPECT_NEAR(at_once, 0.5 * 9810 * std::pow(0.05e-6 / 5.0265e-4, 3) / (3 * 2e-3) * 0.0251327, 1e-3 * at_once);
+    EXPECT_NEAR(at_once * 1e9, 20.2, 0.1) << "mm³ a second";
+    // A second at once, and in steps that are taken from the tuft.
+    const double all = shed(wet, drain, 1);
+    double sum = 0;
+    for (int i = 0; i < 100; ++i) {
+        const double part = shed(wet, drain, 0.01);
+        take(wet, part);
+        sum += part;
+    }
+    EXPECT_NEAR(sum / all, 1, 1e-9);
+    EXPECT_GT(wet.remaining(), wet.capacity);
+}
+
 TEST(Reservoir, ARagTakesWhatItTouches) {
     Reservoir tuft = make_reservoir(0.5, layout_of(16));
     dip(tuft, kBlack);

@@ -103,6 +103,35 @@ TEST(WetInk, YellowThroughWetPurplePicksItUpAndNotWhenItIsDry) {
     EXPECT_EQ(picked[1], 0);
 }
 
+TEST(WetInk, ADrippingTuftLeavesDripsOnAWallAndAFullOneDoesNot) {
+    const Model model = sheet();
+    double lowest[2];
+    for (int i = 0; i < 2; ++i) {
+        Painting painting(model, {.substrate = "porcelain"});
+        Stroke line = wet_line("carbon"), dip = line;
+        dip.action = Action::dip;
+        dip.extent.amount = i ? 1.5 : 1;
+        dip.trace.samples.clear();
+        line.settings.down = {0, -1, 0};  // the sheet as a wall
+        painting.paint(dip);
+        const double held = in_hair(painting, 0);
+        const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
+        EXPECT_NEAR(held / capacity, dip.extent.amount, 1e-9);
+        painting.paint(line);
+        Stroke wait = dry(2);
+        wait.settings.down = line.settings.down;
+        painting.paint(wait);
+        EXPECT_NEAR((painting.canvas().total(model.texels, 0) + in_hair(painting, 0)) / held, 1, 1e-5);
+        lowest[i] = 1;
+        for (const std::uint32_t slot : painting.canvas().touched_slots())
+            for (int t = 0; t < atlas::kTileTexels; ++t)
+                if (const ink::Plane* p = painting.canvas().plane(slot, 0); p && (*p)[t] > 0.05f)
+                    lowest[i] = std::min(lowest[i], static_cast<double>(model.texels.position(slot, t).y));
+    }
+    EXPECT_LT(lowest[1], lowest[0] - 4e-3);
+    EXPECT_GT(lowest[0], -4e-3) << "half the width of the stroke";
+}
+
 TEST(WetInk, StillInkIsAsItAlwaysWas) {
     // With all that is wet left out of the settings, nothing flows and no time passes.
     const Model model = sheet();
