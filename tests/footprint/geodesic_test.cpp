@@ -187,25 +187,36 @@ Footprint checker(const Contact& at, double s, double cell) {
     return f;
 }
 
-/// Where the stamp puts the point (u, v), from the texels round it: metres in space.
+/// Where the stamp puts the point (u, v), from the texels round it: metres in space. Where several sheets
+/// of a fold lie at that point, it is the one of the texel nearest to it: texels of one sheet are as far
+/// from each other in space as in the picture.
 std::optional<Vec3> read_back(const Model& model, const StampJobs& jobs, const Footprint& f,
                               const Vec2& uv) {
-    using Row = glm::dmat3;
-    Row normal(0.0);
-    Row right(0.0);  // columns: x, y, z
-    const double reach = 2.1 * model.map.texel_size;
-    int n = 0;
-    for (const TileJob& job : jobs.tiles) {
+    struct Near {
+        Vec2 d;  // from (u, v), over the reach
+        Vec3 p;
+    };
+    const double texel = model.map.texel_size, reach = 2.1 * texel;
+    std::vector<Near> near;
+    for (const TileJob& job : jobs.tiles)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             if (model.map.tiles[job.slot].piece[t] == atlas::kNoPiece) continue;
             const Vec2 d = (place_of(model.map, jobs, f, job.slot, t) - uv) / reach;
-            const double w = 1 - glm::dot(d, d);
-            if (!(w > 0)) continue;
-            const Vec3 a{1, d.x, d.y};
-            normal += w * glm::outerProduct(a, a);
-            right += w * glm::outerProduct(a, Vec3(model.map.position(job.slot, t)));
-            ++n;
+            if (glm::dot(d, d) < 1) near.push_back({d, Vec3(model.map.position(job.slot, t))});
         }
+    const auto middle = std::min_element(near.begin(), near.end(), [](const Near& a, const Near& b) { return glm::dot(a.d, a.d) < glm::dot(b.d, b.d); });
+    using Row = glm::dmat3;
+    Row normal(0.0);
+    Row right(0.0);  // columns: x, y, z
+    int n = 0;
+    for (const Near& q : near) {
+        const double flat = reach * glm::distance(q.d, middle->d);
+        if (std::abs(glm::distance(q.p, middle->p) - flat) > 0.2 * flat + 0.3 * texel) continue;
+        const double w = 1 - glm::dot(q.d, q.d);
+        const Vec3 a{1, q.d.x, q.d.y};
+        normal += w * glm::outerProduct(a, a);
+        right += w * glm::outerProduct(a, q.p);
+        ++n;
     }
     if (n < 6 || std::abs(glm::determinant(normal)) < 1e-6) return {};
     const Row fit = glm::inverse(normal) * right;  // row 0: the value at (u, v)
