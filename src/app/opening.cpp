@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -16,19 +17,55 @@ namespace fs = std::filesystem;
 
 namespace tuft::app {
 
+namespace {
+
+// What a person reads while the rooms below report, and how far that part is of the whole: as it takes for a model
+// of 100,000 triangles that is looked at and unwrapped, and for a project.
+enum Kind { kLook, kUnwrap, kProject };
+struct Stage {
+    std::string_view name;
+    const char* title;
+    double span[3][2];
+};
+constexpr Stage kStages[] = {
+    {"reading", "Reading the file", {{0, 0.6}, {0, 0.04}, {0, 0.1}}},
+    {"welding", "Checking the mesh", {{0.6, 0.75}, {0.04, 0.06}, {0.1, 0.1}}},
+    {"matching edges", "Checking the mesh", {{0.75, 0.85}, {0.06, 0.08}, {0.1, 0.1}}},
+    {"building the surface", "Checking the mesh", {{0.85, 0.95}, {0.08, 0.1}, {0.1, 0.1}}},
+    {"normals", "Checking the mesh", {{0.95, 1}, {0.1, 0.11}, {0.1, 0.1}}},
+    {"charts", "Cutting it into charts", {{1, 1}, {0.11, 0.3}, {0.1, 0.1}}},
+    {"merge", "Cutting it into charts", {{1, 1}, {0.3, 0.5}, {0.1, 0.1}}},
+    {"cut to pack", "Laying the charts out", {{1, 1}, {0.5, 0.55}, {0.1, 0.1}}},
+    {"pack", "Laying the charts out", {{1, 1}, {0.55, 0.75}, {0.1, 0.1}}},
+    {"check", "Laying the charts out", {{1, 1}, {0.75, 0.76}, {0.1, 0.1}}},
+    {"texel map", "Placing the texels", {{1, 1}, {0.76, 0.85}, {0.1, 0.3}}},
+    {"piece graph", "Placing the texels", {{1, 1}, {0.85, 0.9}, {0.3, 0.4}}},
+    {"search tree", "Placing the texels", {{1, 1}, {0.9, 0.92}, {0.4, 0.45}}},
+    {"painting", "Painting the strokes", {{1, 1}, {0.92, 0.97}, {0.45, 0.95}}},
+    {"picture of the ink", "Placing the texels", {{1, 1}, {0.97, 1}, {0.95, 1}}},
+};
+
+}  // namespace
+
 struct Opening::Job {
     std::thread thread;
     std::atomic<bool> stop{false}, done{false};
     std::mutex mutex;
-    std::string phase = "reading";
+    const char* phase = kStages[0].title;
     double fraction = 0;
+    Kind kind = kUnwrap;
     Result result;
 
     ProgressFn progress() {
         return [this](std::string_view name, double part) {
             const std::lock_guard lock(mutex);
-            phase = name;
-            fraction = part;
+            for (const Stage& stage : kStages)
+                if (stage.name == name) {
+                    const auto& [from, to] = stage.span[kind];
+                    phase = stage.title;
+                    // A step that is done again does not take the bar back.
+                    fraction = std::max(fraction, from + (to - from) * std::clamp(part, 0.0, 1.0));
+                }
             return !stop.load();
         };
     }
@@ -116,13 +153,16 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, const 
 }  // namespace
 
 Opening::Opening() = default;
-Opening::~Opening() { cancel(); }
+Opening::~Opening() {
+    cancel();
+    for (const auto& job : leaving_) job->thread.join();
+}
 
+// Steps such as reading a large file end only when they are done; nobody waits for that.
 void Opening::cancel() {
     if (!job_) return;
     job_->stop = true;
-    job_->thread.join();
-    job_.reset();
+    leaving_.push_back(std::move(job_));
 }
 
 template <class Step>
@@ -145,7 +185,10 @@ void Opening::start(Step step) {
 }
 
 void Opening::inspect(const fs::path& path) {
-    start([path](Job& job) { job.result.inspected = inspect_file(path, job.progress()); });
+    start([path](Job& job) {
+        job.kind = kLook;
+        job.result.inspected = inspect_file(path, job.progress());
+    });
 }
 
 void Opening::prepare(Inspected inspected, const OpenOptions& options, const fs::path& project) {
@@ -161,7 +204,10 @@ void Opening::revise(Inspected inspected, const OpenOptions& options, const fs::
 }
 
 void Opening::load(const fs::path& project, const fs::path& session) {
-    start([project, session](Job& job) { job.result.work = load_project(project, session, job.progress()); });
+    start([project, session](Job& job) {
+        job.kind = kProject;
+        job.result.work = load_project(project, session, job.progress());
+    });
 }
 
 std::string Opening::phase() const {
@@ -177,6 +223,11 @@ double Opening::fraction() const {
 }
 
 Opening::Result Opening::poll() {
+    std::erase_if(leaving_, [](const std::unique_ptr<Job>& job) {
+        const bool done = job->done;
+        if (done) job->thread.join();
+        return done;
+    });
     if (!job_ || !job_->done) return {};
     job_->thread.join();
     Result result = std::move(job_->result);
@@ -186,5 +237,10 @@ Opening::Result Opening::poll() {
 }
 
 double expected_texel(double area, std::uint32_t size) { return std::sqrt(area / 0.75) / std::max(1u, size); }
+
+std::uint32_t proposed_size(double area) {
+    constexpr double kFine = 0.4 * kMillimetre;
+    return expected_texel(area, 2048) > kFine && 2 * stroke::atlas_memory(4096) < stroke::available_memory() ? 4096 : 2048;
+}
 
 }  // namespace tuft::app

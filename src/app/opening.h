@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/painter.h"
 #include "mesh/inspect.h"
@@ -43,8 +44,8 @@ class Opening {
     void cancel();
 
     bool running() const { return job_ != nullptr; }
-    std::string phase() const;
-    double fraction() const;
+    std::string phase() const;    ///< for a person, English
+    double fraction() const;      ///< of the whole
 
     /// Looks whether the step is done; results are taken once. The error is one line, "" if none.
     struct Result {
@@ -61,10 +62,14 @@ class Opening {
     void start(Step step);
 
     std::unique_ptr<Job> job_;
+    std::vector<std::unique_ptr<Job>> leaving_;  ///< cancelled, not ended yet
 };
 
 /// Texel size in metres that an atlas of `size` texels per side gives a surface of that area
 /// (m²), with the usual three quarters of it used.
 double expected_texel(double area, std::uint32_t size);
+/// Side of the atlas that is proposed for it: 2048, or 4096 where texels would be larger than
+/// 0.4 mm, a fine brush's line, and there is memory for it.
+std::uint32_t proposed_size(double area);
 
 }  // namespace tuft::app

@@ -44,6 +44,13 @@ std::string print(const char* format, double a, double b = 0, double c = 0) {
     return text;
 }
 
+// 1,234,567
+std::string grouped(std::size_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, ",");
+    return text;
+}
+
 }  // namespace
 
 void open_dialog(Session& s) {
@@ -59,7 +66,7 @@ void open_dialog(Session& s) {
     if (s.open_options.frame.y_up && !in.unit_fixed) std::swap(size.y, size.z);
     fact(s, "File", in.path.filename().string());
     fact(s, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
-    fact(s, "Triangles", std::to_string(m.n_triangles));
+    fact(s, "Triangles", grouped(m.n_triangles));
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", ui.tr("Unit of the file"));
     ImGui::SameLine(ui.px(150));

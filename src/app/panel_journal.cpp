@@ -23,8 +23,10 @@ void draw_way(const Session& s, const StrokeLine& line, ImVec2 at, float size) {
     if (line.length < 1e-3) draw->AddCircleFilled(middle, 0.07f * size, colour, 16);  // a touch, no way
     else for (std::size_t i = 1; i < line.way.size(); ++i) {
         const Vec3f &a = line.way[i - 1], &b = line.way[i];
-        draw->AddLine(ImVec2(at.x + pad + a.x * inner, at.y + pad + a.y * inner),
-                      ImVec2(at.x + pad + b.x * inner, at.y + pad + b.y * inner), colour, 1.0f + 0.055f * size * (a.z + b.z));
+        const ImVec2 to(at.x + pad + b.x * inner, at.y + pad + b.y * inner);
+        const float width = 1.0f + 0.055f * size * (a.z + b.z);
+        draw->AddLine(ImVec2(at.x + pad + a.x * inner, at.y + pad + a.y * inner), to, colour, width);
+        if (!line.hidden) draw->AddCircleFilled(to, 0.5f * width, colour, 8);  // no notch at the bend
     }
 }
 
@@ -64,9 +66,11 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
     const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);
-    const std::string what = stroke::keeps_texels(line.action) ? line.label : std::string(s.ui.tr(line.brush.c_str())) + (line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
-    draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, what.c_str());
+    const std::string what = stroke::keeps_texels(line.action) ? line.label : s.ui.title(line.brush) + (line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
+    const std::string shown = s.ui.fitted(what, at.x + ImGui::GetContentRegionAvail().x - x);
+    draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, shown.c_str());
     if (ImGui::IsItemHovered() && !line.label.empty()) ImGui::SetTooltip("%s", line.label.c_str());
+    else if (ImGui::IsItemHovered() && shown != what) ImGui::SetTooltip("%s", what.c_str());
     if (chosen) edit_row(s, line);
     ImGui::PopID();
 }

@@ -17,11 +17,12 @@ void misfit_dialog(Session& s) {
         const auto line = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == misfit.stroke; });
         if (line == s.strokes.end()) continue;
         char text[160];
-        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.strokes.begin() + 1, ui.tr(line->brush.c_str()), ui.tr(line->ink.c_str()));
+        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.strokes.begin() + 1, ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
         if (ImGui::Selectable(text, s.selected == misfit.stroke)) s.selected = misfit.stroke;
         std::snprintf(text, sizeof text, "%.1f mm away", misfit.distance * 1e3);
-        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text).x - ui.px(6));
-        ImGui::TextDisabled("%s", text);
+        const std::string away = ui.tr_sentence(text);
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(away.c_str()).x - ui.px(6));
+        ImGui::TextDisabled("%s", away.c_str());
     }
     ImGui::EndChild();
     const bool hide = ui.button("Hide them", nullptr, 120);

@@ -99,9 +99,12 @@ void PenSamples::merge(EventQueue& events, double now) {
         }
         const auto copy = std::find_if(own.begin(), own.end(), [&](const Event& e) { return e.kind == s.kind && e.button == s.button; });
         if (copy == own.end()) {
-            if (now - s.time < kPatience) break;
+            if (held_since_ < 0) held_since_ = now;
+            if (now - held_since_ < kPatience) break;
+            held_since_ = -1;
             continue;  // it went to another window
         }
+        held_since_ = -1;
         events.insert(events.end(), own.begin(), copy);
         events.push_back(with_pen(*copy));
         events.back().time = s.time;

@@ -69,7 +69,7 @@ class PenSamples {
     Event last_;
     bool down_ = false;                     ///< the tip
     int ahead_ = 0;                         ///< buttons that the window told of before the pen
-    double last_sample_ = -1, offset_ = 0;
+    double last_sample_ = -1, held_since_ = -1, offset_ = 0;
     bool synchronised_ = false;
 };
 

@@ -203,7 +203,9 @@ void poll_session(Session& s) {
         s.open_options.frame.unit = s.inspected->summary.unit.unit;
         if (s.inspected->unit_fixed) s.open_options.frame.unit = "m";
         if (s.revises.empty()) {
-            s.open_options.atlas_size = 2048;
+            const mesh::MeshSummary& m = s.inspected->summary;
+            const double factor = metres_per(s.open_options.frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
+            s.open_options.atlas_size = proposed_size(m.area * factor * factor);
             s.open_options.frame.y_up = false;
         }
         if (s.is_sample) accept_inspected(s);

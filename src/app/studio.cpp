@@ -121,7 +121,9 @@ void Studio::panels(int height) {
         view_marks(s, camera());
         atlas_marks(s, atlas_cursor());
     } else {
+        ImGui::BeginDisabled(dialog_open());
         welcome(s);
+        ImGui::EndDisabled();
     }
     (void)height;
     if (s.opening.running()) opening_progress(s);

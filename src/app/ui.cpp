@@ -129,6 +129,22 @@ const char* Ui::tr(const char* english) const {
     return text ? text : english;
 }
 
+std::string Ui::title(const std::string& name) const {
+    const std::size_t star = name.find('*');
+    return star == std::string::npos ? tr(name.c_str()) : tr(name.substr(0, star).c_str()) + (" \xc3\x97 " + name.substr(star + 1));
+}
+
+std::string Ui::fitted(const std::string& text, float width) const {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    std::size_t end = text.size();
+    const auto shorter = [&] { return text.substr(0, end) + "..."; };
+    while (end > 0 && ImGui::CalcTextSize(shorter().c_str()).x > width) {
+        do --end;
+        while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80);  // whole characters
+    }
+    return shorter();
+}
+
 std::string Ui::tr_sentence(const std::string& english) const {
     if (settings_.language == Language::english) return english;
     if (const char* text = chinese_text(english.c_str())) return text;
@@ -247,7 +263,7 @@ bool Ui::slider(const char* label, double& value, double lo, double hi, const ch
 bool Ui::combo(const char* label, std::string& value, const std::vector<std::string>& names, float width) {
     bool changed = false;
     ImGui::SetNextItemWidth(width > 0 ? px(width) : -1);
-    if (ImGui::BeginCombo((std::string("##") + label).c_str(), tr(value.c_str()))) {
+    if (ImGui::BeginCombo((std::string("##") + label).c_str(), title(value).c_str())) {
         for (const std::string& name : names) {
             if (ImGui::Selectable(tr(name.c_str()), name == value)) {
                 value = name;

@@ -31,6 +31,10 @@ class Ui {
 
     /// The text in the chosen language.
     const char* tr(const char* english) const;
+    /// Name of a brush or an ink for people: "mixed-medium*1.8" as "mixed-medium × 1.8".
+    std::string title(const std::string& name) const;
+    /// The text, with "..." for its end where it is wider than so many pixels.
+    std::string fitted(const std::string& text, float width) const;
     /// A sentence with numbers or a name in it: its table has # for each number, or only its beginning.
     std::string tr_sentence(const std::string& english) const;
     /// Pixels of a length given for a scale of 1.

@@ -18,6 +18,7 @@ namespace {
 constexpr double kPixel = 0.0254 / 96;   // metres of a CSS pixel
 constexpr double kSpacing = 5e-4;        // metres, of samples on a straight line
 constexpr int kDeepest = 64;             // of nested groups
+constexpr std::size_t kMostElements = 1'000'000;  // drawn, each `use` of one counted
 constexpr int kMostChords = 4096;        // of one curve
 using Matrix = glm::dmat3;
 using Line = std::vector<Vec2>;
@@ -86,6 +87,7 @@ class Drawing {
 
     void walk(const pugi::xml_node& node, Matrix matrix, Style style, int depth) {
         if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
+        if (++n_elements_ > kMostElements) throw Error(source_, "there are too many elements in it");
         const std::string name = local(node.name());
         static constexpr const char* skipped[] = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "metadata", "style", "title", "desc"};
         if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped)) return;
@@ -103,8 +105,16 @@ class Drawing {
         else if (name == "rect") rectangle(node);
         else if (name == "circle") ellipse(number(node, "cx"), number(node, "cy"), number(node, "r"), number(node, "r"));
         else if (name == "ellipse") ellipse(number(node, "cx"), number(node, "cy"), number(node, "rx"), number(node, "ry"));
+        else if (name == "use") return use(node, matrix, style, depth);
+        children(node, matrix, style, depth);
+    }
+
+    /// Elements by their `id`, for `use`.
+    void index(const pugi::xml_node& node, int depth = 0) {
+        if (depth > kDeepest) return;  // `walk` will say so
+        if (const auto id = node.attribute("id")) by_id_.emplace(id.value(), node);
         for (const pugi::xml_node& child : node.children())
-            if (child.type() == pugi::node_element) walk(child, matrix, style, depth + 1);
+            if (child.type() == pugi::node_element) index(child, depth + 1);
     }
 
     // Metres per unit of the drawing and the corner that becomes (0, 0).
@@ -176,6 +186,27 @@ class Drawing {
             if (const auto rules = classes_.find(one); rules != classes_.end())
                 if (const auto at = rules->second.find(name); at != rules->second.end()) value = at->second;
         return value.empty() ? node.attribute(name).value() : value;
+    }
+    void children(const pugi::xml_node& node, const Matrix& matrix, const Style& style, int depth) {
+        for (const pugi::xml_node& child : node.children())
+            if (child.type() == pugi::node_element) walk(child, matrix, style, depth + 1);
+    }
+    // Another element drawn here; one that is not in the file draws nothing. A symbol is its children, in the
+    // frame of its viewBox.
+    void use(const pugi::xml_node& node, Matrix matrix, const Style& style, int depth) {
+        std::string target = node.attribute("href").value();
+        if (target.empty()) target = node.attribute("xlink:href").value();
+        const auto at = target.starts_with('#') ? by_id_.find(target.substr(1)) : by_id_.end();
+        if (at == by_id_.end()) return;
+        matrix = matrix * translation(number(node, "x"), number(node, "y"));
+        if (local(at->second.name()) != "symbol") return walk(at->second, matrix, style, depth + 1);
+        if (const std::string box = at->second.attribute("viewBox").value(); !box.empty()) {
+            Reader in(box, source_);
+            const double x = in.number(), y = in.number(), w = in.number(), wanted = number(node, "width");
+            const double scale = wanted > 0 && w > 0 ? wanted / w : 1;
+            matrix = matrix * scaling(scale, scale) * translation(-x, -y);
+        }
+        children(at->second, matrix, style, depth + 1);
     }
 
     // A length with its unit, metres; 0: none, or a part of an unknown page.
@@ -374,7 +405,8 @@ class Drawing {
     double width_ = 0;
     std::map<std::string, std::map<std::string, std::string>> classes_;  // declarations of style sheets
     std::vector<Drawn> lines_;
-    std::size_t n_points_ = 0;
+    std::size_t n_points_ = 0, n_elements_ = 0;
+    std::map<std::string, pugi::xml_node> by_id_;
 };
 
 }  // namespace
@@ -386,6 +418,7 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     const pugi::xml_node svg = document.document_element();
     if (Drawing::local(svg.name()) != "svg") throw Error(source, "not an SVG drawing");
     Drawing drawing(source, options);
+    drawing.index(svg);
     drawing.read_sheets(svg, 0);
     drawing.walk(svg, drawing.frame(svg), {}, 0);
     if (drawing.lines().empty()) throw Error(source, "nothing is drawn in this file; text must be turned into paths first");

@@ -12,7 +12,8 @@
 namespace tuft::io {
 
 /// The outlines of a drawing as flat traces, in the order of the file: `path` (all commands),
-/// `line`, `polyline`, `polygon`, `rect`, `circle`, `ellipse`, under the `transform`s of their groups.
+/// `line`, `polyline`, `polygon`, `rect`, `circle`, `ellipse`, under the `transform`s of their groups,
+/// and once more wherever a `use` names them.
 /// Curves become chords that stay within `tolerance` of them; elliptical arcs after appendix F.6.5. What
 /// is not displayed, and what lies in `defs`, is left out. `stroke-width` (as an attribute, in a style, by a class
 /// of a style sheet, inherited, grown by transforms) becomes `Trace::line_width` where there is a `stroke`;

@@ -72,6 +72,19 @@ TEST(Svg, HiddenThingsAndDefinitionsAreLeftOut) {
     EXPECT_EQ(drawn("<defs><path d='M0 0 L1 1'/></defs><path display='none' d='M0 0 L9 9'/><rect x='0' y='0' width='1' height='1'/>").size(), 1u);
 }
 
+TEST(Svg, AUseDrawsItsElementAgainWhereItSays) {
+    const std::string defs = "<defs><g id='g'><line x1='0' y1='0' x2='4' y2='0'/></g>"
+                             "<symbol id='s' viewBox='10 0 20 20'><line x1='10' y1='0' x2='30' y2='0'/></symbol></defs>";
+    const auto t = drawn(defs + "<use xlink:href='#g' x='5' transform='rotate(90)'/><g transform='translate(0,7)'><use href='#g'/></g>"
+                                "<use href='#s' x='1' y='2' width='40'/><use href='#nothing'/><use href='elsewhere.svg#g'/>");
+    ASSERT_EQ(t.size(), 3u);
+    expect_near(first(t[0]), {0, 5});
+    expect_near(last(t[0]), {0, 9});
+    expect_near(first(t[1]), {0, 7});
+    expect_near(first(t[2]), {1, 2});
+    expect_near(last(t[2]), {41, 2});
+}
+
 TEST(Svg, LongLinesSwellAndTaper) {
     const auto& s = drawn("<line x1='0' y1='0' x2='50' y2='0'/>")[0].samples;
     EXPECT_GT(s[s.size() / 2].pressure, 1.5 * s.back().pressure);
@@ -97,6 +110,15 @@ TEST(Svg, MistakesAreNamedWithTheFile) {
     for (int i = 0; i < 5000; ++i) deep += "<g>";
     for (int i = 0; i < 5000; ++i) deep += "</g>";
     EXPECT_NE(fault("<svg>" + deep + "</svg>"), "");
+    EXPECT_NE(fault("<svg><g id='a'><use href='#a'/><line x2='1'/></g></svg>"), "") << "an element that draws itself";
+    // A thousand million lines in a few hundred bytes.
+    std::string many = "<defs><line id='u0' x2='1'/>";
+    for (int i = 1; i < 10; ++i) {
+        many += "<g id='u" + std::to_string(i) + "'>";
+        for (int k = 0; k < 10; ++k) many += "<use href='#u" + std::to_string(i - 1) + "'/>";
+        many += "</g>";
+    }
+    EXPECT_NE(fault("<svg>" + many + "</defs><use href='#u9'/></svg>"), "");
 }
 
 TEST(Svg, LinesHaveTheWidthOfTheirStroke) {
