@@ -47,6 +47,8 @@ oiiotool "$out/backrun.png" "$out/wet-vase.png" "$out/wet-bowl.png" "$sheet" --c
   --paste +0+0 --paste +460+0 --paste +920+0 --paste +0+460 --paste +460+460 --paste +0+920 --paste +740+920 \
   -d uint8 -o "$out/wet.png"
 
+paint impasto sheet impasto "--substrate bisque" --raking --view 0,89 --size 1400x1000 --zoom 2.6
+
 say "colour chart"
 build/release/samples/chart/tuft-chart "$out/colour-chart.png"
 

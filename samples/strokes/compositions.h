@@ -23,6 +23,8 @@ std::vector<stroke::Trace> wet_bowl();
 std::vector<stroke::Trace> backrun();
 /// A dripping stroke round the shoulder of the vase.
 std::vector<stroke::Trace> wet_vase();
+/// A flower of thick paint on thick paint, on the flat sheet.
+std::vector<stroke::Trace> impasto();
 /// Pinstripes along the right flank of the car.
 std::vector<stroke::Trace> car_pinstripe();
 

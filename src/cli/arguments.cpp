@@ -137,6 +137,7 @@ void add_view(CLI::App* app, View& v) {
     add_layers(app, v.layers);
     add_view_direction(app, v);
     app->add_option("--light", v.light, "turn the lights by so many degrees (they follow the camera)");
+    app->add_flag("--raking", v.raking, "one lamp from the side, which shows the relief of the ink; --light turns it about the view");
     app->add_option("--zoom", v.zoom, "magnification (1: the whole model)")->check(CLI::Range(0.05, 100.0));
     app->add_option_function<std::string>(
            "--target",

@@ -38,6 +38,7 @@ struct View {
     bool directed = false;          ///< these two were asked for
     double zoom = 1;
     double light = 0;               ///< degrees the lights are turned about z
+    bool raking = false;            ///< light from the side
     std::vector<double> target_mm;  ///< three numbers, or empty: the middle of the model
 };
 

@@ -224,6 +224,11 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
         look.maps.size = colour.size;
         look.maps.corner_uvs = model.atlas.corner_uvs;
         look.maps.base_colour = std::span(first, std::size_t{colour.size} * colour.size);
+        if (v.raking) {
+            height = ink::compose_height(painting->stack(), model.texels, painting->compose_options());
+            for (float& h : height.texels) h *= 1e-6f;
+            look.maps.height = height.texels;
+        }
     }
     render::PictureOptions options;
     options.width = v.width;
@@ -238,6 +243,7 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
         options.view.width_at_target = 1.3 * model.mesh->bounds.diagonal() / v.zoom;
     }
     options.light_azimuth = v.light * kDegree;
+    if (v.raking) options.lights = render::Lights::raking;
     options.progress = console.progress();
     if (count > 1) options = render::turntable_frame(options, frame, count);
     return render::render_picture(*model.mesh, *model.query, look, options);

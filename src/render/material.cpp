@@ -103,20 +103,52 @@ Vec3f MaterialReader::albedo(std::uint32_t triangle, float b1, float b2) const {
     return body_;
 }
 
+float MaterialReader::height(const Vec2f& at) const {
+    const TextureMaps& maps = appearance_.maps;
+    const Taps taps = taps_at(glm::clamp(at, 0.0f, 1.0f), maps.size);
+    float sum = 0;
+    for (int i = 0; i < 4; ++i) sum += taps.weight[i] * maps.height[taps.index[i]];
+    return sum;
+}
+
+float MaterialReader::unshaded(std::uint32_t triangle, float b1, float b2, const Vec3f& normal,
+                               const Vec3f& to_light, float blur) const {
+    constexpr float kReach = 3e-3f;  // metres
+    const TextureMaps& maps = appearance_.maps;
+    const float rise = glm::dot(normal, to_light);
+    if (maps.height.empty() || !(rise > 0)) return 1;
+    const Vec3f level = to_light - rise * normal;
+    const float run = glm::length(level);
+    if (!(run > 1e-3f)) return 1;
+    // A metre along the surface towards the light, in texture coordinates.
+    const Vec2f* corner = &maps.corner_uvs[3 * std::size_t{triangle}];
+    const Vec3f d1(mesh_.position(triangle, 1) - mesh_.position(triangle, 0));
+    const Vec3f d2(mesh_.position(triangle, 2) - mesh_.position(triangle, 0));
+    const float g11 = glm::dot(d1, d1), g12 = glm::dot(d1, d2), g22 = glm::dot(d2, d2);
+    const float det = g11 * g22 - g12 * g12;
+    if (!(det > 0)) return 1;
+    const float r1 = glm::dot(level, d1) / run, r2 = glm::dot(level, d2) / run;
+    const Vec2f along = ((g22 * r1 - g12 * r2) * (corner[1] - corner[0]) + (g11 * r2 - g12 * r1) * (corner[2] - corner[0])) / det;
+    const float texels = glm::length(along) * static_cast<float>(maps.size);  // per metre
+    if (!(texels > 0) || !std::isfinite(texels)) return 1;
+    const Vec2f at = uv(triangle, b1, b2);
+    const float here = height(at), slope = rise / run;
+    float open = 1;
+    for (float d = 0.75f / texels; d < kReach; d += std::max(0.5f / texels, 0.04f * d)) {
+        const float over = height(at + d * along) - here;
+        open = std::min(open, 0.5f + (slope - over / d) / (2 * blur));
+        if (!(open > 0)) return 0;
+    }
+    return open;
+}
+
 Vec3f MaterialReader::relief(std::uint32_t triangle, const Vec2f& at) const {
     // Height gradient by central differences of one texel, carried to the surface by the
     // triangle's UV map: ∇h solves d1·∇h = ∂h/∂(uv)·e1, d2·∇h = ∂h/∂(uv)·e2 in its plane.
     const TextureMaps& maps = appearance_.maps;
     const float step = 1 / static_cast<float>(maps.size);
-    const auto height = [&](float u, float v) {
-        const Taps taps =
-            taps_at({std::clamp(u, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f)}, maps.size);
-        float sum = 0;
-        for (int i = 0; i < 4; ++i) sum += taps.weight[i] * maps.height[taps.index[i]];
-        return sum;
-    };
-    const float hu = (height(at.x + step, at.y) - height(at.x - step, at.y)) / (2 * step);
-    const float hv = (height(at.x, at.y + step) - height(at.x, at.y - step)) / (2 * step);
+    const float hu = (height({at.x + step, at.y}) - height({at.x - step, at.y})) / (2 * step);
+    const float hv = (height({at.x, at.y + step}) - height({at.x, at.y - step})) / (2 * step);
     if (hu == 0 && hv == 0) return Vec3f{0};
     const Vec2f* corner = &maps.corner_uvs[3 * std::size_t{triangle}];
     const Vec2f e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];

@@ -23,11 +23,17 @@ class MaterialReader {
 
     Vec3f albedo(std::uint32_t triangle, float b1, float b2) const;
     Material read(std::uint32_t triangle, float b1, float b2) const;
+    /// Part of the light from a small lamp in direction `to_light` (unit, `normal` the surface's)
+    /// that the relief lets through: 0 in the shadow of higher ink beside it, soft over the lamp's
+    /// radius `blur` (radians). Looks as far as 3 mm, within the chart.
+    float unshaded(std::uint32_t triangle, float b1, float b2, const Vec3f& normal, const Vec3f& to_light,
+                   float blur) const;
     bool coated() const { return appearance_.finish == Finish::porcelain; }
 
   private:
     Vec2f uv(std::uint32_t triangle, float b1, float b2) const;
     Vec3f relief(std::uint32_t triangle, const Vec2f& at) const;
+    float height(const Vec2f& at) const;  ///< metres, bilinear
 
     const mesh::TriangleMesh& mesh_;
     const Appearance& appearance_;

@@ -64,7 +64,13 @@ Vec3f shade_object(const Shading& f, const Sight& s, Light light, const Vec3f& v
         n = glm::normalize(n - m.slope);
         const Vec3f key = glm::normalize(f.scene.studio.boxes[0].centre - s.position);
         const float before = std::max(glm::dot(s.normal, key), 0.05f);
-        light.direct *= std::clamp(glm::dot(n, key) / before, 0.0f, 2.0f);
+        light.direct *= std::clamp(glm::dot(n, key) / before, 0.0f, f.scene.studio.raking ? 1 / before : 2.0f);
+    }
+    if (f.scene.studio.raking) {
+        const SoftBox& lamp = f.scene.studio.boxes[0];
+        const Vec3f key = lamp.centre - s.position;
+        const float away = glm::length(key);
+        light.direct *= f.scene.material.unshaded(s.triangle, s.b1, s.b2, s.normal, key / away, glm::length(lamp.u) / away);
     }
     const Vec3f body = m.albedo * (light.direct + light.around);
     const float cosine = glm::dot(n, view);
@@ -140,8 +146,11 @@ Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& q
                     std::to_string(options.height) + " is too large; at most 40 million pixels");
     const MaterialReader material(mesh, appearance);
     Scene scene{mesh, query, material,
-                make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth, options.floor,
-                            options.exposure),
+                options.lights == Lights::raking
+                    ? make_raking_studio(mesh.bounds, Vec3f(camera.right), Vec3f(camera.up), Vec3f(camera.forward),
+                                         options.light_azimuth, options.floor, options.exposure)
+                    : make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth, options.floor,
+                                  options.exposure),
                 0};
     scene.offset = 2e-5f * scene.studio.radius + 2e-7f * glm::length(scene.studio.centre);
     report(options.progress, "bounces", 0);

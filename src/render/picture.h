@@ -42,11 +42,18 @@ struct Appearance {
     TextureMaps maps;
 };
 
+enum class Lights {
+    studio,  ///< three soft boxes
+    raking,  ///< one small lamp from the side, which shows the relief of the ink with its shadows
+};
+
 struct PictureOptions {
     int width = 1280, height = 720;  ///< pixels
     View view;
     bool floor = true;         ///< stands on a seamless studio floor with its shadow
-    double light_azimuth = 0;  ///< radians the lights are turned about z; they follow the camera
+    Lights lights = Lights::studio;
+    double light_azimuth = 0;  ///< radians the lights are turned about z, raking light about the
+                               ///< camera's axis; they follow the camera
     double exposure = 1;       ///< factor on the light
     int edge_samples = 16;     ///< rays per pixel on edges and ink (a quarter of it elsewhere)
     int light_samples = 28;    ///< rays per pixel towards lights and surroundings

@@ -64,11 +64,37 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
     return s;
 }
 
+Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up, const Vec3f& forward,
+                          double turn, bool floor, double exposure) {
+    constexpr float kGrazing = 0.23f;  // sine of the lamp's height over a face that looks at the camera
+    constexpr float kFar = 6, kLamp = 0.35f;  // radii
+    Studio s;
+    s.centre = Vec3f(bounds.centre());
+    s.radius = std::max(static_cast<float>(0.5 * bounds.diagonal()), 1e-6f);
+    s.floor = floor;
+    s.floor_z = static_cast<float>(bounds.empty() ? 0 : bounds.lo.z);
+    s.raking = true;
+    s.dome = 0.3f;
+    const auto c = static_cast<float>(std::cos(turn)), d = static_cast<float>(std::sin(turn));
+    // A little from above, as light falls.
+    const Vec3f side = glm::normalize(-right + 0.35f * up);
+    const Vec3f turned = c * side + d * glm::normalize(glm::cross(-forward, -side));
+    const Vec3f at = std::sqrt(1 - kGrazing * kGrazing) * turned - kGrazing * forward;
+    s.boxes[0] = make_box(s.centre + kFar * s.radius * at, s.centre, kLamp * s.radius, kLamp * s.radius,
+                          Vec3f{330.0f, 322.0f, 308.0f});
+    for (int k = 1; k < 3; ++k)  // switched off
+        s.boxes[k] = make_box(s.centre - kFar * s.radius * forward, s.centre, s.radius, s.radius, Vec3f{0});
+    const Vec3f light = open_light(s, s.centre, -forward);
+    s.scale = static_cast<float>(exposure) * 0.62f * 3 / (light.x + light.y + light.z);
+    for (SoftBox& box : s.boxes) box.radiance *= s.scale;
+    return s;
+}
+
 Vec3f dome_radiance(const Studio& studio, const Vec3f& d) {
     // Grey walls that grow lighter towards a white ceiling, a little darker behind the object.
     const float h = smooth(0.5f + 0.5f * d.z);
     const Vec3f low{0.19f, 0.194f, 0.20f}, high{0.52f, 0.53f, 0.545f};
-    return studio.scale * glm::mix(low, high, h);
+    return studio.scale * studio.dome * glm::mix(low, high, h);
 }
 
 Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direction,

@@ -4,7 +4,7 @@
 
 #include "core/types.h"
 
-/// The photographer's studio: three soft boxes, a dim dome and a floor. "Light" is
+/// The photographer's studio: three soft boxes, or a lamp from the side, a dim dome and a floor. "Light" is
 /// irradiance over π, so a white matt surface shows the light it gets as its colour.
 namespace tuft::render {
 
@@ -26,11 +26,19 @@ struct Studio {
     float floor_z = 0;
     Vec3f floor_albedo{0.5f};
     float scale = 1;  ///< exposure, already in all radiances
+    float dome = 1;   ///< factor on the dome's light
+    bool raking = false;
 };
 
 /// Studio for an object in `bounds`, seen from `azimuth` (lights turned by `turn` more).
 /// Exposed so that a white matt face turned half up, half to the key light shows `white`.
 Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, double exposure);
+
+/// Studio with one small lamp that grazes what the camera sees, from its left (turned by `turn`
+/// clockwise about its axis), and little light from all round: it shows relief. `right`, `up` and
+/// `forward` are the camera's, unit. Exposed as above for a face that looks at the camera.
+Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up, const Vec3f& forward,
+                          double turn, bool floor, double exposure);
 
 /// Radiance of the dome from a direction (unit).
 Vec3f dome_radiance(const Studio& studio, const Vec3f& direction);

@@ -11,6 +11,8 @@ namespace tuft::stroke {
 namespace {
 
 constexpr std::size_t kPosesPerReport = 16;
+// Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
+constexpr double kPasteStep = 1e-4, kPasteCell = 4e-5;
 constexpr double kForceTime = 5e-3;  // seconds of the low-pass on the force to the hand
 
 /// Hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
@@ -176,7 +178,8 @@ void Painting::begin_hand(Stroke stroke) {
     const Model& model = ground_of(stroke);
     const ink::Substrate& substrate = substrate_of(stroke);
     const double texel = model.texels.texel_size;
-    const double spacing = stroke.settings.spacing * texel;
+    const bool paste = ink.yield > 0;
+    const double spacing = std::max(stroke.settings.spacing * texel, paste ? kPasteStep : 0.0);
     ink::Canvas& canvas = this->canvas(stroke.layer);
     // Masks are of the model's texels.
     const bool masked = stroke.mask && stroke.layer != kPaletteLayer;
@@ -185,6 +188,8 @@ void Painting::begin_hand(Stroke stroke) {
                                    spacing, texel);
     hand_->stamper.keep_to(mask);
     hand_->mixed = !hand_->stroke.trace.erases && ink::is_mixed(hand_->reservoir);
+    hand_->paste = paste;
+    if (paste) hand_->cell = std::max(hand_->cell, kPasteCell);
     const Settings& settings = hand_->stroke.settings;
     if (settings.film != "wet" || hand_->stroke.trace.erases) return;
     if (&model == model_) hand_->wet.emplace(film(), canvas, ink::film_params(substrate, settings.down));
@@ -225,7 +230,7 @@ void Painting::draw_poses() {
         h.last_time = pose.time;
         h.moved = true;
         if (h.wet) h.wet->pass(h.stamper, dt);
-        h.state = contact.tuft;
+        h.bend(contact.tuft, pose);
         h.report.nearest = std::min(h.report.nearest, contact.distance);
         if (options_.record_forces)
             h.report.forces.push_back({pose, contact.tuft.force, h.force,
@@ -255,12 +260,16 @@ void Painting::draw_poses() {
             .moment_factor = h.stress(contact),
             .width = h.closed_area > 0 ? area / std::sqrt(h.closed_area) : std::sqrt(area),
             // A batch shares what is left; mixed ink comes stamp by stamp.
-            .area = area * (h.mixed ? 1.0 : static_cast<double>(Stamper::kBatch)),
+            .area = area * (h.mixed || h.paste ? 1.0 : static_cast<double>(Stamper::kBatch)),
             .touch = h.touched};
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
-        stamp.ink.capacity = h.substrate->capacity;
+        stamp.ink.capacity = std::max(h.substrate->capacity, static_cast<float>(ink::standing_film(h.ink.yield)));
         stamp.ds = h.step;
         if (h.stroke.trace.erases) stamp.erases = 0.25 + 0.75 * touch.moment_factor;  // as ink is given
+        if (h.paste) {
+            h.report.ink_given += h.lay_paste(stamp, touch.moment_factor);
+            continue;
+        }
         if (h.wet) {
             h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, h.nodes, touch.moment_factor,
                                                 h.drain(pose, contact.frame.origin));
@@ -281,6 +290,11 @@ StrokeReport Painting::finish_hand() {
     h.resampler.finish(h.poses);
     draw_poses();
     h.flush();
+    if (h.paste) {
+        const bool here = h.model == model_;
+        h.stamper.level(here ? seams() : atlas::build_seam_links(*h.model->mesh, h.model->atlas, h.model->texels),
+                        ink::levelling_length(h.ink.yield, h.ink.film * ink::kFilmUnit));
+    }
     if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched, h.nodes);
     h.report.ink_left = h.reservoir.remaining();
     if (h.report.touched()) h.report.nearest = 0;

@@ -249,6 +249,7 @@ class Painting {
     void act(const Stroke& entry);
     void dry(const Stroke& entry);
     ink::WetFilm& film();
+    const atlas::SeamLinks& seams();
     Palette& plate();
     void wash(const Stroke& entry);
     const Model& ground_of(const Stroke& entry);
@@ -295,6 +296,7 @@ class Painting {
     std::size_t undo_bytes_ = 0;
     std::unique_ptr<Hand> hand_;
     std::unique_ptr<ink::WetFilm> film_;              ///< made when something is wet
+    std::unique_ptr<atlas::SeamLinks> seams_;         ///< made for it, or for paste
     mutable std::unique_ptr<ink::GutterPlan> gutter_;
 };
 

@@ -4,10 +4,14 @@
 /// What a painting does with wet ink between strokes.
 namespace tuft::stroke {
 
+const atlas::SeamLinks& Painting::seams() {
+    if (!seams_)
+        seams_ = std::make_unique<atlas::SeamLinks>(atlas::build_seam_links(*model_->mesh, model_->atlas, model_->texels));
+    return *seams_;
+}
+
 ink::WetFilm& Painting::film() {
-    if (!film_)
-        film_ = std::make_unique<ink::WetFilm>(
-            model_->texels, atlas::build_seam_links(*model_->mesh, model_->atlas, model_->texels));
+    if (!film_) film_ = std::make_unique<ink::WetFilm>(model_->texels, seams());
     return *film_;
 }
 

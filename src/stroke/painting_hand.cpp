@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "footprint/hair.h"
+#include "ink/stir.h"
 #include "stroke/line_width.h"
 
 namespace tuft::stroke {
@@ -65,6 +66,27 @@ void Painting::Hand::move_on(const brush::Pose& pose, double dt) {
     const double way = glm::length(pose.position - last_position);
     travel += way;
     if (dt > 0) speed += -std::expm1(-way / kSpeedLength) * (way / dt - speed);
+}
+
+void Painting::Hand::bend(brush::TuftState now, const brush::Pose& pose) {
+    const auto& before = state.branches;
+    const std::size_t cells = reservoir.n_cells();
+    if (!before.empty() && !now.branches.empty() && ink::is_mixed(reservoir)) {
+        const std::vector<brush::Section>& was = before[0].sections;
+        const std::vector<brush::Section>& is = now.branches[0].sections;
+        const Quat carried = pose.rotation * glm::inverse(last_rotation);
+        std::vector<Vec2> bent(cells, Vec2{0});
+        for (std::size_t c = 0; c < cells && was.size() == is.size() && !is.empty(); ++c) {
+            const double begin = c ? reservoir.layout.cell_ends[c - 1] : 0;
+            const double from_root = 0.5 * (begin + reservoir.layout.cell_ends[c]);
+            const auto i = static_cast<std::size_t>((1 - from_root) * static_cast<double>(is.size() - 1) + 0.5);
+            const Vec3 turn = is[i].tangent - carried * was[i].tangent;
+            bent[c] = {glm::dot(turn, is[i].e), glm::dot(turn, is[i].m)};
+        }
+        ink::stir(reservoir, bent, tuft.preset.radius);
+    }
+    state = std::move(now);
+    last_rotation = pose.rotation;
 }
 
 double Painting::Hand::stress(const contact::Result& contact) const {
@@ -154,7 +176,11 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
         stamp.grain_film = kGrainFilm * mean;
         closed_area = marks.closed_area;
     }
-    if (wet || mixed) place_nodes(stamp, trails, outlines);
+    if (wet || mixed || paste) place_nodes(stamp, trails, outlines);
+    if (paste && !trails.empty()) {
+        const Vec2 e(trails.front().cuts[trails.front().cuts.size() / 2].e);
+        turned = axis.x * e.y - axis.y * e.x < 0 ? -1 : 1;
+    }
     return stamp;
 }
 

@@ -42,9 +42,14 @@ struct Painting::Hand {
     ink::NodeTouch nodes;          // of the last stamp, with mixed or wet ink
     Vec2 axis{1, 0};               // of the hair on the surface, in the contact frame
     bool moved = false, was_touching = false;
+    bool paste = false;            // the ink stands as it is put
+    std::vector<double> tines;     // how firmly each bundle lies, over the firmest
+    double combed = 0;             // travel up to which they are known
+    double turned = 1;             // the section's +x is at the end of the patch's width; -1: at its begin
     std::optional<WetHand> wet;  ///< with wet ink
     Vec3 force{0};  // to the hand
     Vec3 last_position{0};
+    Quat last_rotation{1, 0, 0, 0};
 
     Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& on, ink::Canvas& canvas,
          const ink::Substrate& ground, double step_, double texel);
@@ -52,6 +57,8 @@ struct Painting::Hand {
     /// Lays down the stamps that were added, and takes their ink from the tuft.
     void flush();
     void move_on(const brush::Pose& pose, double dt);
+    /// Bending since the last pose mixes what the bundles hold; keeps the tuft as it is now.
+    void bend(brush::TuftState now, const brush::Pose& pose);
     /// k = |M| / M_max of the ink's laws.
     double stress(const contact::Result& contact) const;
 
@@ -63,6 +70,11 @@ struct Painting::Hand {
 
     /// How what hangs on the tuft runs to where it touches.
     ink::Drain drain(const brush::Pose& pose, const Vec3& contact) const;
+    /// Lays down a stamp of paste, in which the bundles leave furrows. Returns the ink given less
+    /// what was taken, film·m².
+    double lay_paste(Stamp& stamp, double stress);
+    /// The bundles over the width of the patch.
+    std::vector<ink::Tine> comb();
 
     /// The hair on the surface: `touched`, and the footprint with the gaps that lack of ink leaves.
     Stamp make_stamp(const contact::Result& contact, double dt);

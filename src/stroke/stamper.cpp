@@ -184,6 +184,25 @@ ink::NodeContents Stamper::lay(const ink::DepositParams& params, const ink::Node
     });
 }
 
+Stamper::Passed Stamper::plough(const ink::PasteParams& params, const ink::NodeMixes& mixes, double ds) {
+    for (const Exposed& e : exposed_)
+        if (e.slot != kNone && !pastes_.contains(e.slot))
+            pastes_.emplace(e.slot, std::make_unique<ink::Plane>(ink::open_pigment(canvas_, e.slot)));
+    Passed passed;
+    passed.given = act_on_exposed([&](Exposed& e, const ink::Tents& tents) {
+        ink::lay_paste(canvas_, e.slot, e.exposure, e.places, tents, model_.texels.tiles[e.slot].area, ds, params,
+                       mixes, *pastes_.at(e.slot), e.given, e.taken);
+    });
+    for (const Exposed& e : exposed_)
+        for (int node = 0; node < ink::kNodes; ++node)
+            for (int p = 0; p < ink::Reservoir::kPlanes; ++p) passed.taken[node][p] += e.taken[node][p];
+    return passed;
+}
+
+void Stamper::level(const atlas::SeamLinks& seams, double length) {
+    ink::level_paste(canvas_, model_.texels, seams, pastes_, length);
+}
+
 std::vector<ink::TileSnapshot> Stamper::take_before() {
     std::vector<ink::TileSnapshot> tiles;
     tiles.reserve(before_.size());

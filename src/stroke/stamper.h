@@ -8,6 +8,8 @@
 #include "footprint/stamp.h"
 #include "ink/deposit_mixed.h"
 #include "ink/erase.h"
+#include "ink/level.h"
+#include "ink/paste.h"
 #include "ink/transfer.h"
 #include "stroke/mask.h"
 #include "stroke/model.h"
@@ -54,6 +56,15 @@ class Stamper {
     /// Lays ink down there that differs from node to node. Returns what was given.
     ink::NodeContents lay(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds);
 
+    /// What went down and came up, by node.
+    struct Passed {
+        ink::NodeContents given{}, taken{};
+    };
+    /// Ploughs paste there.
+    Passed plough(const ink::PasteParams& params, const ink::NodeMixes& mixes, double ds);
+    /// Rounds the paste that was laid over `length` metres.
+    void level(const atlas::SeamLinks& seams, double length);
+
     /// Notes a tile as it is, for `take_before`, unless it was noted already.
     void keep(std::uint32_t slot);
 
@@ -88,10 +99,11 @@ class Stamper {
         alignas(64) std::array<float, atlas::kTileTexels> exposure;
         ink::TexelPlaces places;
         ink::NodeAreas areas{};
-        ink::NodeContents given{};
+        ink::NodeContents given{}, taken{};
     };
     std::vector<Exposed> exposed_;                 ///< by the stamp in work, as many as it reached
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
+    ink::OpenBefore pastes_;  ///< `before` of lay_paste
     std::unordered_map<std::uint32_t, ink::EraseStart> starts_;  ///< of tiles an eraser came to
     ink::Amounts erased_;
     const MaskTexels* mask_ = nullptr;

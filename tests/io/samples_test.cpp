@@ -60,6 +60,10 @@ TEST(Samples, WetInkFitsTheSheetAndTheBowl) {
     expect_fits("wet-bowl", "bowl", 6);
 }
 
+TEST(Samples, ThickPaintFitsTheSheet) {
+    expect_fits("impasto", "sheet", 5 + 8 + 3);
+}
+
 TEST(Samples, PinstripesFitTheCar) {
     expect_fits("car-pinstripe", "car", 2);
 }

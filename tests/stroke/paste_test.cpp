@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "ink/composite.h"
+#include "sheet.h"
+
+namespace tuft::stroke {
+namespace {
+
+const std::string kBrush = "mixed-medium", kWhite = "titanium-white-paste";
+
+ink::Ink red_paste() {
+    ink::Ink ink = ink::load_ink(kWhite);
+    ink.name = "red paste";
+    ink.parts[0].pigment = ink::load_pigment("cinnabar");
+    return ink;
+}
+
+Stroke stroke_of(const std::string& ink, const Frame& frame) {
+    Stroke s = line(kBrush, 8e-3, frame);
+    s.trace.ink = ink;
+    return s;
+}
+
+double capacity() { return ink::film_of_millilitres(brush::load_preset(kBrush).capacity * 1e6); }
+
+// Heights along a line across the stroke, micrometres.
+std::vector<double> heights_across(const Painting& painting, double x) {
+    const ink::AtlasMap<float> map = ink::compose_height(painting.stack(), painting.model().texels);
+    std::vector<double> out;
+    const double texel = painting.model().texels.texel_size;
+    const auto column = static_cast<std::size_t>(kSize / 2 + x / texel);
+    for (std::size_t row = 0; row < kSize; ++row) out.push_back(static_cast<double>(map.texels[row * kSize + column]));
+    return out;
+}
+
+TEST(PasteStroke, ItLeavesFurrowsAlongTheHairAndSmoothOnes) {
+    const Model model = sheet();
+    Painting painting(model);
+    painting.paint(stroke_of(kWhite, {}));
+    const std::vector<double> across = heights_across(painting, 0), further = heights_across(painting, 0.003);
+    std::vector<double> inside, beside;
+    for (std::size_t i = 1; i + 1 < kSize; ++i)
+        if (std::min({across[i - 1], across[i], across[i + 1], further[i]}) > 60) {
+            inside.push_back(across[i]);
+            beside.push_back(further[i]);
+        }
+    ASSERT_GT(inside.size(), 60u) << "texels of 0.06 mm";
+    const auto mean = [](const std::vector<double>& v) {
+        double sum = 0;
+        for (const double x : v) sum += x / static_cast<double>(v.size());
+        return sum;
+    };
+    const double m = mean(inside), n = mean(beside);
+    EXPECT_GT(m, 100) << "45 film units leave 225 µm of dry white";
+    EXPECT_LT(m, 260);
+    double a = 0, b = 0, ab = 0, steepest = 0;
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+        a += (inside[i] - m) * (inside[i] - m);
+        b += (beside[i] - n) * (beside[i] - n);
+        ab += (inside[i] - m) * (beside[i] - n);
+        if (i) steepest = std::max(steepest, std::abs(inside[i] - inside[i - 1]));
+    }
+    EXPECT_GT(std::sqrt(a / static_cast<double>(inside.size())), 5) << "relief of micrometres that raking light shows";
+    EXPECT_GT(ab / std::sqrt(a * b), 0.5) << "furrows go on along the stroke";
+    EXPECT_LT(steepest, 60) << "slope below one: no steps of texels";
+}
+
+TEST(PasteStroke, EachPigmentIsKeptWhenItPloughsAnother) {
+    const Model model = sheet();
+    Painting painting(model);
+    painting.use_ink(red_paste());
+    painting.paint(stroke_of(kWhite, {}));
+    const double left = painting.held(kBrush)->reservoir.pigment(0);
+    const double white = painting.canvas().total(model.texels, 0);
+    // Floats on texels, some 1e5 of them: what goes astray is rounding.
+    EXPECT_NEAR((left + white) / capacity(), 1, 1e-6);
+    painting.paint(stroke_of("red paste", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0})));
+    const ink::Reservoir& brush = painting.held(kBrush)->reservoir;
+    EXPECT_GT(brush.pigment(0), 0) << "it took white up";
+    EXPECT_NEAR((painting.canvas().total(model.texels, 0) + brush.pigment(0)) / white, 1, 1e-6);
+    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + brush.pigment(1)) / capacity(), 1, 1e-6);
+    EXPECT_EQ(painting.canvas().liquid(painting.canvas().touched_slots()[0], ink::Liquid::film), nullptr);
+}
+
+TEST(PasteStroke, ItReplaysAndIsTakenBackToTheBit) {
+    const Model model = sheet();
+    std::uint64_t hash = 0;
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        Painting painting(model);
+        painting.use_ink(red_paste());
+        painting.paint(stroke_of(kWhite, {}));
+        const std::uint64_t first = painting.hash();
+        painting.paint(stroke_of("red paste", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0})));
+        if (hash) {
+            EXPECT_EQ(painting.hash(), hash);
+        }
+        hash = painting.hash();
+        painting.undo();
+        // The second pigment stays known, without any of it.
+        painting.redo();
+        EXPECT_EQ(painting.hash(), hash);
+        EXPECT_NE(first, hash);
+    }
+    set_thread_count(0);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
