@@ -63,16 +63,17 @@ float part_of_row(Session& s, int n) {
 void care(Session& s) {
     Ui& ui = s.ui;
     const float half = part_of_row(s, 2);
-    const auto act = [&](stroke::Action action, double depth = 1) {
-        s.painter->post(CareForBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth}});
+    const auto act = [&](stroke::Action action, double depth = 1, double side = 0) {
+        s.painter->post(CareForBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
     };
-    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half)) act(stroke::Action::dip, s.dip_depth);
+    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half)) act(stroke::Action::dip, s.dip_depth, s.dip_side);
     ImGui::SameLine();
-    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half)) act(stroke::Action::wipe, s.dip_depth);
+    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half)) act(stroke::Action::wipe, s.dip_depth, s.dip_side);
     if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::Action::rinse);
     ImGui::SameLine();
     if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::Action::reshape);
     ui.slider("How deep", s.dip_depth, 0.05, 1, "%.0f %%", "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then", 0.01);
+    ui.slider("Which side", s.dip_side, -1, 1, "%.0f %%", "Part of the hair's width that is dipped or wiped, from the right flank, or from the left when negative; 0: all of it. Wipe one side and dip it into another ink: the stroke shows both side by side", 0.01);
     if (s.last.brush_colour) {
         const auto& c = *s.last.brush_colour;
         ImGui::PushStyleColor(ImGuiCol_PlotHistogram, IM_COL32(c[0], c[1], c[2], 255));

@@ -134,6 +134,7 @@ struct Session {
     std::string tip_ink = "carbon";
     double tip_depth = 0.3;                ///< part of the tuft's length
     double dip_depth = 1;                  ///< likewise, of Dip and Wipe
+    double dip_side = 0;                   ///< of the tuft's width, from the right flank (> 0) or the left; 0: all
     PaletteState palette;
     std::vector<ink::Ink> own_inks;        ///< of this work
     Looks looks;

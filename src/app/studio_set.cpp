@@ -48,6 +48,8 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "palette-tool") s.palette.tool = static_cast<PaletteTool>(one_of({"brush", "pour", "pick"}));
     else if (name == "two-inks") s.two_inks = on;
     else if (name == "tip") s.tip_depth = std::clamp(number, 0.05, 0.9);
+    else if (name == "dip-depth") s.dip_depth = std::clamp(number, 0.05, 1.0);
+    else if (name == "dip-side") s.dip_side = std::clamp(number, -1.0, 1.0);
     else if (name == "mask-kind") s.mask_choice.kind = stroke::mask_kind_of(value);
     else if (name == "mask-within") s.mask_choice.within = std::clamp(number, 0.0, 180.0) * kDegree;
     else if (name == "string") s.hand.string = std::max(0.0, number) * kMillimetre;

@@ -210,6 +210,18 @@ TEST_F(StudioProgram, AMixturePickedUpIsAnInkOfTheProject) {
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }
 
+TEST_F(StudioProgram, ABrushDippedOnOneSideReplays) {
+    const Ran ran = studio(kBowl + "set ink gamboge\nset pressure 0.8\nset dip-side 0.5\nclick Wipe\nwait-ready\nset ink cinnabar\nclick Dip\nwait-ready\n"
+                                   "set ink gamboge\nset carry on\nstroke 44%,52% 47%,60% 52%,62%\nwait-ready\nexpect strokes 3\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = io::Project::open(path("work.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 3u);
+    EXPECT_EQ(strokes[0].action, stroke::Action::wipe);
+    EXPECT_EQ(strokes[1].action, stroke::Action::dip);
+    for (int k = 0; k < 2; ++k) EXPECT_EQ(strokes[k].extent.side, 0.5);
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
+}
+
 TEST_F(StudioProgram, InksMixOnThePaletteAndTheMixtureReplays) {
     const Ran ran = studio(kBowl + "set palette on\nwait 0.1\nset palette-tool pour\nset ink cinnabar\nmove 370,150\npress\nrelease\nwait-ready\n"
                                    "set ink gamboge\nmove 440,150\npress\nrelease\nwait-ready\nset palette-tool brush\nclick \"Rinse the brush\"\nwait-ready\n"
