@@ -38,12 +38,12 @@ std::string recipe_text(const Session& s, const std::string& name) {
 }
 
 void swatches(Session& s) {
-    const float size = s.ui.px(30);
-    const auto columns = static_cast<std::size_t>(std::max(1.0f, ImGui::GetContentRegionAvail().x / (size + ImGui::GetStyle().ItemSpacing.x)));
+    constexpr std::size_t columns = 6;
+    const float gap = s.ui.px(6), size = (ImGui::GetContentRegionAvail().x + gap) / columns - gap;
     const std::vector<std::string> names = ink_names(s);
     for (std::size_t i = 0; i < names.size(); ++i) {
         const std::string& name = names[i];
-        if (i % columns) ImGui::SameLine();
+        if (i % columns) ImGui::SameLine(0, gap);
         const ImVec2 at = ImGui::GetCursorScreenPos();
         if (ImGui::InvisibleButton(("ink " + name).c_str(), ImVec2(size, size))) s.ink = name;
         s.ui.mark(name);
