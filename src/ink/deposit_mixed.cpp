@@ -56,14 +56,6 @@ TUFT_CLONES double store(float* __restrict w, float* __restrict film, const floa
     return sum;
 }
 
-/// Deals what was stored of a plane out to the nodes, by what each has over the texels that took it.
-/// Returns nothing where none has.
-void deal(NodeContents& given, int plane, double stored, const std::array<double, kNodes>& shares, const Tents& tents) {
-    double all = 0;
-    for (int k = 0; k < tents.count; ++k) all += shares[k];
-    for (int k = 0; k < tents.count && all > 0; ++k) given[tents.node[k]][plane] += stored * shares[k] / all;
-}
-
 }  // namespace
 
 NodeMixes mixes_within(const Reservoir& tuft, const NodeTouch& nodes, double target, double area) {
@@ -101,23 +93,18 @@ void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, kN
     }
     if (std::none_of(sum.begin(), sum.end(), [](float v) { return v > 0; })) return;
     within_room(part.data(), sum.data(), all.data(), params.capacity);
-    std::array<double, kNodes> shares, strength{}, water{};
+    std::array<double, kNodes> shares;
+    MixtureGiven mixture(given, mixes, tents);
     for (int p = 0; p < kMaxPigments; ++p) {
         if (!used[p]) continue;
         const double stored =
             store(canvas.touch(slot, p).data(), film.data(), dw[p].data(), part.data(), mix[p].data(), area.data());
-        for (int k = 0; k < tents.count; ++k) {
-            const auto m = static_cast<double>(mixes[p][tents.node[k]]);
-            shares[k] = m * static_cast<double>(tent_sum(tents.weight[k], film.data(), area));
-            strength[k] += m;
-            water[k] += shares[k];
-        }
-        deal(given, p, stored, shares, tents);
+        for (int k = 0; k < tents.count; ++k)
+            shares[k] = static_cast<double>(mixes[p][tents.node[k]]) *
+                        static_cast<double>(tent_sum(tents.weight[k], film.data(), area));
+        mixture.pigment(p, stored, shares);
     }
-    // Water leaves with the pigments as it is mixed with them.
-    for (int k = 0; k < tents.count; ++k)
-        if (strength[k] > 0)
-            given[tents.node[k]][kWater] += water[k] * static_cast<double>(mixes[kWater][tents.node[k]]) / strength[k];
+    mixture.water();
 }
 
 }  // namespace tuft::ink

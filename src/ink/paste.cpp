@@ -9,8 +9,6 @@ namespace tuft::ink {
 namespace {
 
 constexpr int kN = atlas::kTileTexels;
-constexpr int kSums = 16;
-constexpr int kWater = kMaxPigments;
 constexpr int kModes = 64;           // the finest waves are a thirtieth of the width
 constexpr double kTension = 0.03;    // N/m, of oil and of water with binder
 constexpr double kDensity = 1500;    // kg/m³ of heavy paint
@@ -76,27 +74,6 @@ TUFT_CLONES void move(float* __restrict w, float* __restrict up, float* __restri
         down[t] = strength[t] > 0 ? volume[t] * mix[t] / strength[t] : 0;
         w[t] = (w[t] - up[t]) + down[t];
     }
-}
-
-/// Σ (after − before) · area, in an order of its own.
-TUFT_CLONES double change(const float* __restrict after, const float* __restrict before,
-                          const float* __restrict area) {
-    double sums[kSums] = {};
-    for (int t = 0; t < kN; t += kSums)
-        for (int i = 0; i < kSums; ++i)
-            sums[i] += (static_cast<double>(after[t + i]) - static_cast<double>(before[t + i])) *
-                       static_cast<double>(area[t + i]);
-    double sum = 0;
-    for (const double s : sums) sum += s;
-    return sum;
-}
-
-/// Deals an amount out to the nodes by their shares.
-void deal(NodeContents& to, int plane, double amount, const std::array<double, kNodes>& shares, const Tents& tents) {
-    double all = 0;
-    for (int k = 0; k < tents.count; ++k) all += shares[k];
-    for (int k = 0; k < tents.count; ++k)
-        to[tents.node[k]][plane] += amount * (all > 0 ? shares[k] / all : 1.0 / tents.count);
 }
 
 /// About exp(−x²), nothing from x = 2 on.
@@ -196,7 +173,8 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
             static_cast<float>(-std::expm1(-ds / params.transfer_length)), static_cast<float>(1 - params.dig),
             static_cast<float>(params.exchange), static_cast<float>(params.room), static_cast<float>(params.capacity));
     part_of(v.up.data(), here.data());
-    std::array<double, kNodes> shares, pigment{}, water{};
+    std::array<double, kNodes> shares;
+    MixtureGiven mixture(given, mixes, tents);
     for (int p = 0; p < kMaxPigments; ++p) {
         const Plane* there = canvas.plane(slot, p);
         if (!used[p] && !there) continue;
@@ -204,7 +182,7 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         Plane& w = canvas.touch(slot, p);
         old = w;
         move(w.data(), up.data(), down.data(), v.up.data(), v.down.data(), mix[p].data(), strength.data());
-        const double stored = change(w.data(), old.data(), area.data());
+        const double stored = change_sum(w.data(), old.data(), area.data());
         double lifted = 0;
         for (int k = 0; k < tents.count; ++k) {
             shares[k] = there ? static_cast<double>(tent_sum(tents.weight[k], up.data(), area)) : 0;
@@ -214,17 +192,11 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         if (!used[p]) lifted = std::max(-stored, 0.0);
         const double laid = std::max(stored + lifted, 0.0);
         deal(taken, p, laid - stored, shares, tents);
-        for (int k = 0; k < tents.count; ++k) {
+        for (int k = 0; k < tents.count; ++k)
             shares[k] = static_cast<double>(tent_sum(tents.weight[k], down.data(), area));
-            pigment[k] += static_cast<double>(mixes[p][tents.node[k]]);
-            water[k] += shares[k];
-        }
-        deal(given, p, laid, shares, tents);
+        mixture.pigment(p, laid, shares);
     }
-    // Water leaves with the pigments as it is mixed with them.
-    for (int k = 0; k < tents.count; ++k)
-        if (pigment[k] > 0)
-            given[tents.node[k]][kWater] += water[k] * static_cast<double>(mixes[kWater][tents.node[k]]) / pigment[k];
+    mixture.water();
 }
 
 }  // namespace tuft::ink

@@ -54,6 +54,18 @@ TUFT_CLONES float dot_area(const float* __restrict w, const float* __restrict x,
     return sum;
 }
 
+TUFT_CLONES double difference_area(const float* __restrict after, const float* __restrict before,
+                                   const float* __restrict area) {
+    double sums[kSums] = {};
+    for (int t = 0; t < kN; t += kSums)
+        for (int i = 0; i < kSums; ++i)
+            sums[i] += (static_cast<double>(after[t + i]) - static_cast<double>(before[t + i])) *
+                       static_cast<double>(area[t + i]);
+    double sum = 0;
+    for (const double s : sums) sum += s;
+    return sum;
+}
+
 struct Range {
     int first, last;
 };
@@ -123,6 +135,10 @@ void interpolate(Texels& out, const Tents& tents, const std::array<float, kNodes
     out.fill(0);
     for (int k = 0; k < tents.count; ++k)
         if (const float v = values[tents.node[k]]; v != 0) add_scaled(out.data(), tents.weight[k].data(), v);
+}
+
+double change_sum(const float* after, const float* before, const float* area) {
+    return difference_area(after, before, area);
 }
 
 }  // namespace tuft::ink

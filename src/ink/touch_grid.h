@@ -54,6 +54,9 @@ void tents_of(Tents& out, const TexelPlaces& places, std::span<const float, atla
 float tent_sum(std::span<const float, atlas::kTileTexels> weight, const float* x,
                std::span<const float, atlas::kTileTexels> area);
 
+/// Σ (after − before) · area over a tile, in an order of its own. Double sums.
+double change_sum(const float* after, const float* before, const float* area);
+
 /// out = Σ over the tents of weight · value, `values` by node.
 void interpolate(std::array<float, atlas::kTileTexels>& out, const Tents& tents,
                  const std::array<float, kNodes>& values);

@@ -190,4 +190,27 @@ void absorb(Reservoir& tuft, const NodeContents& lifted, const NodeTouch& nodes,
     absorb(tuft, beyond, touch);
 }
 
+void deal(NodeContents& to, int plane, double amount, const std::array<double, kNodes>& shares, const Tents& tents) {
+    double all = 0;
+    for (int k = 0; k < tents.count; ++k) all += shares[k];
+    for (int k = 0; k < tents.count; ++k)
+        to[tents.node[k]][plane] += amount * (all > 0 ? shares[k] / all : 1.0 / tents.count);
+}
+
+void MixtureGiven::pigment(int plane, double amount, const std::array<double, kNodes>& shares) {
+    for (int k = 0; k < tents_.count; ++k) {
+        strength_[k] += static_cast<double>(mixes_[plane][tents_.node[k]]);
+        came_[k] += shares[k];
+    }
+    deal(given_, plane, amount, shares, tents_);
+}
+
+void MixtureGiven::water() {
+    constexpr int kWater = kMaxPigments;
+    for (int k = 0; k < tents_.count; ++k)
+        if (strength_[k] > 0)
+            given_[tents_.node[k]][kWater] +=
+                came_[k] * static_cast<double>(mixes_[kWater][tents_.node[k]]) / strength_[k];
+}
+
 }  // namespace tuft::ink

@@ -52,6 +52,27 @@ bool is_mixed(const Reservoir& tuft);
 /// mixture of the whole tuft.
 NodeMixes mixes_at(const Reservoir& tuft, const NodeTouch& nodes);
 
+/// Deals an amount of a plane out to a tile's nodes by their shares, evenly where none has any.
+void deal(NodeContents& to, int plane, double amount, const std::array<double, kNodes>& shares, const Tents& tents);
+
+/// Books what a stamp's mixture leaves on a tile: each pigment to the nodes that it came from, and
+/// then the water that was mixed with it there.
+class MixtureGiven {
+  public:
+    MixtureGiven(NodeContents& given, const NodeMixes& mixes, const Tents& tents)
+        : given_(given), mixes_(mixes), tents_(tents) {}
+
+    /// `amount` in film·m² of a pigment, and what of it came from each node of the tents.
+    void pigment(int plane, double amount, const std::array<double, kNodes>& shares);
+    void water();
+
+  private:
+    NodeContents& given_;
+    const NodeMixes& mixes_;
+    const Tents& tents_;
+    std::array<double, kNodes> strength_{}, came_{};  ///< of the mixture; film·m² of all pigments
+};
+
 /// Takes what was given at the nodes, each plane from the cells over its node in proportion to what
 /// they have of it, and what they lack from all cells that have it. As long as the tuft has so much
 /// of a plane, its total falls by just the sum.

@@ -9,7 +9,6 @@ namespace tuft::ink {
 namespace {
 
 constexpr int kN = atlas::kTileTexels;
-constexpr int kSums = 16;
 constexpr int kWater = kMaxPigments;
 constexpr double kSkinFilm = 4;         // film units on full hair
 constexpr double kHalfFull = 0.5;       // saturation from which hair is wet outside all over
@@ -74,19 +73,6 @@ TUFT_CLONES void move(float* __restrict p, float* __restrict up, const float* __
         up[t] = p[t] * lifted[t];
         p[t] = (p[t] - up[t]) + part[t] * film[t];
     }
-}
-
-/// Σ (after − before) · area over the tile, in an order of its own.
-TUFT_CLONES double change(const float* __restrict after, const float* __restrict before,
-                          const float* __restrict area) {
-    double sums[kSums] = {};
-    for (int t = 0; t < kN; t += kSums)
-        for (int i = 0; i < kSums; ++i)
-            sums[i] += (static_cast<double>(after[t + i]) - static_cast<double>(before[t + i])) *
-                       static_cast<double>(area[t + i]);
-    double sum = 0;
-    for (const double s : sums) sum += s;
-    return sum;
 }
 
 /// What a tile's nodes gave and took, before it is made to agree with what was stored.
@@ -204,7 +190,7 @@ void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
     }
     before = w;
     for (int t = 0; t < kN; ++t) w[t] = (w[t] - v.up[t]) + v.down[t];
-    booked.stored[kWater] = change(w.data(), before.data(), area.data());
+    booked.stored[kWater] = change_sum(w.data(), before.data(), area.data());
     for (int p = 0; p < kMaxPigments; ++p)
         if (const Plane* here = canvas.plane(slot, p)) add_concentration(dense.data(), here->data(), total.data());
     lifted_part(v.up.data(), total.data(), dense.data());
@@ -217,7 +203,7 @@ void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
         Plane& here = canvas.touch(slot, p);
         before = here;
         move(here.data(), up.data(), v.up.data(), part.data(), film.data());
-        booked.stored[p] = change(here.data(), before.data(), area.data());
+        booked.stored[p] = change_sum(here.data(), before.data(), area.data());
         for (int k = 0; k < tents.count && there; ++k)
             booked.taken[k][p] = static_cast<double>(tent_sum(tents.weight[k], up.data(), area));
     }
