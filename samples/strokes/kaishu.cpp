@@ -41,12 +41,12 @@ Stroke heng(Vec2 from, Vec2 to, double w, double bow) {
     const Axis l(from, to);
     const double n = l.length, b = -bow * n;
     Stroke s{"heng", {}};
-    append(s, {l.at(0.38 * w, -0.26 * w, 0, 0.5), l.at(0.58 * w, -0.05 * w, 1.0 * w, 0.5, 0.02),
-               l.at(1.8 * w, 0.55 * b, 0.90 * w, 0.9), l.at(0.5 * n, b, 0.78 * w, 1.1),
-               l.at(n - 2.1 * w, 0.65 * b, 0.80 * w, 0.9),
-               l.at(n - 1.25 * w, 0.3 * b - 0.12 * w, 0.78 * w, 0.5, 0.02),
-               l.at(n - 0.76 * w, 0.18 * w, 1.16 * w, 0.4, 0.03),
-               l.at(n - 0.86 * w, 0.20 * w, 0, 0.5)});
+    append(s, {l.at(0.15 * w, -0.34 * w, 0, 0.5), l.at(0.45 * w, -0.12 * w, 0.72 * w, 0.5, 0),
+               l.at(0.9 * w, -0.02 * w, 0.84 * w, 0.6), l.at(1.8 * w, 0.5 * b, 0.80 * w, 0.9),
+               l.at(0.5 * n, b, 0.74 * w, 1.1), l.at(n - 1.9 * w, 0.65 * b, 0.75 * w, 0.9),
+               l.at(n - 0.85 * w, 0.3 * b - 0.10 * w, 0.80 * w, 0.6, 0.01),
+               l.at(n - 0.50 * w, 0.09 * w, 0.88 * w, 0.4, 0.02),
+               l.at(n - 0.52 * w, 0.11 * w, 0, 0.3)});
     return s;
 }
 
@@ -65,8 +65,8 @@ namespace {
 
 /// The head of a 竖: a cut from the upper left, then straight down.
 void shu_head(Stroke& s, const Axis& l, double w) {
-    append(s, {l.at(0.32 * w, 0.26 * w, 0, 0.5), l.at(0.60 * w, 0.0, 1.10 * w, 0.5, 0.02),
-               l.at(1.9 * w, 0.06 * w, 0.98 * w, 0.9)});
+    append(s, {l.at(0.15 * w, 0.34 * w, 0, 0.5), l.at(0.45 * w, 0.12 * w, 0.76 * w, 0.5, 0),
+               l.at(0.9 * w, 0.03 * w, 0.96 * w, 0.6), l.at(1.9 * w, 0.04 * w, 0.92 * w, 0.9)});
 }
 
 }  // namespace
@@ -77,8 +77,8 @@ Stroke shu_drop(Vec2 from, Vec2 to, double w, double bow) {
     Stroke s{"shu", {}};
     shu_head(s, l, w);
     append(s, {l.at(0.5 * n, b + 0.03 * w, 0.88 * w, 1.1),
-               l.at(n - 1.7 * w, 0.5 * b + 0.03 * w, 1.06 * w, 0.7),
-               l.at(n - 0.9 * w, 0.02 * w, 0.92 * w, 0.5), l.at(n - 0.1 * w, -0.02 * w, 0, 0.6)});
+               l.at(n - 1.5 * w, 0.5 * b + 0.03 * w, 0.96 * w, 0.7),
+               l.at(n - 0.55 * w, 0.01 * w, 0.98 * w, 0.5, 0.03), l.at(n - 0.57 * w, 0, 0, 0.3)});
     return s;
 }
 
@@ -148,10 +148,10 @@ Stroke pie(Vec2 from, Vec2 to, double w, double sag) {
     const Axis l(from, to);
     const double n = l.length, b = -sag * n;
     Stroke s{"pie", {}};
-    append(s, {l.at(0.12 * w, 0.42 * w, 0, 0.5), l.at(0.55 * w, 0.02 * w, 1.08 * w, 0.5, 0.02),
-               l.at(0.25 * n, 0.62 * b, 0.94 * w, 0.95), l.at(0.5 * n, b, 0.85 * w, 1.05),
-               l.at(0.74 * n, 0.88 * b, 0.66 * w, 1.1), l.at(0.90 * n, 0.46 * b, 0.36 * w, 1.2),
-               l.at(0.985 * n, 0.06 * b, 0.0, 1.4)});
+    append(s, {l.at(0.12 * w, 0.36 * w, 0, 0.5), l.at(0.42 * w, 0.12 * w, 0.76 * w, 0.5, 0),
+               l.at(0.9 * w, 0.15 * b, 1.0 * w, 0.6), l.at(0.25 * n, 0.62 * b, 0.94 * w, 0.95),
+               l.at(0.5 * n, b, 0.85 * w, 1.05), l.at(0.74 * n, 0.88 * b, 0.66 * w, 1.1),
+               l.at(0.90 * n, 0.46 * b, 0.36 * w, 1.2), l.at(0.985 * n, 0.06 * b, 0.0, 1.4)});
     run_out(s, w);
     return s;
 }
@@ -161,9 +161,9 @@ Stroke na(Vec2 from, Vec2 foot, Vec2 to, double w) {
     const double n = l.length;
     const Vec2 t = to - foot;
     Stroke s{"na", {}};
-    append(s, {l.at(0, 0, 0, 0.6), l.at(0.02 * n, 0.005 * n, 0.15 * w, 0.6), l.at(0.08 * n, 0.02 * n, 0.26 * w, 0.8),
-               l.at(0.38 * n, 0.07 * n, 0.48 * w, 1), l.at(0.72 * n, 0.055 * n, 0.80 * w, 0.9),
-               l.at(0.97 * n, 0, 1.06 * w, 0.45, 0.04)});
+    append(s, {l.at(0, 0, 0, 0.6), l.at(0.02 * n, 0.005 * n, 0.15 * w, 0.6),
+               l.at(0.08 * n, 0.02 * n, 0.26 * w, 0.8), l.at(0.38 * n, 0.07 * n, 0.48 * w, 1),
+               l.at(0.72 * n, 0.055 * n, 0.80 * w, 0.9), l.at(0.97 * n, 0, 1.06 * w, 0.45, 0.04)});
     append(s, {{foot.x + 0.34 * t.x, foot.y + 0.30 * t.y, 0.80 * w, 0.6},
                {foot.x + 0.66 * t.x, foot.y + 0.62 * t.y, 0.44 * w, 0.85},
                {to.x, to.y, 0, 1.2}});
@@ -176,8 +176,9 @@ Stroke dian(Vec2 from, Vec2 to, double w) {
     const double n = l.length;
     Stroke s{"dian", {}};
     append(s,
-           {l.at(0, 0, 0, 0.6), l.at(0.04 * n, 0, 0.2 * w, 0.5), l.at(0.45 * n, -0.05 * n, 0.72 * w, 0.7),
-            l.at(n - 0.5 * w, 0.0, 1.12 * w, 0.45, 0.03), l.at(n - 0.62 * w, 0.06 * w, 0.0, 0.5)});
+           {l.at(0, 0, 0, 0.6), l.at(0.04 * n, 0, 0.2 * w, 0.5),
+            l.at(0.45 * n, -0.05 * n, 0.72 * w, 0.7), l.at(n - 0.5 * w, 0.0, 1.12 * w, 0.45, 0.03),
+            l.at(n - 0.62 * w, 0.06 * w, 0.0, 0.5)});
     return s;
 }
 
@@ -208,11 +209,11 @@ namespace {
 /// The way across and the shoulder of a 折.
 void zhe_head(Stroke& s, const Axis& l, double w) {
     const double n = l.length;
-    append(s, {l.at(0.2 * w, -0.20 * w, 0, 0.5), l.at(0.5 * w, 0.0, 0.88 * w, 0.5, 0.01),
-               l.at(1.4 * w, -0.005 * n, 0.82 * w, 0.9), l.at(0.55 * n, -0.02 * n, 0.72 * w, 1),
-               l.at(n - 1.3 * w, -0.012 * n, 0.76 * w, 0.8),
-               l.at(n - 0.72 * w, -0.10 * w, 0.70 * w, 0.45, 0.02),
-               l.at(n - 0.46 * w, 0.24 * w, 1.12 * w, 0.4, 0.02)});
+    append(s, {l.at(0.15 * w, -0.28 * w, 0, 0.5), l.at(0.42 * w, -0.10 * w, 0.68 * w, 0.5, 0),
+               l.at(0.85 * w, -0.02 * w, 0.80 * w, 0.6), l.at(1.6 * w, -0.005 * n, 0.78 * w, 0.9),
+               l.at(0.55 * n, -0.02 * n, 0.72 * w, 1), l.at(n - 1.4 * w, -0.012 * n, 0.75 * w, 0.8),
+               l.at(n - 0.72 * w, -0.08 * w, 0.78 * w, 0.45, 0.01),
+               l.at(n - 0.50 * w, 0.16 * w, 0.98 * w, 0.4, 0.01)});
 }
 
 }  // namespace
