@@ -105,6 +105,25 @@ void carry(Memory& memory, const Clamp& clamp) {
     memory.clamp = clamp;
 }
 
+void turn_about_clamp(Memory& memory, double angle) {
+    const Quat turn = glm::angleAxis(angle, memory.clamp.tangent);
+    const Vec3& root = memory.clamp.position;
+    for (Vec3& t : memory.tangent) t = glm::normalize(turn * t);
+    for (Vec3& x : memory.node) x = root + turn * (x - root);
+    for (ContactMemory& c : memory.contact) {
+        c.anchor = root + turn * (c.anchor - root);
+        c.normal = turn * c.normal;
+    }
+    // In the joints' frames, which are carried out from the clamp, a turn of all is a turn in the plane.
+    const double co = std::cos(angle), si = std::sin(angle);
+    const auto turned = [&](const Vec2& v) { return Vec2{co * v.x - si * v.y, si * v.x + co * v.y}; };
+    for (JointMemory& joint : memory.joint) {
+        for (Vec2& s : joint.stop) s = turned(s);
+        joint.bend = turned(joint.bend);
+    }
+    memory.turn.clear();
+}
+
 std::vector<Vec3> nodes(const Rod& rod, const Memory& memory) {
     std::vector<Vec3> x(rod.segments() + 1);
     x[0] = memory.clamp.position;

@@ -161,6 +161,10 @@ Memory make_memory(const Rod& rod, const Clamp& clamp);
 /// The rod as it would be if carried rigidly with the clamp to a new place.
 void carry(Memory& memory, const Clamp& clamp);
 
+/// The rod turned about its clamp's axis by `angle`, with its sets and the places where it sticks;
+/// the clamp stays.
+void turn_about_clamp(Memory& memory, double angle);
+
 /// Nodes of the rod: root + Σ l_j t_j. [n+1]
 std::vector<Vec3> nodes(const Rod& rod, const Memory& memory);
 

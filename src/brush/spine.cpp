@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/splay.h"
 #include "brush/tuft_sections.h"
 #include "brush/wedge.h"
 
@@ -174,10 +175,12 @@ void approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
     Pose last = from;
     for (int k = 1; k < parts; ++k) {
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
+        turn_with_splay(p, spine, last, pose, planes);
         break_symmetry(p, spine, last, pose, planes);
         rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes), law);
         last = pose;
     }
+    turn_with_splay(p, spine, last, to, planes);
     break_symmetry(p, spine, last, to, planes);
 }
 

@@ -20,6 +20,15 @@ std::size_t expected_planes(const Tuft& tuft) {
     return count;
 }
 
+/// The force on its way through the wet hair, solved exactly for a force that stays over dt.
+void feel(Tuft& tuft, TuftState& state, double dt) {
+    const double w = 1 / kFeltTime, t = std::isfinite(dt) ? std::max(0.0, dt) : 0, fade = std::exp(-w * t);
+    const Vec3 miss = tuft.felt - state.force, slope = tuft.felt_rate + w * miss;
+    tuft.felt = state.force + fade * (miss + t * slope);
+    tuft.felt_rate = fade * (tuft.felt_rate - w * t * slope);
+    state.felt = tuft.felt;
+}
+
 constexpr double kCoheres = 0.25;  ///< of the capacity: ink from which water draws parted hair together
 constexpr double kMergingTime = 0.03;    ///< s in which it does
 constexpr double kPartingLength = 6e-3;  ///< m of the hand's way in which sub-spines part
@@ -121,6 +130,8 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     state.iterations = r.iterations;
     state.branches.push_back(std::move(solved.branch));
 
+    feel(tuft, state, dt);
+
     const double measure = split_measure(p, tuft.ink_left, state.root_moment);
     if (tuft.split) {
         // Too dry for water to draw it together, it stays split until it is wetted or combed.
@@ -145,14 +156,15 @@ void reshape(Tuft& tuft) {
     const rod::Clamp clamp = tuft.spine.memory.clamp;
     tuft.spine.side.clear();
     tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
+    tuft.spine.one_sided = Vec2{0};
     tuft.split = false;
     gather(tuft.bundles);
 }
 
 Vec3 hand_force(const Preset& p, const TuftState& state) {
-    const double size = glm::length(state.force);
+    const double size = glm::length(state.felt);
     if (size <= 0) return Vec3{0};
-    return state.force * (std::min(p.force_gain * size, p.force_limit) / size);
+    return state.felt * (std::min(p.force_gain * size, p.force_limit) / size);
 }
 
 }  // namespace tuft::brush

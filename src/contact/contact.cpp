@@ -301,6 +301,7 @@ Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery
         const auto far = surface.closest_point(nodes.front());
         result.distance = far ? far->distance : std::numeric_limits<double>::infinity();
         memory.touching = false;
+        result.hand_force = hand_force(preset, result, options);
         return result;
     }
 

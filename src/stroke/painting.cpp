@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t kPosesPerReport = 16;
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteStep = 1e-4, kPasteCell = 4e-5;
-constexpr double kForceTime = 5e-3;  // seconds of the low-pass on the force to the hand
 
 /// Hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
 double wetness_of(const ink::Reservoir& reservoir) {
@@ -225,8 +224,7 @@ void Painting::draw_poses() {
         if (!h.moved && h.tuft.posed) brush::step(h.tuft, pose, {}, 0);
         contact::Result contact =
             contact::step(h.tuft, pose, *h.model->query, h.memory, dt, h.contact_options);
-        h.force += -std::expm1(-std::max(dt, 0.0) / kForceTime) * (contact.hand_force - h.force);
-        if (!h.moved) h.force = contact.hand_force;
+        h.force = contact.hand_force;
         h.last_time = pose.time;
         h.moved = true;
         if (h.wet) h.wet->pass(h.stamper, dt);

@@ -29,8 +29,8 @@ struct ForceRecord {
     brush::Pose pose;
     Vec3 force{0};             ///< newtons, of the surface on the tuft: normal and friction
     Vec3 hand_force{0};        ///< newtons, for a haptic device: contact::Result::hand_force (gain,
-                               ///< proximity, clamp) under a low-pass of 5 ms, so that a tip that
-                               ///< slips or buckles does not knock
+                               ///< proximity, clamp), which has come through the mass of the wet
+                               ///< hair (brush/tuft.h), so that a tip that slips does not knock
     Vec3 torque{0};            ///< N·m, of `force` about the ferrule's mouth
     double moment = 0;         ///< N·m, bending moment at the ferrule
 };
