@@ -14,10 +14,11 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr int kMostCuts = 6;
+constexpr int kMostCuts = 9;
+constexpr double kLeastOfUse = 0.98;  // that is left when a cut is made for the sake of the next
 constexpr double kBeyond = 1.03;  // of the goal, once charts are cut: a short search errs by this
 constexpr double kAsLong = 0.85;         // of the longest chart's length
-constexpr std::size_t kCandidates = 4;   // largest charts that are tried
+constexpr std::size_t kCandidates = 6;   // largest charts that are tried
 constexpr std::size_t kMostCharts = 48;  // with more, small ones fill the gaps
 constexpr std::size_t kDear = 200000;    // triangles of a chart that is left as it is
 
@@ -166,38 +167,70 @@ std::vector<std::vector<Vec2>> chart_borders(const CutMesh& cut) {
     return borders;
 }
 
-CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
-                      double goal) {
-    CutToPack result;
-    std::vector<std::vector<Vec2>> borders = chart_borders(cut);
+namespace {
+
+/// Cuts while coarse masks show that it gains, until they show the goal or nothing helps; the
+/// number of cuts.
+int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
+                       double goal, int most) {
     double area = 0;
     for (const FlatChart& chart : cut.charts) area += chart.mesh.area;
-    result.packing = pack(borders, options);
-    const double whole_use = use_of(*result.packing, area);
-    if (cut.charts.size() > kMostCharts || whole_use >= goal) return result;
     options.search = Search::coarse;
-    const ProgressFn progress = std::exchange(options.progress, {});
+    std::vector<std::vector<Vec2>> borders = chart_borders(cut);
     double use = use_of(pack(borders, options), area);
-    goal *= kBeyond * use / whole_use;  // what coarse masks will show of it
-    for (; result.cuts < kMostCuts && use < goal; borders = chart_borders(cut)) {
-        report(progress, "cut to pack", double(result.cuts) / kMostCuts);
+    int cuts = 0;
+    for (; cuts < most && use < goal; borders = chart_borders(cut)) {
         const std::vector<Proposal> all = proposals(mesh, cut, gap);
         std::vector<double> gained(all.size(), 0);
         run_tasks(all.size(), [&](std::size_t i) {
             gained[i] = use_of(pack(borders_after(borders, all[i]), options), area);
             // Two cuts have to gain as much as each of them would.
-            if (gained[i] < goal && gained[i] < std::pow(kCutGain, all[i].size()) * use)
-                gained[i] = 0;
+            if (gained[i] < goal) gained[i] /= std::pow(kCutGain, all[i].size());
         });
         const auto best = std::max_element(gained.begin(), gained.end());
-        if (best == gained.end() || *best <= use) break;
-        use = *best;
-        result.packing.reset();
+        // A cut may gain nothing until the next one is made.
+        if (best == gained.end() || *best < kLeastOfUse * use) break;
+        use = std::max(use, *best);
         for (const auto& [chart, halves] : all[static_cast<std::size_t>(best - gained.begin())]) {
             apply(cut, chart, halves);
-            ++result.cuts;
+            ++cuts;
         }
     }
+    return cuts;
+}
+
+}  // namespace
+
+CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
+                      double goal) {
+    CutToPack result;
+    double area = 0;
+    for (const FlatChart& chart : cut.charts) area += chart.mesh.area;
+    result.packing = pack(chart_borders(cut), options);
+    double use = use_of(*result.packing, area);
+    if (use >= goal) return result;
+    const ProgressFn progress = std::exchange(options.progress, {});
+    PackOptions coarse = options;
+    coarse.search = Search::coarse;
+    CutMesh tried = cut;
+    int cuts = 0;
+    for (double now = use; cuts < kMostCuts && now < goal && tried.charts.size() <= kMostCharts;) {
+        report(progress, "cut to pack", double(cuts) / kMostCuts);
+        // What coarse masks will show of the goal.
+        const double shown = use_of(pack(chart_borders(tried), coarse), area) / now;
+        const int more = cut_while_it_gains(mesh, tried, gap, coarse, kBeyond * shown * goal,
+                                            kMostCuts - cuts);
+        if (more == 0) break;
+        cuts += more;
+        std::optional<Packing> packing = pack(chart_borders(tried), options);
+        now = use_of(*packing, area);
+        if (now < goal && now < std::pow(kCutGain, cuts - result.cuts) * use) continue;
+        use = now;
+        cut = tried;
+        result.cuts = cuts;
+        result.packing = std::move(packing);
+    }
+    if (use < goal) result.packing.reset();
     return result;
 }
 

@@ -19,13 +19,19 @@ constexpr double kLeastUse = 1e-3;  // part of the page that charts must cover t
 constexpr std::uint32_t kCells =
     1024;  // cells per side of the page that masks are made on, at most
 constexpr std::uint32_t kCoarseCells = 256;  // the same while searching
+constexpr std::uint32_t kMiddleCells = 512;  // and for a second search from where that ends
 constexpr double kStep = 1.01;               // by which the search raises the scale
-constexpr double kFineStep = 1.003;          // the same on fine masks
+constexpr double kFineStep = 1.003;          // the same in the second search
+constexpr double kFinerGain = 1.03;          // of the scale that finer masks allow, at most
+constexpr double kFinerFall = 0.996;         // steps down from there
 constexpr double kOverhang = 1.3;  // height of the strip while searching, over the page's
-constexpr int kFineShare = 3;                // of the trials, that fine masks get
+constexpr int kSecondShare = 3;              // of the trials, that the second search gets
 constexpr double kTrials = 8000;             // charts placed while searching, about
-constexpr double kCoarseTrials = 800;        // the same when layouts are only compared
+constexpr double kCoarseTrials = 1100;        // the same when layouts are only compared
 constexpr int kStarts = 3;                   // searches, of which the best counts
+constexpr int kMostRounds = 4;         // of such searches, for as long as less than this part
+constexpr double kGoodEnough = 0.667;  // of the page is covered,
+constexpr double kWithinReach = 0.96;  // but not less than this part of that
 
 struct Layout {
     double excess = 0;  // sum of area × rows beyond the page, all of the strip's without a place
@@ -68,16 +74,24 @@ struct Filling {
 
     Filling(std::uint32_t cells, std::vector<int> reach) : strip(cells, std::move(reach)) {}
 
-    /// The lowest place of all turns of a chart.
+    void clear() {
+        strip.clear();
+        lowest.clear();
+    }
+
+    /// The place of all turns of a chart where its middle lies lowest.
     Found find(const std::vector<Mask>& turned, std::uint32_t most_rows) {
         Found best;
+        double least = std::numeric_limits<double>::infinity();
         for (const Mask& mask : turned) {
             std::uint32_t& from = lowest[mask.hash];
-            const std::uint32_t below = std::min(best.top, most_rows + 1);
-            if (from + mask.height >= below) continue;
-            const Strip::Spot s = strip.find(mask, from, below - 1);
+            const double rows = std::ceil(least - mask.middle) - 1 + mask.height;
+            const auto limit = static_cast<std::uint32_t>(std::clamp<double>(rows, 0, most_rows));
+            if (from + mask.height > limit) continue;
+            const Strip::Spot s = strip.find(mask, from, limit);
             if (s.y == kNone) continue;
             from = s.y;
+            least = s.y + mask.middle;
             best = {&mask, s, s.y + mask.height};
         }
         return best;
@@ -126,17 +140,46 @@ class Packer {
         layout.placements.resize(shapes_.size());
         layout.placed.assign(shapes_.size(), 0);
         layout.page.assign(shapes_.size(), 0);
-        std::vector<Filling> filled;
-        for (const std::uint32_t i : plan_.order) {
+        std::vector<Filling>& filled = filling_;
+        if (page.cell != last_.target.cell || page.size != last_.target.size) filled.clear();
+        std::uint32_t n_filled = 0;
+        const Filled::Target target{page.size, page.cell, scale, limit, pages};
+        bool as_before = target == last_.target;  // the plan up to here
+        last_.target = target;
+        for (std::size_t at = 0; at < plan_.order.size(); ++at) {
+            const std::uint32_t i = plan_.order[at];
             const Masks& masks = masks_of(i, scale, page.cell);
+            const auto last_row = [&](std::uint32_t p) {
+                return p + 1 == pages ? static_cast<std::uint32_t>(limit * page.cells) : page.cells;
+            };
+            const auto begin_page = [&](std::uint32_t p) {
+                if (p < n_filled) return;
+                ++n_filled;
+                if (p < filled.size())
+                    filled[p].clear();
+                else
+                    filled.emplace_back(page.cells, reach_of_gutter(page.cell));
+            };
             Found found;
-            std::uint32_t p = 0, most_rows = page.cells;
-            for (; p < pages; ++p) {
-                if (p == filled.size()) filled.emplace_back(page.cells, reach_of_gutter(page.cell));
-                if (p + 1 == pages) most_rows = static_cast<std::uint32_t>(limit * page.cells);
-                found = filled[p].find(masks.turned, most_rows);
-                if (found.mask != nullptr) break;
+            std::uint32_t p = 0;
+            as_before = as_before && at < last_.steps.size() && last_.steps[at].chart == i &&
+                        last_.steps[at].turn == plan_.turn[i];
+            if (as_before) {
+                p = last_.steps[at].page;
+                found = last_.steps[at].found;
+                for (std::uint32_t q = 0; q < std::min(p + 1, pages); ++q) begin_page(q);
+                if (found.mask != nullptr) found.mask = &masks.turned[last_.steps[at].way];
+            } else {
+                for (; p < pages; ++p) {
+                    begin_page(p);
+                    found = filled[p].find(masks.turned, last_row(p));
+                    if (found.mask != nullptr) break;
+                }
+                last_.steps.resize(at);
+                const auto way = found.mask == nullptr ? 0 : found.mask - masks.turned.data();
+                last_.steps.push_back({i, plan_.turn[i], static_cast<std::size_t>(way), found, p});
             }
+            const std::uint32_t most_rows = last_row(pages - 1);
             if (found.mask == nullptr || found.top > page.cells) {
                 if (layout.first_beyond == kNone) layout.first_beyond = i;
                 layout.excess += shapes_[i].area * (std::min(found.top, most_rows) - page.cells);
@@ -151,18 +194,15 @@ class Packer {
                 Vec2(found.spot.x, found.spot.y) * double(page.cell) + Vec2(margin()) -
                     found.mask->corner};
         }
-        layout.pages = static_cast<std::uint32_t>(std::max<std::size_t>(filled.size(), 1));
-        if (!filled.empty()) layout.rows = filled[0].strip.top();
+        layout.pages = std::max(n_filled, 1u);
+        if (n_filled > 0) layout.rows = filled[0].strip.top();
         return layout;
     }
 
     /// The largest scale found at which everything fits the page: after a first fit, a
     /// search on coarse masks raises the scale step by step and looks for an order and
-    /// turns that fit, three times from the same start; then the masks are refined. Not
-    /// complete when nothing fits.
+    /// turns that fit. Not complete when nothing fits.
     Layout largest(std::uint32_t size, std::uint32_t pages, Search search) {
-        const int trials =
-            search == Search::full ? this->trials(kTrials, 300) : this->trials(kCoarseTrials, 48);
         const double full = size * std::sqrt(pages / area_);
         const double least = std::sqrt(kLeastUse) * full;
         const Page coarse = page(size, kCoarseCells), fine = page(size, kCells);
@@ -184,27 +224,56 @@ class Packer {
         Random random(shapes_.size());
         const Layout first = best;
         const Plan first_plan = plan_;
+        for (int round = 0; round < (search == Search::patient ? kMostRounds : 1); ++round) {
+            plan_ = first_plan;
+            Layout found = search_once(first, {coarse, pages, kStep}, search, random);
+            if (found.scale > best.scale) best = std::move(found);
+            report(progress_, "pack", (round + 1.0) / kMostRounds);
+            const double use = best.scale * best.scale / (full * full);
+            if (use > kGoodEnough || use < kWithinReach * kGoodEnough) break;
+        }
+        report(progress_, "pack", 1);
+        return best;
+    }
+
+    /// Three climbs from `first`, of which the best goes on with finer masks.
+    Layout search_once(const Layout& first, const Target& coarse, Search search, Random& random) {
+        const int trials =
+            search == Search::coarse ? this->trials(kCoarseTrials, 64) : this->trials(kTrials, 300);
+        const std::uint32_t size = coarse.page.size, pages = coarse.pages;
+        const Plan first_plan = plan_;
+        Layout best = first;
         Plan best_plan = plan_;
         for (int start = 0; start < kStarts; ++start) {
             Layout layout = first;
             plan_ = first_plan;
-            climb({coarse, pages, kStep}, trials / kStarts, random, layout);
-            report(progress_, "pack", 0.8 * (start + 1) / kStarts);
+            climb(coarse, trials / kStarts, random, layout);
             if (layout.scale <= best.scale) continue;
             best = std::move(layout);
             best_plan = plan_;
         }
         plan_ = best_plan;
-        if (search == Search::coarse || fine.cell == coarse.cell) return best;
-        for (double scale = 1.03 * best.scale; scale > best.scale; scale *= 0.996) {
-            Layout layout = fill(fine, scale, 1, pages);
+        if (search == Search::coarse) {
+            climb({coarse.page, pages, kFineStep}, trials / kSecondShare, random, best);
+            return best;
+        }
+        const Page middle = page(size, kMiddleCells), fine = page(size, kCells);
+        if (middle.cell < coarse.page.cell) {
+            refine(middle, pages, best);
+            climb({middle, pages, kFineStep}, trials / kSecondShare, random, best);
+        }
+        if (fine.cell < middle.cell) refine(fine, pages, best);
+        return best;
+    }
+
+    /// The same plan on finer masks, which leave less room between charts.
+    void refine(const Page& page, std::uint32_t pages, Layout& best) {
+        for (double scale = kFinerGain * best.scale; scale > best.scale; scale *= kFinerFall) {
+            Layout layout = fill(page, scale, 1, pages);
             if (!layout.complete()) continue;
             best = std::move(layout);
-            break;
+            return;
         }
-        climb({fine, pages, kFineStep}, trials / kFineShare, random, best);
-        report(progress_, "pack", 1);
-        return best;
     }
 
     /// Raises the scale of a layout step by step, looking for an order and turns that fit:
@@ -215,6 +284,7 @@ class Packer {
         bool climbing = true;  // the plan as it is has not failed at the target yet
         for (int trial = 0; trial < trials; ++trial) {
             const Plan before = plan_;
+            const Filled filled_before = last_;
             if (!climbing) vary(random, failed);
             Layout layout =
                 fill(target.page, target.step * best.scale, kOverhang, target.pages, excess);
@@ -228,6 +298,7 @@ class Packer {
                 failed = layout.first_beyond;
             } else {
                 plan_ = before;
+                last_ = filled_before;
             }
         }
     }
@@ -248,7 +319,7 @@ class Packer {
                area_ * scale * scale < kFull * size * double(size) * (layout.pages - 1)) {
             Layout fewer;
             fewer.scale = scale;
-            climb({fine, layout.pages - 1, 1}, trials(kCoarseTrials, 48), random, fewer);
+            climb({fine, layout.pages - 1, 1}, trials(kCoarseTrials, 64), random, fewer);
             if (!fewer.complete() || fewer.placements.empty()) break;
             layout = std::move(fewer);
         }
@@ -270,6 +341,26 @@ class Packer {
     }
 
   private:
+    /// The steps of the last filling, which the next one repeats for as long as its plan is the
+    /// same.
+    struct Filled {
+        struct Target {
+            std::uint32_t size = 0, cell = 0;
+            double scale = 0, limit = 0;
+            std::uint32_t pages = 0;
+            bool operator==(const Target&) const = default;
+        };
+        struct Step {
+            std::uint32_t chart;
+            double turn;
+            std::size_t way;  // which of the chart's masks
+            Found found;
+            std::uint32_t page;
+        };
+        Target target;
+        std::vector<Step> steps;
+    };
+
     /// The masks of one chart in four directions, for one scale and turn.
     struct Masks {
         double scale = 0, cell = 0, turn = 0, chart_scale = 0;
@@ -292,11 +383,8 @@ class Packer {
         m.cell = cell;
         m.turn = plan_.turn[i];
         m.chart_scale = std::max(scale, shape.extent > 0 ? kSmallest / shape.extent : scale);
-        m.turned.clear();
-        const int turns = shape.extent * m.chart_scale < 2 * cell ? 1 : 4;
-        for (int k = 0; k < turns; ++k)
-            m.turned.push_back(make_mask(shape, m.chart_scale,
-                                         shape.angle + m.turn + k * (std::numbers::pi / 2), cell));
+        m.turned = make_masks(shape, m.chart_scale, shape.angle + m.turn, cell,
+                              shape.extent * m.chart_scale >= 2 * cell);
         return m;
     }
 
@@ -341,6 +429,8 @@ class Packer {
     ProgressFn progress_;
     std::vector<Shape> shapes_;
     std::vector<Masks> cache_;
+    Filled last_;
+    std::vector<Filling> filling_;  // kept from one filling to the next
     Plan plan_;
     double area_ = 0;
 };

@@ -10,8 +10,9 @@
 namespace tuft::atlas {
 
 /// How long to look for a good layout of one page: take the first that fits, look a little and
-/// on coarse masks (to compare sets of charts), or look well.
-enum class Search { quick, coarse, full };
+/// on coarse masks (to compare sets of charts), look well, or look again while less than
+/// two thirds of the page are covered.
+enum class Search { quick, coarse, full, patient };
 
 struct PackOptions {
     std::uint32_t size = 0;      ///< texels per side; 0: as many as `texels_per_unit` needs
@@ -40,8 +41,8 @@ struct Packing {
 
 /// `borders`: one closed simple polygon per chart. Charts smaller than a quarter of
 /// a texel are enlarged to that. Bit masks of all cells a chart touches, largest
-/// chart first, up to eight rotations each, at the lowest free place of a strip as
-/// wide as the page; the scale is searched until the strip is a square. Distances
+/// chart first, in four directions each, where its middle comes to lie lowest in a strip as
+/// wide as the page; scale, order and turns are searched until the strip is a square. Distances
 /// between charts are at least `gutter` texels, exactly. With several pages allowed, each chart
 /// comes to the first that has room for it; without a scale, the scale is searched at which all
 /// pages are filled. Offsets count from the corner of the chart's own page.

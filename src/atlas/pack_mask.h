@@ -20,6 +20,7 @@ struct Mask {
     std::uint32_t width = 0, height = 0;
     double c = 1, s = 0;
     Vec2 corner{0};          // of the rotated, scaled chart, texels
+    double middle = 0;       // mean row of the cells
     std::uint64_t hash = 0;  // of the runs
 };
 
@@ -34,7 +35,9 @@ struct Shape {
 Shape make_shape(const std::vector<Vec2>& border);
 
 /// All cells of side `cell` texels that the shape touches when it is turned by `angle`
-/// and scaled, from the lower left corner of its box on.
-Mask make_mask(const Shape& shape, double scale, double angle, double cell);
+/// and scaled, from the lower left corner of its box on; with `all` also those cells turned
+/// by one, two and three quarters of a circle.
+std::vector<Mask> make_masks(const Shape& shape, double scale, double angle, double cell,
+                             bool all);
 
 }  // namespace tuft::atlas

@@ -6,30 +6,26 @@
 namespace tuft::atlas {
 namespace {
 
-/// Word w of a row moved `shift` places to the left; beyond its end all is taken.
-std::uint64_t shifted(const std::uint64_t* row, std::size_t words, std::size_t w,
-                      std::size_t shift) {
-    const std::size_t i = w + shift / 64;
-    const std::size_t bit = shift % 64;
-    const std::uint64_t lo = i < words ? row[i] : ~std::uint64_t{0};
-    if (bit == 0) return lo;
-    const std::uint64_t hi = i + 1 < words ? row[i + 1] : ~std::uint64_t{0};
-    return lo >> bit | hi << (64 - bit);
-}
+/// Words all of whose cells are taken, after each row: runs are tested beyond its end too.
+constexpr std::size_t kPadding = 2;
 
 }  // namespace
 
 Strip::Strip(std::uint32_t width, std::vector<int> reach)
-    : width_(width), words_(width / 64 + 1), reach_(std::move(reach)) {
+    : width_(width), words_(width / 64 + 1), stride_(words_ + kPadding), reach_(std::move(reach)) {
     while ((1u << (levels_ + 1)) <= width_) ++levels_;
     ++levels_;
+    beyond_.assign(stride_, 0);
+    for (std::uint32_t x = width_; x < 64 * stride_; ++x)
+        beyond_[x / 64] |= std::uint64_t{1} << (x % 64);
 }
 
-Strip::Spot Strip::find(const Mask& mask, std::uint32_t from_row, std::uint32_t limit) const {
+Strip::Spot Strip::find(const Mask& mask, std::uint32_t from_row, std::uint32_t limit) {
     Spot spot;
     if (mask.width > width_) return spot;
     const std::uint32_t places = width_ - mask.width + 1;
-    std::vector<std::uint64_t> valid((places + 63) / 64);
+    std::vector<std::uint64_t>& valid = valid_;
+    valid.resize((places + 63) / 64);
     std::size_t killer = 0;
     for (std::uint32_t y = from_row; y + mask.height <= limit; ++y) {
         std::fill(valid.begin(), valid.end(), ~std::uint64_t{0});
@@ -51,7 +47,6 @@ Strip::Spot Strip::find(const Mask& mask, std::uint32_t from_row, std::uint32_t 
 
 void Strip::place(const Mask& mask, const Spot& spot) {
     const int reach_rows = static_cast<int>(reach_.size()) - 1;
-    std::uint32_t low = kNone, high = 0;
     for (const Run& run : mask.runs)
         for (int d = -reach_rows; d <= reach_rows; ++d) {
             const std::int64_t row = std::int64_t{spot.y} + run.row + d;
@@ -60,25 +55,27 @@ void Strip::place(const Mask& mask, const Spot& spot) {
             const auto y = static_cast<std::uint32_t>(row);
             grow(y + 1);
             take(y, std::int64_t{spot.x} + run.first - e, std::int64_t{spot.x} + run.last + e);
-            low = std::min(low, y);
-            high = std::max(high, y);
         }
-    for (std::uint32_t y = low; y <= high && low != kNone; ++y) rebuild(y);
     top_ = std::max(top_, spot.y + mask.height);
 }
 
 void Strip::grow(std::uint32_t rows) {
     if (rows <= n_rows_) return;
-    rows_.resize(std::size_t{rows} * static_cast<std::size_t>(levels_) * words_, 0);
-    for (; n_rows_ < rows; ++n_rows_)  // cells beyond the right edge are taken
-        for (int k = 0; k < levels_; ++k)
-            for (std::uint32_t x = width_; x < 64 * words_; ++x)
-                level(n_rows_, k)[x / 64] |= std::uint64_t{1} << (x % 64);
+    if (rows > built_.size()) {
+        const std::size_t room = std::max<std::size_t>({rows, 3 * built_.size() / 2, width_});
+        rows_.resize(room * static_cast<std::size_t>(levels_) * stride_);
+        built_.resize(room);
+    }
+    for (; n_rows_ < rows; ++n_rows_) {
+        std::copy(beyond_.begin(), beyond_.end(), level(n_rows_, 0));
+        built_[n_rows_] = 1;
+    }
 }
 
 void Strip::take(std::uint32_t y, std::int64_t first, std::int64_t last) {
     const auto a = static_cast<std::size_t>(std::max<std::int64_t>(first, 0));
     const auto b = static_cast<std::size_t>(std::min<std::int64_t>(last, width_ - 1));
+    built_[y] = 1;
     std::uint64_t* row = level(y, 0);
     for (std::size_t w = a / 64; w <= b / 64; ++w) {
         std::uint64_t m = ~std::uint64_t{0};
@@ -88,27 +85,36 @@ void Strip::take(std::uint32_t y, std::int64_t first, std::int64_t last) {
     }
 }
 
-void Strip::rebuild(std::uint32_t y) {
-    for (int k = 1; k < levels_; ++k) {
-        const std::uint64_t* from = level(y, k - 1);
-        std::uint64_t* to = level(y, k);
+const std::uint64_t* Strip::built_level(std::uint32_t y, int k) {
+    for (; built_[y] <= k; ++built_[y]) {
+        const std::uint64_t* from = level(y, built_[y] - 1);
+        std::uint64_t* to = level(y, built_[y]);
+        const std::size_t shift = std::size_t{1} << (built_[y] - 1);
+        const std::uint64_t* moved = from + shift / 64;
+        const int i = static_cast<int>(shift % 64);
         for (std::size_t w = 0; w < words_; ++w)
-            to[w] = from[w] | shifted(from, words_, w, std::size_t{1} << (k - 1));
+            to[w] = from[w] | moved[w] >> i | moved[w + 1] << 1 << (63 - i);
+        for (std::size_t w = words_; w < stride_; ++w) to[w] = ~std::uint64_t{0};
     }
+    return level(y, k);
 }
 
 /// Clears the places where the run hits something; false when none is left.
-bool Strip::block(const Run& run, std::uint32_t y, std::vector<std::uint64_t>& valid) const {
+bool Strip::block(const Run& run, std::uint32_t y, std::vector<std::uint64_t>& valid) {
     const std::uint32_t row = y + run.row;
     if (row >= n_rows_) return true;
     const std::uint32_t length = run.last - run.first + 1;
     const int k = std::bit_width(length) - 1;
-    const std::uint64_t* taken = level(row, k);
+    const std::uint64_t* taken = built_level(row, k);
     const std::size_t a = run.first, b = run.last + 1 - (std::size_t{1} << k);
+    // Both ends of the run, each of 2^k cells.
+    const std::uint64_t* first = taken + a / 64;
+    const std::uint64_t* second = taken + b / 64;
+    const int i = static_cast<int>(a % 64), j = static_cast<int>(b % 64);
     std::uint64_t any = 0;
     for (std::size_t w = 0; w < valid.size(); ++w) {
-        if (valid[w] == 0) continue;
-        valid[w] &= ~(shifted(taken, words_, w, a) | shifted(taken, words_, w, b));
+        valid[w] &= ~(first[w] >> i | first[w + 1] << 1 << (63 - i) | second[w] >> j |
+                      second[w + 1] << 1 << (63 - j));
         any |= valid[w];
     }
     return any != 0;

@@ -98,7 +98,7 @@ PackOptions pack_options(const CutMesh& cut, const UnwrapOptions& options) {
 
 Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options, bool quick) {
     PackOptions how = pack_options(cut, options);
-    if (quick) how.search = Search::quick;
+    how.search = quick ? Search::quick : Search::patient;
     Packing packing = pack(chart_borders(cut), how);
     check_packing(cut, options, packing);
     return packing;

@@ -75,7 +75,8 @@ double mean(const std::vector<double>& v) {
 
 /// | |(u, v)| − length of the exact way | over the radius, at texels of stamps of `texels` across
 /// anywhere on the model. Texels behind an opening are left out: no straight way leads there.
-std::vector<double> distance_errors(Model& model, double texels, int stamps, double part) {
+std::vector<double> distance_errors(Model& model, double texels, int stamps, double part,
+                                    std::uint64_t places = 5) {
     std::vector<double> errors, area{0};
     for (std::size_t t = 0; t < model.mesh.n_triangles(); ++t) {
         const Vec3 a = model.mesh.position(t, 0);
@@ -84,7 +85,7 @@ std::vector<double> distance_errors(Model& model, double texels, int stamps, dou
     }
     const double r = 0.5 * texels * model.map.texel_size;
     // Stamps lie at the same places whatever the atlas, which texels come first depends on it.
-    Random random(5), choice(6);
+    Random random(places), choice(6);
     for (int i = 0; i < stamps; ++i) {
         const auto above =
             std::upper_bound(area.begin(), area.end(), random.uniform(0, area.back()));
@@ -132,16 +133,18 @@ TEST(Geodesics, StampsKeepDistancesOnARoughSurface) {
 
 TEST(Geodesics, StampsKeepDistancesOnTheCar) {
     Model car = shipped("car", 2048);
-    const std::vector<double> errors = distance_errors(car, 40, 60, 0.1);
-    ASSERT_GT(errors.size(), 3000u);
+    std::vector<double> errors = distance_errors(car, 40, 60, 0.06);
+    const std::vector<double> more = distance_errors(car, 40, 60, 0.06, 7);
+    errors.insert(errors.end(), more.begin(), more.end());
+    ASSERT_GT(errors.size(), 5000u);
     // Targets for real meshes: 0.4 % mean, 2.5 % at 99 %. The last percent are texels between the
     // spokes of the wheels, which ways round several corners reach; how the layout of the atlas cuts
-    // the spokes decides which way is taken. Over four layouts and two sets of places the mean was
-    // 0.15 to 0.28 %, 98 % lay within 1.8 %, 99 % within 4.3 %.
-    EXPECT_LT(mean(errors), 0.004);
-    EXPECT_LT(quantile(errors, 0.95), 0.01);
-    EXPECT_LT(quantile(errors, 0.98), 0.025);
-    EXPECT_LT(quantile(errors, 0.99), 0.05);
+    // the spokes decides which way is taken. Over four layouts the mean was 0.16 to 0.25 %, 98 % lay
+    // within 1.3 %, 99 % within 2.3 to 2.8 %.
+    EXPECT_LT(mean(errors), 0.003);
+    EXPECT_LT(quantile(errors, 0.95), 0.008);
+    EXPECT_LT(quantile(errors, 0.98), 0.02);
+    EXPECT_LT(quantile(errors, 0.99), 0.04);
 }
 
 struct Contact {
