@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stroke/laying.h"
+#include "stroke/lead.h"
+
 namespace tuft::app {
 namespace {
 
@@ -32,17 +35,6 @@ CurvePlace lay(const mesh::SurfaceQuery& query, const Vec3& p, const Vec3& outwa
     return place;
 }
 
-double lead_at(const stroke::HoldOptions& hold, double pressure) {
-    const auto& lead = hold.lead;
-    if (lead.empty() || pressure <= 0) return 0;
-    const double depth = pressure * hold.working_depth;
-    if (depth <= lead.front().depth) return lead.front().length;
-    for (std::size_t i = 1; i < lead.size(); ++i)
-        if (depth <= lead[i].depth)
-            return glm::mix(lead[i - 1].length, lead[i].length, (depth - lead[i - 1].depth) / std::max(1e-12, lead[i].depth - lead[i - 1].depth));
-    return lead.back().length;
-}
-
 // Place at a length along the curve; before and after it goes on straight.
 CurvePlace at_length(std::span<const CurvePlace> curve, double s) {
     const auto above = std::lower_bound(curve.begin(), curve.end(), s, [](const CurvePlace& c, double v) { return c.along < v; });
@@ -63,10 +55,14 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
         const double press = hand.pressure * at_length(curve, s).pressure * smooth(part / std::max(1e-3, hand.settings.taper_in)) *
                              smooth((1 - part) / std::max(1e-3, hand.settings.taper_out));
         CurvePlace place = at_length(curve, s);
-        // The hand runs straight ahead: the tuft is dragged behind it, along the curve.
-        const Vec3 ahead = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;
-        if (const double lead = lead_at(hand.hold, press); lead > 0 && glm::length(ahead) > 1e-9) {
-            const CurvePlace led = lay(query, place.position + lead * glm::normalize(ahead), place.normal, kReach + lead);
+        // The hand runs straight ahead, and under a lean aside: the tuft is dragged behind it, along the curve.
+        const Vec3 way = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;
+        const stroke::Axes axes = stroke::axes_across(place.normal, hand.right, hand.down);
+        const Vec2 ahead{glm::dot(way, axes.right), glm::dot(way, axes.down)};
+        if (press > 0 && glm::length(ahead) > 1e-9) {
+            const Vec2 lead = stroke::lead_of(hand.hold, press, hand.tilt, glm::normalize(ahead));
+            const CurvePlace led =
+                lay(query, place.position + lead.x * axes.right + lead.y * axes.down, place.normal, kReach + glm::length(lead));
             place.position = led.position;
             place.normal = led.normal;
         }

@@ -38,7 +38,7 @@ struct CurvePlace {
 std::vector<CurvePlace> lay_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points, int per_span = 64);
 
 /// The poses of a hand along it, one list for each piece that lies on the model. `hold`: with
-/// a lead, so that the ink lies on the curve; `pressure` of the hand, 0–1; `tilt` radians to the
+/// a lead, and what a lean adds to it, so that the ink lies on the curve; `pressure` of the hand, 0–1; `tilt` radians to the
 /// right and down of whoever looks with `right` and `down`.
 struct CurveHand {
     stroke::HoldOptions hold;

@@ -107,6 +107,7 @@ class Studio {
     stroke::Placement ghost_placement_;
     double ghost_scale_ = 0;
     std::vector<stroke::Lead> lead_;
+    std::optional<stroke::LeanedLead> leaned_lead_;
     std::string lead_brush_;
     Event cursor_;
     bool cursor_inside_ = false;

@@ -126,12 +126,14 @@ void Studio::paint_curve() {
     const brush::Preset preset = brush::load_preset(s.brush);
     if (lead_brush_ != s.brush) {
         lead_ = stroke::drag_lead(preset);
+        leaned_lead_.emplace(preset);
         lead_brush_ = s.brush;
     }
     const render::GlCamera c = camera();
     CurveHand hand{.hold = stroke::hold_options(preset), .settings = s.curve_settings, .pressure = s.hand.pressure,
                    .tilt = {s.hand.tilt.x, -s.hand.tilt.y}, .right = c.right, .down = -c.up};
     hand.hold.lead = lead_;
+    hand.hold.leaned = [this](double depth, const Vec2& lean) { return leaned_lead_->at(depth, lean); };
     const auto strokes = curve_poses(*s.painter->model().query, curve.points, hand);
     if (strokes.empty()) return say(s, "The line does not lie on the model.");
     if (curve_editable()) s.painter->post(UndoStroke{});

@@ -99,21 +99,6 @@ double working_depth(const brush::Preset& preset);
 /// Options for a brush, without a lead.
 HoldOptions hold_options(const brush::Preset& preset);
 
-/// The lead of a brush at depths up to its working depth: from the foot of the holder's
-/// axis back to the widest place of the steady contact patch, which lies half a line's
-/// width behind its end (`brush::sweep_depth`; takes some 50 ms).
-std::vector<Lead> drag_lead(const brush::Preset& preset);
-
-/// A dragged tuft paints behind the hand, and under a leaning holder aside of it. Moves the samples
-/// of a flat trace ahead along the path by the lead for their depth, and by what their lean
-/// adds, so that the ink will lie where the trace was. The
-/// direction is that of a point dragged behind the trace on a string of `lead_turn` (a
-/// tractrix), taut from the first touch in the direction in which the trace sets out;
-/// where the path reverses, the lead passes through zero. A trace that begins pressed gets samples
-/// before its first, at the same place, in which the pressure rises to it at the trace's pace: the tip
-/// touches first and trails then.
-Trace lead_hand(Trace trace, const HoldOptions& options);
-
 /// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the
 /// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
 /// pressure · working depth below the sample (hover above it where the pressure is 0).

@@ -7,6 +7,7 @@
 
 #include "app/texture.h"
 #include "models.h"
+#include "stroke/lead.h"
 
 namespace tuft::app {
 namespace {
@@ -61,7 +62,11 @@ TEST(Curve, BreaksWhereThereIsNoModel) {
     EXPECT_EQ(curve_poses(query, points, {.hold = stroke::hold_options(preset)}).size(), 2u);  // over the hole
 }
 
-TEST(Curve, ItsInkLiesOnIt) {
+/// Under a holder that leans by so many radians to the right and down.
+class LeaningCurve : public testing::TestWithParam<Vec2> {};
+INSTANTIATE_TEST_SUITE_P(Curve, LeaningCurve, testing::Values(Vec2{0, 0}, Vec2{0.6, 0}, Vec2{0, -0.6}));
+
+TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     const stroke::Model model = test::shipped_model("sheet.ply", 1024);
     const Vec3 c(model.mesh->bounds.centre().x, model.mesh->bounds.centre().y, model.mesh->bounds.hi.z);
     constexpr double radius = 0.03;
@@ -72,8 +77,10 @@ TEST(Curve, ItsInkLiesOnIt) {
     }
     stroke::Painting painting(model);
     const brush::Preset preset = painting.brush("wolf-medium");
-    CurveHand hand{.hold = stroke::hold_options(preset), .pressure = 0.4};
+    CurveHand hand{.hold = stroke::hold_options(preset), .pressure = 0.4, .tilt = GetParam()};
     hand.hold.lead = stroke::drag_lead(preset);
+    stroke::LeanedLead leaned(preset);
+    hand.hold.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
     const auto strokes = curve_poses(*model.query, points, hand);
     ASSERT_EQ(strokes.size(), 1u);
     stroke::Stroke stroke;

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "grids.h"
+#include "stroke/lead.h"
 
 namespace tuft::stroke {
 namespace {
