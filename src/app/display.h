@@ -23,6 +23,7 @@ class Display {
     /// Makes a new OpenGL context, current on this thread, in place of the old one.
     virtual void renew() = 0;
     virtual void set_title(const std::string&) {}
+    virtual void resize(int width, int height) = 0;
     virtual int width() const = 0;
     virtual int height() const = 0;
     virtual unsigned framebuffer() const { return 0; }

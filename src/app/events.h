@@ -13,10 +13,10 @@ enum Modifier : unsigned { kShift = 1, kControl = 2, kAlt = 4 };
 /// One thing a person did, from a window or a script. Positions in pixels of the picture,
 /// origin at the top left.
 struct Event {
-    enum class Kind { move, press, release, scroll, key_down, key_up, text, drop, hover_end, fly, cap_button };
+    enum class Kind { move, press, release, scroll, key_down, key_up, text, drop, hover_end, fly, cap_button, resize };
     Kind kind = Kind::move;
     double time = 0;           ///< seconds on the window's clock
-    double x = 0, y = 0;       ///< pixels; every kind but keys and text carries the cursor
+    double x = 0, y = 0;       ///< pixels; every kind but keys and text carries the cursor; resize: the new size
     int button = 0;            ///< 0 left, 1 right, 2 middle; of a SpaceMouse from 0
     double pressure = -1;      ///< 0–1 from a pen; below 0: a device without pressure
     Vec2 tilt{0};              ///< radians from a pen: to the right, towards the person

@@ -47,6 +47,7 @@ void FileDialog::show(Purpose purpose, const fs::path& start) {
     std::error_code ec;
     const fs::path full = fs::absolute(start.empty() ? fs::current_path(ec) : start, ec);
     const bool is_folder = fs::is_directory(full, ec);
+    extension_ = is_folder || reads() ? "" : full.extension().string();
     std::snprintf(name_, sizeof name_, "%s", is_folder ? "" : full.filename().c_str());
     go(is_folder ? full : full.parent_path());
 }
@@ -90,7 +91,7 @@ std::optional<fs::path> FileDialog::accept(Ui&) {
             return std::nullopt;
         }
     } else {
-        if (!suits(path)) path += purpose_ == Purpose::save ? ".tuft" : purpose_ == Purpose::save_ink ? ".toml" : ".glb";
+        if (!suits(path)) path += extension_;
         if (::access(path.parent_path().c_str(), W_OK) != 0) {
             fault_ = "Nothing can be written into this folder.";
             return std::nullopt;

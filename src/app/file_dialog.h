@@ -18,6 +18,8 @@ class FileDialog {
     bool shown() const { return shown_; }
     void close() { shown_ = false; }
     Purpose purpose() const { return purpose_; }
+    bool reads() const;           ///< a file that is there; else one to be written
+    const std::filesystem::path& folder() const { return folder_; }
     /// Draws it; a path when one was chosen.
     std::optional<std::filesystem::path> draw(Ui& ui);
 
@@ -29,7 +31,6 @@ class FileDialog {
     };
     void read_folder();
     void go(const std::filesystem::path& folder);
-    bool reads() const;           ///< a file that is there; else one to be written
     bool suits(const std::filesystem::path& file) const;
     std::optional<std::filesystem::path> accept(Ui& ui);
 
@@ -38,6 +39,7 @@ class FileDialog {
     std::filesystem::path folder_;
     std::vector<Entry> entries_;
     std::string fault_;
+    std::string extension_;       ///< that a name without one gets
     char name_[512] = "";
 };
 

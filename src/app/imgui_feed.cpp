@@ -56,6 +56,7 @@ std::vector<Event> feed_imgui(EventQueue& queue, int width, int height, double d
             case Event::Kind::text: io.AddInputCharactersUTF8(e.text.c_str()); break;
             case Event::Kind::hover_end: io.MousePos = ImVec2(-1e30f, -1e30f); break;
             case Event::Kind::drop:
+            case Event::Kind::resize:
             case Event::Kind::fly:
             case Event::Kind::cap_button: break;
         }

@@ -78,11 +78,12 @@ void loop(app::Display& display, const Options& options) {
             ImGui_ImplOpenGL3_Init("#version 330");
             studio.make_graphics();
         }
+        if (const auto size = script ? script->take_size() : std::nullopt) display.resize(size->first, size->second);
         if (std::string trouble = display.take_trouble(); !trouble.empty()) app::say(session, std::move(trouble));
         const double now = display.now();
         if (script) script->before_frame(studio, events, now);
         studio.frame(events, display.width(), display.height(), display.framebuffer(), now);
-        if (script) script->after_frame(display.width(), display.height(), now);
+        if (script) script->after_frame(studio, display.width(), display.height());
         display.present();
         studio.shown(display.now());
         const std::string name = app::project_name(session);

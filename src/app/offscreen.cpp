@@ -57,6 +57,11 @@ class Offscreen : public Display {
     }
     void present() override { glFinish(); }
     bool closed() const override { return false; }
+    void resize(int width, int height) override {
+        width_ = width;
+        height_ = height;
+        target_->resize(width_, height_, 0);
+    }
     int width() const override { return width_; }
     int height() const override { return height_; }
     unsigned framebuffer() const override { return target_->framebuffer(); }

@@ -99,8 +99,11 @@ void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn
     work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
     io::use_presets(project, *work.painting);
     work.keeper.take_presets(project);
-    for (const stroke::StrokeReport& report : work.painting->replay(project.strokes(), progress))
-        if (!report.touched()) work.misfits.push_back(report);
+    const std::vector<stroke::Stroke> strokes = project.strokes();
+    const std::vector<stroke::StrokeReport> reports = work.painting->replay(strokes, progress);
+    const mesh::TriangleMesh mesh = project.model().mesh;
+    const auto length_of = [&](const std::string& brush) { return work.painting->brush(brush).length; };
+    work.misfits = stroke::find_misfits(reports, stroke::compare_fit(strokes, length_of, mesh::SurfaceQuery(mesh), *work.model->query));
 }
 
 Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {

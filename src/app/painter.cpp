@@ -18,6 +18,8 @@ template <class... Fs>
 struct Overloaded : Fs... {
     using Fs::operator()...;
 };
+template <class... Fs>
+Overloaded(Fs...) -> Overloaded<Fs...>;  // clang 14 does not find it by itself
 
 void shift(stroke::Stroke& stroke, const RigidMove& move) {
     const auto moved = [&](const Vec3& p) { return move.to + move.rotation * (p - move.from); };

@@ -16,6 +16,7 @@
 
 #include "app/keeper.h"
 #include "app/texture.h"
+#include "stroke/fit.h"
 #include "stroke/painting.h"
 #include "stroke/symmetry.h"
 
@@ -185,7 +186,7 @@ class Painter {
         Keeper keeper;
         std::string source;
         FileFrame frame;  ///< of the model file
-        std::vector<stroke::StrokeReport> misfits;  ///< of a revised model: strokes that touch it nowhere
+        std::vector<stroke::Misfit> misfits;  ///< of a revised model: strokes that do not fit it
     };
     explicit Painter(Work work);
     /// Finishes everything that was asked for first.
@@ -204,6 +205,7 @@ class Painter {
     /// The texture as it was at the start; once.
     render::MapPixels take_pixels() { return std::move(work_.pixels); }
     const std::string& source() const { return work_.source; }
+    const FileFrame& frame() const { return work_.frame; }  ///< of the model file
 
   private:
     void run();

@@ -15,6 +15,7 @@ void file_menu(Session& s) {
         s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft");
     if (s.ui.menu_item("Export...", name_of(s.keys.chord(Act::export_to)).c_str(), false, ready)) s.show_export = true;
     if (s.ui.menu_item("Revised model...", nullptr, false, ready)) s.files.show(FileDialog::Purpose::revise, s.painter->source());
+    if (!s.former.empty() && s.ui.menu_item("Back to the former model", nullptr, false, ready)) open_former(s);
     ImGui::Separator();
     if (s.ui.menu_item("Close model", nullptr, false, ready)) {
         close_model(s);

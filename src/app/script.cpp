@@ -11,7 +11,6 @@
 
 #include "app/panels.h"
 #include "app/studio.h"
-#include "core/random.h"
 #include "core/units.h"
 #include "io/image.h"
 #include "render/gl_target.h"
@@ -93,52 +92,6 @@ void Script::stroke(Studio& studio, const ScriptCommand& command) {
     add({.kind = Event::Kind::release, .x = places.back().x, .y = places.back().y, .pressure = places.back().z}, sample_);
 }
 
-// Mostly the things people do, and some that nobody should: seeded, so that it can be repeated.
-void Script::random_events(Studio& studio, const ScriptCommand& command) {
-    const int count = std::atoi(command.words[0].c_str());
-    Random random(static_cast<std::uint64_t>(std::atoll(command.words[1].c_str())));
-    const Session& s = studio.session();
-    const double w = s.area.x + s.area.width + 240, h = s.area.y + s.area.height + 30;
-    Event e{.x = 0.5 * w, .y = 0.5 * h};
-    bool down[3] = {};
-    // Not what ends the program or writes files wherever a dialog happens to be.
-    constexpr int keys[] = {GLFW_KEY_Z, GLFW_KEY_Y, GLFW_KEY_HOME, GLFW_KEY_1, GLFW_KEY_3, GLFW_KEY_7, GLFW_KEY_5, GLFW_KEY_LEFT_BRACKET,
-                            GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_LEFT, GLFW_KEY_UP, GLFW_KEY_B, GLFW_KEY_L, GLFW_KEY_X, GLFW_KEY_ESCAPE,
-                            GLFW_KEY_PERIOD, GLFW_KEY_F1, GLFW_KEY_BACKSLASH, GLFW_KEY_E};
-    for (int i = 0; i < count; ++i) {
-        Event next = e;
-        next.modifiers = random.uniform() < 0.2 ? static_cast<unsigned>(random.uniform(0, 8)) : 0;
-        const double what = random.uniform();
-        if (what < 0.55) {
-            const double reach = random.uniform() < 0.1 ? 600 : 25;
-            next.kind = Event::Kind::move;
-            next.x = std::clamp(e.x + random.uniform(-reach, reach), -20.0, w + 20);
-            next.y = std::clamp(e.y + random.uniform(-reach, reach), 40.0, h + 20);
-            if (random.uniform() < 0.3) next.pressure = random.uniform();
-        } else if (what < 0.8) {
-            next.button = random.uniform() < 0.8 ? 0 : random.uniform() < 0.5 ? 1 : 2;
-            bool& held = down[next.button];
-            next.kind = held ? Event::Kind::release : Event::Kind::press;
-            held = !held;
-        } else if (what < 0.85) {
-            next.kind = Event::Kind::scroll;
-            next.steps = random.uniform(-3, 3);
-        } else if (what < 0.98) {
-            next.kind = random.uniform() < 0.5 ? Event::Kind::key_down : Event::Kind::key_up;
-            next.key = keys[static_cast<std::size_t>(random.uniform(0, std::size(keys)))];
-            if (next.key == GLFW_KEY_Z && random.uniform() < 0.5) next.modifiers = kControl | (random.uniform() < 0.5 ? unsigned{kShift} : 0u);
-        } else {
-            next.kind = Event::Kind::hover_end;
-        }
-        add(next, random.uniform(0, 0.02));
-        e.x = next.x;
-        e.y = next.y;
-    }
-    for (int button = 0; button < 3; ++button)
-        if (down[button]) add({.kind = Event::Kind::release, .x = e.x, .y = e.y, .button = button}, 0.02);
-    for (const int key : keys) add({.kind = Event::Kind::key_up, .key = key}, 0);
-}
-
 void Script::report(Studio& studio, double now) {
     const double seconds = now - report_start_;
     std::vector<double> delays = studio.take_delays();
@@ -150,10 +103,10 @@ void Script::report(Studio& studio, double now) {
     const double cpu = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
     std::printf("{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, \"delay_ms_p95\": %.1f, "
                 "\"samples\": %zu, \"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, \"peak_mb\": %.0f, "
-                "\"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f}\n",
+                "\"quits\": %zu, \"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f}\n",
                 report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95), studio.samples(),
                 studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now, cpu - report_cpu_,
-                static_cast<double>(usage.ru_maxrss) / 1024, studio.session().view.orbit.azimuth / kDegree,
+                static_cast<double>(usage.ru_maxrss) / 1024, quits_, studio.session().view.orbit.azimuth / kDegree,
                 studio.session().view.orbit.elevation / kDegree, studio.session().view.orbit.distance / kMillimetre);
     report_cpu_ = cpu;
     std::fflush(stdout);
@@ -247,7 +200,14 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         paced_ = word == "on";
         pace_start_ = now;
         pace_from_ = clock_;
-    } else if (c.name == "random") random_events(studio, c);
+    } else if (c.name == "random") {
+        if (!monkey_) monkey_.emplace(static_cast<std::size_t>(std::max(0, std::atoi(word.c_str()))), static_cast<std::uint64_t>(std::atoll(c.words[1].c_str())));
+        for (Event& event : monkey_->next(studio)) add(std::move(event), monkey_->pause());
+        if (!pending_.empty()) return false;
+        quits_ += monkey_->quits();
+        monkey_.reset();
+    }
+    else if (c.name == "resize") size_ = {std::clamp(std::atoi(word.c_str()), 320, 8192), std::clamp(std::atoi(c.words[1].c_str()), 240, 8192)};
     else if (c.name == "lose-graphics") lose_ = true;
     else if (c.name == "report") report(studio, now);
     else if (c.name == "names") {
@@ -258,9 +218,13 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
 
 void Script::before_frame(Studio& studio, EventQueue& events, double now) {
     const auto hand_out = [&] {
-        while (!pending_.empty() && (!paced_ || pending_.front().time - pace_from_ <= now - pace_start_)) {
+        while (!pending_.empty() && !size_ && (!paced_ || pending_.front().time - pace_from_ <= now - pace_start_)) {
             Event event = std::move(pending_.front());
             pending_.pop_front();
+            if (event.kind == Event::Kind::resize) {
+                size_ = {static_cast<int>(event.x), static_cast<int>(event.y)};
+                continue;
+            }
             // Delays are measured on the window's clock.
             if (paced_) event.time += pace_start_ - pace_from_;
             events.push_back(std::move(event));
@@ -288,7 +252,8 @@ double Script::patience(const Studio& studio) const {
     return waiting_ ? std::min(0.02, studio.patience()) : 0;
 }
 
-void Script::after_frame(int width, int height, double) {
+void Script::after_frame(Studio& studio, int width, int height) {
+    if (monkey_) monkey_->hold_back(studio);
     ++frames_;
     ++report_frames_;
     if (picture_.empty()) return;

@@ -2,11 +2,13 @@
 
 #include <deque>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "app/events.h"
+#include "app/monkey.h"
 
 namespace tuft::app {
 
@@ -39,18 +41,19 @@ class Script {
     /// Before a frame: adds events. Throws `Error` where the script does not hold.
     void before_frame(Studio& studio, EventQueue& events, double now);
     /// After a frame: pictures.
-    void after_frame(int width, int height, double now);
+    void after_frame(Studio& studio, int width, int height);
     /// Seconds that the next frame may wait: none while there is something to play.
     double patience(const Studio& studio) const;
     /// Whether the script wants the graphics to be lost now.
     bool take_loss() { return std::exchange(lose_, false); }
+    /// The size in pixels that the script wants the window to have now.
+    std::optional<std::pair<int, int>> take_size() { return std::exchange(size_, std::nullopt); }
     bool finished() const { return next_ >= commands_.size() && pending_.empty() && picture_.empty(); }
 
   private:
     bool perform(Studio& studio, const ScriptCommand& command, double now);
     void expect(Studio& studio, const ScriptCommand& command) const;
     void stroke(Studio& studio, const ScriptCommand& command);
-    void random_events(Studio& studio, const ScriptCommand& command);
     void press_key(const std::string& chord, int line);
     void click(double x, double y, int button = 0);
     void add(Event event, double after);
@@ -70,6 +73,9 @@ class Script {
     ScriptPoint last_place_;           ///< of the label a click waits for
     std::string picture_;
     bool lose_ = false;
+    std::optional<std::pair<int, int>> size_;
+    std::optional<Monkey> monkey_;     ///< while `random` plays
+    std::size_t quits_ = 0;            ///< times that it would have ended the program
     bool waiting_ = false;             ///< the last command waits for something
     std::size_t frames_ = 0, report_frames_ = 0;
     double report_start_ = 0, report_cpu_ = 0;

@@ -31,7 +31,9 @@
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL
 ///   await ...               until that holds
 ///   pace on|off             events at the speed of the clock, or at once
-///   random COUNT SEED       that many events of any kind
+///   resize WIDTH HEIGHT     the window, pixels
+///   random COUNT SEED       that many events of any kind, also resizing and lost graphics; what would end the
+///                           program is only counted
 ///   report                  frames, seconds, delays from each sample to its ink on the screen and processor time since the last one, the time of
 ///                           the last undo, the peak of memory and where the view is, on standard output
 ///   lose-graphics           as if the graphics driver had been reset
@@ -45,7 +47,7 @@ const std::map<std::string, std::pair<int, int>> kCommands{
     {"open", {1, 1}}, {"revise", {1, 1}}, {"wait-ready", {0, 0}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
     {"stroke", {2, 10000}}, {"rate", {1, 1}}, {"key", {1, 1}}, {"type", {1, 1}}, {"scroll", {1, 1}}, {"click", {1, 1}}, {"set", {2, 2}},
     {"undo", {0, 0}}, {"redo", {0, 0}}, {"save", {1, 1}}, {"export", {1, 1}}, {"close", {0, 0}}, {"screenshot", {1, 1}},
-    {"expect", {1, 2}}, {"await", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};
+    {"expect", {1, 2}}, {"await", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"resize", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};
 
 std::vector<std::string> split(const std::string& line, const std::string& file, int number) {
     std::vector<std::string> words;

@@ -11,6 +11,7 @@
 #include "brush/preset.h"
 #include "core/files.h"
 #include "core/units.h"
+#include "io/read_model.h"
 
 namespace fs = std::filesystem;
 
@@ -140,11 +141,15 @@ void open_sample(Session& s, const fs::path& path) {
 void revise_with(Session& s, const fs::path& path) {
     if (!s.painter) return;
     if (!s.last.trouble.empty()) return say(s, "The project must be on disk first: " + s.last.trouble);
-    const OpenOptions same{.frame = s.open_options.frame, .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate};
+    const OpenOptions same{.frame = s.painter->frame(), .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate};
     const fs::path former = s.last.project;
     open_path(s, path);
     s.open_options = same;
     s.revises = former;
+}
+
+void open_former(Session& s) {
+    if (const fs::path former = s.former; !former.empty()) open_path(s, former);
 }
 
 bool close_dialog(Session& s) {
@@ -179,6 +184,7 @@ void close_model(Session& s) {
     s.strokes.clear();
     s.selected = 0;
     s.misfits.clear();
+    s.former.clear();
     s.show_misfits = s.shift_stroke = s.show_colours = false;
     s.mask = s.veiled = s.masks_seen = 0;
     s.lasso.clear();
@@ -200,7 +206,9 @@ void poll_session(Session& s) {
     if (!result.error.empty()) say(s, result.error);
     if (result.inspected) {
         s.inspected = std::move(result.inspected);
-        s.open_options.frame.unit = s.inspected->summary.unit.unit;
+        // A revised file has the unit of the one before, where that was in a format without one.
+        const bool known = !s.revises.empty() && s.painter && !io::metres_per_unit_of(s.painter->source());
+        if (!known) s.open_options.frame.unit = s.inspected->summary.unit.unit;
         if (s.inspected->unit_fixed) s.open_options.frame.unit = "m";
         if (s.revises.empty()) {
             const mesh::MeshSummary& m = s.inspected->summary;
@@ -211,7 +219,7 @@ void poll_session(Session& s) {
         if (s.is_sample) accept_inspected(s);
     }
     if (result.work) {
-        const std::vector<stroke::StrokeReport> misfits = std::move(result.work->misfits);
+        std::vector<stroke::Misfit> misfits = std::move(result.work->misfits);
         const bool revised = !s.revises.empty();
         // Unnamed work that is left for other work is offered again at the next start.
         if (s.painter && !s.strokes.empty() && is_unnamed(s.last.project)) remember_project(s.last.project);
@@ -220,11 +228,12 @@ void poll_session(Session& s) {
         s.last = {};
         if (!find_ink(s, s.ink)) s.ink = "carbon";
         s.model_is_new = true;
+        s.keeps_view = revised;
+        s.former = s.revises;
         s.symmetry.centre = s.painter->model().mesh->bounds.centre();
         say(s, revised ? "The strokes are painted on the revised model; the former project is as it was." : "");
         s.revises.clear();
-        s.misfits.clear();
-        for (const stroke::StrokeReport& m : misfits) s.misfits.push_back({.stroke = m.stroke_id, .distance = m.nearest});
+        s.misfits = std::move(misfits);
         s.show_misfits = !s.misfits.empty();
     }
     poll_painter(s);

@@ -23,13 +23,6 @@ namespace tuft::app {
 
 enum class ModelView { glaze, clay, flat, height, wetness, texels, charts, stretch };
 inline constexpr int kModelViews = 8;
-/// A stroke that does not touch a revised model any more.
-struct Misfit {
-    std::uint64_t stroke = 0;
-    std::size_t number = 0;       ///< in the journal, from 1
-    std::string brush, ink;
-    double distance = 0;          ///< metres from the tuft to the model, at the nearest
-};
 
 enum class Tool { brush, line, curve, writing, eraser, fill, pick, mask };
 enum class Keymap { blender, maya };
@@ -105,11 +98,13 @@ struct Session {
     std::optional<Inspected> inspected;    ///< waits for the person's yes
     OpenOptions open_options;
     std::filesystem::path revises;         ///< project whose strokes what is being opened shall carry
-    std::vector<Misfit> misfits;
+    std::filesystem::path former;          ///< project that the revised model's strokes came from
+    std::vector<stroke::Misfit> misfits;   ///< strokes that do not fit a revised model any more
     bool show_misfits = false, shift_stroke = false;  ///< the chosen stroke is being moved
     std::optional<mesh::SurfacePoint> shift_from, shift_to;
     bool is_sample = false;                ///< what is being opened; nothing is asked then
     bool model_is_new = false;             ///< the scene must take it over
+    bool keeps_view = false;               ///< it is looked at as the one before
     SessionNote note;
     std::vector<LostWork> lost;
     std::vector<std::filesystem::path> samples, recent;
@@ -197,6 +192,8 @@ void size_brush(Session& s, double factor);
 void choose_mask(Session& s, std::uint32_t id);
 /// Looks at a model that shall take the place of the one in work, with its strokes.
 void revise_with(Session& s, const std::filesystem::path& path);
+/// Back to the project that was revised.
+void open_former(Session& s);
 /// Goes on from the dialog of a model that was looked at.
 void accept_inspected(Session& s);
 /// Takes over what threads have finished.

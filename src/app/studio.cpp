@@ -159,11 +159,13 @@ void Studio::take_model() {
         for (const auto& texel : pixels.levels[0]) s.highest = std::max(s.highest, 0.1 * texel[3]);
         view_->scene_changed();
         colours_shown_ = ModelView::glaze;
-        const Orbit fresh;
-        s.view.orbit.azimuth = fresh.azimuth;
-        s.view.orbit.elevation = fresh.elevation;
-        s.view.orbit.roll = 0;
-        s.view.orbit.frame(m.mesh->bounds);
+        if (!std::exchange(s.keeps_view, false)) {
+            const Orbit fresh;
+            s.view.orbit.azimuth = fresh.azimuth;
+            s.view.orbit.elevation = fresh.elevation;
+            s.view.orbit.roll = 0;
+            s.view.orbit.frame(m.mesh->bounds);
+        }
         s.model_is_new = false;
         strokes_seen_ = s.strokes.size();
     }

@@ -23,6 +23,7 @@ class Studio {
     ~Studio();
 
     Session& session() { return session_; }
+    const Session& session() const { return session_; }
     /// One turn: takes events, draws everything. `now` in seconds on the events' clock.
     void frame(EventQueue& events, int width, int height, unsigned framebuffer, double now);
     /// Seconds that the next frame may wait for an event: none while the picture moves, a while

@@ -10,6 +10,7 @@
 #include "io/inkml.h"
 #include "io/read_model.h"
 #include "io/restore.h"
+#include "stroke/fit.h"
 #include "stroke/journal_traces.h"
 
 /// Commands that start from a project: replay, export, render.
@@ -42,6 +43,14 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
                        !surface.new_uv && surface.seams == "free";
     stroke::ModelOptions options = model_options(surface, console);
     return stroke::rescale_model(std::move(project.model), options);
+}
+
+/// Strokes that do not fit a revised model any more; those that touch nothing where the model is the same.
+std::vector<stroke::Misfit> find_misfits(const Replay& a, const OpenProject& project, stroke::Painting& painting,
+                                         const std::vector<stroke::Stroke>& strokes, const std::vector<stroke::StrokeReport>& reports) {
+    if (a.model.empty()) return stroke::find_misfits(reports, {});
+    const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
+    return stroke::find_misfits(reports, stroke::compare_fit(strokes, length_of, *project.model.query, *painting.model().query));
 }
 
 /// The map a picture shall hold: the one asked for, or the one the file is called.
@@ -140,13 +149,11 @@ int run(const Replay& a) {
     find_presets(painting, strokes);
     const std::vector<stroke::StrokeReport> reports = painting.replay(strokes, console.progress());
     console.clear();
+    const std::vector<stroke::Misfit> misfits = find_misfits(a, *project, painting, strokes, reports);
     std::size_t missed = 0;
-    for (const stroke::StrokeReport& r : reports) {
-        if (r.touched()) continue;
-        ++missed;
-        console.note(fmt::format("warning: stroke {} no longer touches the model; it stays {:.2f} mm away",
-                                 r.stroke_id, r.nearest * 1e3));
-    }
+    for (const stroke::StrokeReport& r : reports) missed += !r.touched();
+    for (const stroke::Misfit& m : misfits)
+        console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason));
     show_looks(project->file, painting, a.look, console);
     if (!a.out_project.empty()) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
@@ -158,9 +165,12 @@ int run(const Replay& a) {
     write_outputs(outputs, painting, console);
     console.clear();
     if (a.common.json) {
+        nlohmann::json list = nlohmann::json::array();
+        for (const stroke::Misfit& m : misfits) list.push_back({{"stroke", m.stroke}, {"reason", m.reason}});
         nlohmann::json j{{"project", a.project.string()},
                          {"strokes", reports.size()},
                          {"missed", missed},
+                         {"misfits", std::move(list)},
                          {"atlas", to_json(model.atlas, model.atlas_report)},
                          {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
         std::cout << j.dump(2) << '\n';
