@@ -47,7 +47,7 @@ Painter::Painter(Work work) : work_(std::move(work)) {
         refresh(palette_, *work_.painting);
         update_.palette = palette_;
     }
-    groups_.assign(work_.painting->journal().strokes().size(), 1);
+    steps_.assign(work_.painting->journal().strokes().size(), Step{.made = 1});
     publish(true);
     thread_ = std::thread([this] { run(); });
 }
@@ -216,9 +216,9 @@ void Painter::publish(bool strokes_changed) {
     update_.layers = painting.layers();
     update_.masks = painting.masks();
     update_.wet = std::ranges::any_of(painting.canvases(), [](const stroke::LayerTexels& l) { return l.canvas->wet(); });
-    update_.can_undo = painting.journal().can_undo();
+    update_.can_undo = !steps_.empty();
     update_.undo_seconds = undo_seconds_;
-    update_.can_redo = painting.journal().can_redo();
+    update_.can_redo = !undone_.empty();
     update_.project = work_.keeper.path();
     update_.trouble = work_.keeper.trouble();
     if (!update_.trouble.empty() && work_.keeper.waiting() > 0)
@@ -285,8 +285,8 @@ void Painter::fill(const FillModel& command) {
 void Painter::act(stroke::Stroke entry) {
     work_.painting->paint(std::move(entry));
     work_.keeper.add(work_.painting->journal().strokes().back());
-    groups_.push_back(1);
-    undone_groups_.clear();
+    steps_.push_back({.made = 1});
+    undone_.clear();
     publish(true);
 }
 
@@ -300,8 +300,8 @@ void Painter::paint_traces(PaintTraces& command) {
             all.push_back(std::move(trace));
         }
     }
-    undone_groups_.clear();
-    groups_.push_back(0);
+    undone_.clear();
+    steps_.push_back({});
     const ProgressFn shown = progress("Laying it down");
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
@@ -310,10 +310,10 @@ void Painter::paint_traces(PaintTraces& command) {
         if (command.wet) entry.settings.film = "wet";
         work_.painting->paint(std::move(entry));
         work_.keeper.add(work_.painting->journal().strokes().back());
-        ++groups_.back();
+        ++steps_.back().made;
         publish(true);
     }
-    if (groups_.back() == 0) groups_.pop_back();
+    if (steps_.back().made == 0) steps_.pop_back();
     publish(true);
 }
 
@@ -350,9 +350,8 @@ void Painter::end() {
         ++made;
         publish(true);
     }
-    if (current_.joined && !groups_.empty()) groups_.back() += made;
-    else groups_.push_back(made);
-    undone_groups_.clear();
+    steps_.push_back({.made = made, .joined = current_.joined && !steps_.empty()});
+    undone_.clear();
 }
 
 void Painter::cancel() {
@@ -366,46 +365,69 @@ void Painter::cancel() {
 }
 
 void Painter::undo() {
-    if (groups_.empty() || !work_.painting->journal().can_undo()) return;
     const double start = now();
-    for (std::size_t i = 0; i < groups_.back() && work_.painting->journal().can_undo(); ++i) {
-        const std::uint64_t id = work_.painting->journal().strokes().back().id;
-        work_.painting->undo();
-        work_.keeper.remove(id);
+    for (bool more = true; more && !steps_.empty();) {
+        const Step& step = steps_.back();
+        more = step.joined;
+        if (step.change) put(*step.change, true);
+        for (std::size_t i = 0; i < step.made && work_.painting->journal().can_undo(); ++i) {
+            const std::uint64_t id = work_.painting->journal().strokes().back().id;
+            work_.painting->undo();
+            work_.keeper.remove(id);
+        }
+        undone_.push_back(std::move(steps_.back()));
+        steps_.pop_back();
     }
-    undone_groups_.push_back(groups_.back());
-    groups_.pop_back();
     undo_seconds_ = now() - start;
     publish(true);
 }
 
 void Painter::redo() {
-    if (undone_groups_.empty()) return;
-    for (std::size_t i = 0; i < undone_groups_.back(); ++i)
-        if (work_.painting->redo()) work_.keeper.add(work_.painting->journal().strokes().back());
-    groups_.push_back(undone_groups_.back());
-    undone_groups_.pop_back();
+    for (bool more = true; more && !undone_.empty(); more = !undone_.empty() && undone_.back().joined) {
+        const Step& step = undone_.back();
+        if (step.change) put(*step.change, false);
+        for (std::size_t i = 0; i < step.made; ++i)
+            if (work_.painting->redo()) work_.keeper.add(work_.painting->journal().strokes().back());
+        steps_.push_back(std::move(undone_.back()));
+        undone_.pop_back();
+    }
     publish(true);
 }
 
 void Painter::edit(const EditStroke& command) {
-    std::vector<stroke::Stroke> strokes = work_.painting->journal().strokes();
+    const std::vector<stroke::Stroke>& strokes = work_.painting->journal().strokes();
     const auto at = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.id == command.id; });
     if (at == strokes.end()) return;
-    if (command.hidden) at->hidden = *command.hidden;
-    if (command.brush) at->trace.brush = *command.brush;
-    if (command.ink) at->trace.ink = *command.ink;
-    if (command.move) shift(*at, *command.move);
-    if (command.brush || command.ink) work_.keeper.prepare(*work_.painting, at->trace.brush, at->trace.ink);
-    if (command.remove) strokes.erase(at);
-    rewrite(std::move(strokes));
-    if (command.remove) work_.keeper.remove(command.id);
-    else if (command.hidden) work_.keeper.set_hidden(command.id, *command.hidden);
-    if (command.brush || command.ink || command.move) {
-        // A stroke's row cannot change its presets: the file is written anew, whole or not at all.
-        const std::string fault = work_.keeper.start(work_.keeper.path(), work_.source, work_.frame, *work_.painting);
-        if (!fault.empty()) say(fault);
+    Change change{.at = static_cast<std::size_t>(at - strokes.begin()), .before = *at, .after = {}};
+    if (!command.remove) {
+        stroke::Stroke& after = change.after.emplace(*at);
+        if (command.hidden) after.hidden = *command.hidden;
+        if (command.brush) after.trace.brush = *command.brush;
+        if (command.ink) after.trace.ink = *command.ink;
+        if (command.move) shift(after, *command.move);
+        if (command.brush || command.ink) work_.keeper.prepare(*work_.painting, after.trace.brush, after.trace.ink);
     }
+    put(change, false);
+    work_.painting->restore_undone({});
+    undone_.clear();
+    steps_.push_back({.change = std::move(change), .joined = command.joined && !steps_.empty()});
+    publish(true);
+}
+
+// Changes an entry, or changes it back, and paints all strokes anew.
+void Painter::put(const Change& change, bool back) {
+    const stroke::Stroke& from = change.before;
+    std::vector<stroke::Stroke> strokes = work_.painting->journal().strokes();
+    const auto at = strokes.begin() + static_cast<std::ptrdiff_t>(change.at);
+    if (!change.after && back) strokes.insert(at, from);
+    else if (!change.after) strokes.erase(at);
+    else *at = back ? from : *change.after;
+    rewrite(std::move(strokes));
+    if (!change.after && !back) return work_.keeper.remove(from.id);
+    if (change.after && change.after->hidden != from.hidden) return work_.keeper.set_hidden(from.id, back ? from.hidden : change.after->hidden);
+    // Rows can only be added and taken out: the file is written anew, whole or not at all.
+    const std::string fault = work_.keeper.start(work_.keeper.path(), work_.source, work_.frame, *work_.painting);
+    if (!fault.empty()) say(fault);
 }
 
 // Ground, brushes, inks and looks as the journal's strokes were painted with.
@@ -435,9 +457,9 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
     painting->replay(std::move(strokes), progress("Painting again"));
     for (const stroke::LayerTexels& layer : old.canvases())
         for (const std::uint32_t slot : layer.canvas->touched_slots()) painting->canvas().mark_dirty(slot);
+    painting->restore_undone(old.journal().undone());
     work_.painting = std::move(painting);
-    groups_.assign(work_.painting->journal().strokes().size(), 1);
-    undone_groups_.clear();
+    lines_.clear();
     if (!palette_.rgb.empty()) {
         refresh(palette_, *work_.painting);
         const std::lock_guard lock(mutex_);

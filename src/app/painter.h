@@ -125,6 +125,7 @@ struct EditStroke {
     std::optional<std::string> brush, ink;
     std::optional<RigidMove> move;
     bool remove = false;
+    bool joined = false;          ///< is undone together with the one before it
 };
 using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
                              ExportModel, EditStroke, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
@@ -208,6 +209,18 @@ class Painter {
     const FileFrame& frame() const { return work_.frame; }  ///< of the model file
 
   private:
+    /// An entry of the journal that was changed, or taken out.
+    struct Change {
+        std::size_t at = 0;                   ///< its place
+        stroke::Stroke before;
+        std::optional<stroke::Stroke> after;  ///< none: taken out
+    };
+    /// What one undo takes back.
+    struct Step {
+        std::size_t made = 0;                 ///< entries at the journal's end
+        std::optional<Change> change;         ///< or this
+        bool joined = false;                  ///< and the step before it
+    };
     void run();
     void perform(Command& command);
     void begin(const BeginStroke& command);
@@ -233,6 +246,7 @@ class Painter {
     void redo();
     void edit(const EditStroke& command);
     void rewrite(std::vector<stroke::Stroke> strokes);
+    void put(const Change& change, bool back);
     void take_presets(stroke::Painting& painting);
     void export_model(const ExportModel& command);
     void export_strokes(const std::filesystem::path& path);
@@ -249,7 +263,7 @@ class Painter {
     std::optional<std::array<std::uint8_t, 3>> brush_colour_;
     double undo_seconds_ = 0;
     double asked_ = 0, last_publish_ = 0;
-    std::vector<std::size_t> groups_, undone_groups_;  ///< strokes that one movement of the hand made
+    std::vector<Step> steps_, undone_;        ///< the last one at the back
     std::vector<StrokeLine> lines_;
 
     mutable std::mutex mutex_;

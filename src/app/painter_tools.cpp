@@ -126,8 +126,7 @@ void Painter::change_masks(const ChangeMasks& command) {
     both.mask.kind = command.how;
     both.mask.of = {command.with, made.id};
     act(entry_of(both));
-    groups_.pop_back();
-    ++groups_.back();
+    steps_.back().joined = true;
 }
 
 void Painter::show_mask(const ShowMask& command) {

@@ -35,7 +35,7 @@ void misfit_dialog(Session& s) {
     end_dialog(s);
     if (back) return open_former(s);
     if (hide)
-        for (const stroke::Misfit& misfit : s.misfits) s.painter->post(EditStroke{.id = misfit.stroke, .hidden = true});
+        for (const stroke::Misfit& misfit : s.misfits) s.painter->post(EditStroke{.id = misfit.stroke, .hidden = true, .joined = &misfit != &s.misfits.front()});
     if (hide || keep) s.show_misfits = false;
 }
 

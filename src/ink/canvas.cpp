@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <span>
 
 #include "core/error.h"
 #include "core/hash.h"
@@ -83,6 +84,47 @@ int Canvas::add_pigment(const Pigment& pigment) {
                     std::to_string(kMaxPigments) + " pigments");
     pigments_.push_back(pigment);
     return static_cast<int>(pigments_.size()) - 1;
+}
+
+std::size_t Canvas::used_pigments() const {
+    int used = 0;
+    for (std::uint32_t slot = 0; slot < slots_.size(); ++slot)
+        each_plane(slot, [&](int film, int index, const Plane& plane) {
+            if (film != kFilms && index >= used && !all_zero(plane)) used = index + 1;
+        });
+    return static_cast<std::size_t>(used);
+}
+
+void Canvas::forget_pigments(std::size_t n) {
+    if (n >= pigments_.size()) return;
+    n = std::max(n, used_pigments());
+    if (n >= pigments_.size()) return;
+    for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) {
+        bool above = false;
+        each_plane(slot, [&](int film, int index, const Plane&) { above |= film != kFilms && static_cast<std::size_t>(index) >= n; });
+        if (!above) continue;
+        // Planes of zeros, which have no place in a list that ends before them.
+        const TileSnapshot tile = snapshot(slot);
+        TileSnapshot kept{.slot = slot};
+        const float* from = tile.amounts.data();
+        const auto keep = [&](std::uint8_t planes, bool liquid) {
+            std::uint8_t out = 0;
+            for (int p = 0; p < kMaxPigments; ++p) {
+                if (!(planes >> p & 1)) continue;
+                if (liquid || static_cast<std::size_t>(p) < n) {
+                    out = static_cast<std::uint8_t>(out | 1 << p);
+                    kept.amounts.insert(kept.amounts.end(), from, from + kTexels);
+                }
+                from += kTexels;
+            }
+            return out;
+        };
+        kept.planes = keep(tile.planes, false);
+        for (const FilmPlanes& f : tile.under)
+            if (const std::uint8_t planes = keep(f.planes, f.film == kFilms)) kept.under.push_back({f.film, planes});
+        restore(kept);
+    }
+    pigments_.resize(n);
 }
 
 void Canvas::set_pigment(int index, const Pigment& pigment) {
@@ -264,7 +306,8 @@ std::size_t Canvas::memory_bytes() const {
 
 std::uint64_t Canvas::hash() const {
     std::uint64_t h = 0;
-    for (const Pigment& p : pigments_) h = hash_bytes(p.name.data(), p.name.size(), h + 1);
+    const std::span<const Pigment> used(pigments_.data(), used_pigments());
+    for (const Pigment& p : used) h = hash_bytes(p.name.data(), p.name.size(), h + 1);
     for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) {
         each_plane(slot, [&](int film, int index, const Plane& plane) {
             if (all_zero(plane)) return;

@@ -74,6 +74,9 @@ class Canvas {
     /// definition of a name stays). Throws `Error` for a ninth pigment.
     int add_pigment(const Pigment& pigment);
     const std::vector<Pigment>& pigments() const { return pigments_; }
+    /// Forgets pigments from the last one on until `n` are left, as far as nothing lies of them: an
+    /// undone or cancelled stroke leaves no trace in the order of those that come after.
+    void forget_pigments(std::size_t n);
     /// Gives plane `index` other optical properties: recolours without repainting.
     void set_pigment(int index, const Pigment& pigment);
 
@@ -120,7 +123,8 @@ class Canvas {
 
     /// Bytes held by planes and slot tables.
     std::size_t memory_bytes() const;
-    /// Hash of pigment names and all amounts. A plane of zeros counts like no plane.
+    /// Hash of pigment names and all amounts. A plane of zeros counts like no plane, and pigments after
+    /// the last one that lies somewhere do not count.
     std::uint64_t hash() const;
     /// Same pigment names and same amounts to the bit, absent planes being zeros.
     bool same_contents(const Canvas& other) const;
@@ -141,6 +145,8 @@ class Canvas {
     Tile& tile(std::uint32_t slot);
     Plane& make(PlanePtr& plane);
     /// Calls fn(film, index, plane) for the planes there are; film kFilms: liquid.
+    /// Pigments up to the last one of which something lies anywhere.
+    std::size_t used_pigments() const;
     template <class Fn>
     void each_plane(std::uint32_t slot, Fn&& fn) const;
 

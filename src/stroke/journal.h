@@ -87,6 +87,9 @@ class Journal {
     /// Takes the last stroke off, to be put back by `redo`; false when there is none.
     bool undo();
     bool redo();
+    /// Entries that `redo` shall bring back, the next one last; of a journal that this one takes the place of.
+    void restore_undone(std::vector<Stroke> undone) { undone_ = std::move(undone); }
+    const std::vector<Stroke>& undone() const { return undone_; }
     bool can_undo() const { return !strokes_.empty(); }
     bool can_redo() const { return !undone_.empty(); }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contact/contact.h"
 #include "stroke/hand.h"
@@ -127,11 +128,21 @@ void Painting::keep_undo(Undo undo) {
             undo.bytes += sizeof(ink::TileSnapshot) + tile.amounts.size() * sizeof(float);
     if (undo.canvas) undo.bytes += undo.canvas->canvas.memory_bytes();
     undo_bytes_ += undo.bytes;
+    undo.pigments = std::exchange(known_pigments_, canvas_.pigments().size());
     undo_.push_back(std::move(undo));
     while (undo_bytes_ > options_.undo_bytes && undo_.size() > 1) {
         undo_bytes_ -= undo_.front().bytes;
         undo_.pop_front();
     }
+}
+
+// Pigments of what is taken back are as if they had never been met: a replay meets the others in its own order.
+void Painting::forget_pigments(std::size_t n) {
+    known_pigments_ = n;
+    if (n >= canvas_.pigments().size()) return;
+    canvas_.forget_pigments(n);
+    for (auto& [layer, canvas] : upper_) canvas.forget_pigments(n);
+    if (palette_) palette_->canvas.forget_pigments(n);
 }
 
 void Painting::act(const Stroke& entry) {
@@ -323,6 +334,7 @@ void Painting::cancel() {
     ink::Canvas& canvas = this->canvas(hand_->stroke.layer);
     for (const ink::TileSnapshot& tile : hand_->stamper.take_before()) canvas.restore(tile);
     hand_.reset();
+    forget_pigments(known_pigments_);
 }
 
 std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
@@ -366,7 +378,13 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
 StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
     check_layer(stroke);
     settle(stroke);
-    StrokeReport report = draw(stroke, progress);
+    StrokeReport report;
+    try {
+        report = draw(stroke, progress);
+    } catch (...) {
+        forget_pigments(known_pigments_);
+        throw;
+    }
     report.stroke_id = journal_.append(std::move(stroke)).id;
     undo_.back().stroke_id = report.stroke_id;
     return report;
@@ -428,6 +446,7 @@ bool Painting::undo() {
     take_back_layers(last);
     if (last.brush_before) held_.insert_or_assign(last.brush, std::move(*last.brush_before));
     else if (!last.brush.empty()) held_.erase(last.brush);
+    forget_pigments(last.pigments);
     undo_bytes_ -= last.bytes;
     undo_.pop_back();
     return true;
@@ -450,6 +469,7 @@ void Painting::repaint_all() {
     held_.clear();
     undo_.clear();
     undo_bytes_ = 0;
+    forget_pigments(0);
     for (const Stroke& stroke : journal_.strokes())
         if (!stroke.hidden) draw(stroke, {});
 }

@@ -164,6 +164,8 @@ class Painting {
     /// once `undo_bytes` are used up.
     bool undo();
     bool redo();
+    /// See `Journal::restore_undone`.
+    void restore_undone(std::vector<Stroke> undone) { journal_.restore_undone(std::move(undone)); }
 
     const Journal& journal() const { return journal_; }
     const Model& model() const { return *model_; }
@@ -239,6 +241,7 @@ class Painting {
         std::optional<LayerCanvas> canvas;        ///< that the edit took away
         std::string brush;                        ///< empty: none had a part in it
         std::optional<BrushInHand> brush_before;  ///< nothing: it was not held
+        std::size_t pigments = 0;                 ///< known before the entry
         std::size_t bytes = 0;
     };
 
@@ -268,6 +271,7 @@ class Painting {
     BrushInHand take_up(const Stroke& entry);
     void put_down(std::uint64_t id, const std::string& brush, BrushInHand after, LayerTiles before);
     void keep_undo(Undo undo);
+    void forget_pigments(std::size_t n);
     ink::Mix mix_of(const std::string& ink);
     void apply_recolours();
     void repaint_all();
@@ -294,6 +298,7 @@ class Painting {
     std::map<std::string, LeanedLead> leaned_leads_;     ///< by brush
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
+    std::size_t known_pigments_ = 0;                  ///< by the entries of the journal
     std::unique_ptr<Hand> hand_;
     std::unique_ptr<ink::WetFilm> film_;              ///< made when something is wet
     std::unique_ptr<atlas::SeamLinks> seams_;         ///< made for it, or for paste

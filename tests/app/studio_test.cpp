@@ -105,6 +105,27 @@ TEST_F(StudioProgram, AJournalThatWasChangedReplaysToTheSameTexels) {
               test::stored_hash(path("work.tuft")));
 }
 
+TEST_F(StudioProgram, AChangeOfTheJournalIsUndoneLikeAStroke) {
+    const Ran ran = studio(kBowl + kTwoStrokes + "stroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\nsave before.tuft\nwait-ready\n"
+                           "click \"stroke 2\"\nclick Delete\nwait-ready\nexpect strokes 2\nundo\nwait-ready\nexpect strokes 3\nsave undone.tuft\nwait-ready\n"
+                           // The stroke after the change can be taken back and forth over it.
+                           "redo\nwait-ready\nexpect strokes 2\nundo\nundo\nwait-ready\nexpect strokes 2\nredo\nwait-ready\nexpect strokes 3\nredo\nwait-ready\nexpect strokes 2\n"
+                           "save redone.tuft\nwait-ready\nundo\nwait-ready\nclick \"stroke 1\"\nclick Hide\nwait-ready\nundo\nwait-ready\nexpect kept\nsave shown.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto hash = [this](const std::string& project) { return test::stored_hash(path(project)); };
+    EXPECT_EQ(hash("undone.tuft"), hash("before.tuft"));
+    EXPECT_EQ(hash("shown.tuft"), hash("before.tuft"));
+    EXPECT_NE(hash("redone.tuft"), hash("before.tuft"));
+    const auto before = io::Project::open(path("before.tuft")).strokes(), undone = io::Project::open(path("undone.tuft")).strokes(),
+               redone = io::Project::open(path("redone.tuft")).strokes();
+    ASSERT_EQ(undone.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(undone[i].id, before[i].id);
+    ASSERT_EQ(redone.size(), 2u);
+    EXPECT_EQ(redone[1].id, before[2].id);
+    for (const char* project : {"undone.tuft", "redone.tuft", "shown.tuft"})
+        EXPECT_EQ(tuft("replay '" + path(project) + "'")["canvas_hash"], hash(project)) << project;
+}
+
 TEST_F(StudioProgram, ALineFollowsItsControlPointsAndIsUndoneAsOne) {
     const Ran ran = studio(kBowl + "set tool line\nstroke 44%,58% 58%,58%\nwait-ready\nwait 0.1\nexpect strokes 1\n"
                                    "move 58%,58%\npress\nmove 57%,61%\nmove 56%,62%\nrelease\nwait-ready\nwait 0.1\nexpect strokes 1\n"

@@ -57,6 +57,53 @@ TEST(Painting, ReplayIsTheSameToTheBitForAnyThreadCount) {
     set_thread_count(0);
 }
 
+// Pigments have places in the order in which they are met. Those of strokes that were taken back have none: what
+// was painted is to the bit what the journal paints.
+TEST(Painting, InksThatWereTakenBackLeaveNoTraceInThoseThatFollow) {
+    const Model model = sheet();
+    const auto stroke_of = [](const std::string& ink, double y) {
+        Stroke s = line("wolf-small", 2e-3, make_frame({0, y, 0}, {0, 0, 1}));
+        s.trace.ink = ink;
+        return s;
+    };
+    Painting painting(model);
+    const auto as_replayed = [&](const char* when) {
+        Painting again(model);
+        again.replay(painting.journal().strokes());
+        EXPECT_EQ(painting.hash(), again.hash()) << when;
+    };
+    painting.paint(stroke_of("carbon", 0));
+    painting.paint(stroke_of("cinnabar", 0.005));
+    painting.undo();
+    as_replayed("undone");
+    painting.paint(stroke_of("indigo", 0.005));
+    painting.paint(stroke_of("cinnabar", 0));
+    as_replayed("the same ink later");
+    EXPECT_EQ(painting.canvas().pigments().size(), 3u);
+
+    Stroke cancelled = stroke_of("gamboge", 0);
+    const std::vector<TraceSample> samples = std::move(cancelled.trace.samples);
+    std::vector<brush::Pose> poses;
+    for (const TraceSample& s : samples) poses.push_back({s.position, s.rotation, s.time});
+    cancelled.trace.samples.clear();
+    painting.begin(cancelled);
+    painting.extend(poses);
+    painting.cancel();
+    EXPECT_EQ(painting.canvas().pigments().size(), 3u);
+    painting.paint(stroke_of("cobalt", 0));
+    painting.paint(stroke_of("gamboge", 0.002));
+    as_replayed("cancelled");
+
+    // Older strokes are undone by painting the others anew.
+    Painting other(model, {.undo_bytes = 0});
+    for (const char* ink : {"carbon", "cinnabar", "indigo"}) other.paint(stroke_of(ink, 0));
+    for (int i = 0; i < 2; ++i) other.undo();
+    for (const char* ink : {"indigo", "cinnabar"}) other.paint(stroke_of(ink, 0));
+    Painting again(model);
+    again.replay(other.journal().strokes());
+    EXPECT_EQ(other.hash(), again.hash());
+}
+
 TEST(Painting, UndoTakesTheTexelsBackAndRedoMakesThemAgain) {
     const Model model = sheet();
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
