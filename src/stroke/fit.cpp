@@ -11,6 +11,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kPart = 0.1;       // of the way, that may be lost or buried
+constexpr double kMost = 0.5;       // of the way: then no depth is worth telling
 constexpr double kDepthPart = 0.5;  // of the depth, that it may change by
 constexpr double kLeastChange = 2e-4;  // metres of depth that nobody sees
 
@@ -62,10 +63,12 @@ std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes, const std
 std::string misfit_reason(const StrokeFit& fit) {
     if (fit.way <= 0) return "";
     const auto percent = [&](double part) { return static_cast<int>(std::lround(100 * part / fit.way)); };
-    if (fit.lost > kPart * fit.way && fit.lost >= fit.buried) return fmt::format("{} % of it touches nothing", percent(fit.lost));
-    if (fit.buried > kPart * fit.way) return fmt::format("{} % of it lies inside the model", percent(fit.buried));
-    if (std::abs(fit.deeper) > std::max(kLeastChange, kDepthPart * fit.depth))
-        return fmt::format("pressed {:.1f} mm {}", 1e3 * std::abs(fit.deeper), fit.deeper > 0 ? "deeper" : "less deep");
+    const bool moved = std::abs(fit.deeper) > std::max(kLeastChange, kDepthPart * fit.depth);
+    // A surface that sank loses the light ends of a stroke too: that it sank says more.
+    const double least = (moved ? kMost : kPart) * fit.way;
+    if (fit.lost > least && fit.lost >= fit.buried) return fmt::format("{} % of it touches nothing", percent(fit.lost));
+    if (fit.buried > least) return fmt::format("{} % of it lies inside the model", percent(fit.buried));
+    if (moved) return fmt::format("pressed {:.1f} mm {}", 1e3 * std::abs(fit.deeper), fit.deeper > 0 ? "deeper" : "less deep");
     return "";
 }
 
