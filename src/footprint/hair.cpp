@@ -281,6 +281,7 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
     HairMarks result{rasterise(outlines, frame, triangle, cell), 0};
     Footprint& f = result.footprint;
     if (f.empty()) return result;
+    cell = f.cell;
     std::vector<Placed> places;
     places.reserve(bundles.bristles.size());
     for (const brush::Bristle& b : bundles.bristles) places.emplace_back(brush::place_of(bundles, b), branches);

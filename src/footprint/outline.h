@@ -51,8 +51,8 @@ std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame,
 std::vector<Vec2> curve_points(const Outline& outline, int per_span = 4);
 
 /// Picture of the outlines' union with exact area coverage. `cell` in metres: about a texel
-/// or finer. Empty when there is nothing. Throws `Error` when the picture would exceed
-/// 4096 cells a side.
+/// or finer; doubled until the picture has at most 4096 cells a side, when a texel is small
+/// against the tuft. Empty when there is nothing.
 Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle,
                     double cell);
 

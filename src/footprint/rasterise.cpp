@@ -155,12 +155,14 @@ Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::
         }
     }
     if (!(lo.x <= hi.x && lo.y <= hi.y)) return result;
+    const double side = std::max(hi.x - lo.x, hi.y - lo.y);
+    if (!std::isfinite(side / cell))
+        throw Error("a footprint " + std::to_string(1e3 * side) + " mm wide has no picture with cells of " +
+                    std::to_string(1e3 * cell) + " mm");
+    while (side > (kMaxCells - 4) * cell) cell *= 2;  // two cells of border on each side
     const Vec2 first = glm::floor(lo / cell) - 1.0, last = glm::floor(hi / cell) + 2.0;
     const Vec2 size = last - first;
-    if (!(size.x <= kMaxCells && size.y <= kMaxCells))
-        throw Error("a footprint " + std::to_string(1e3 * std::max(hi.x - lo.x, hi.y - lo.y)) +
-                    " mm wide does not fit into " + std::to_string(kMaxCells) +
-                    " texels: use a larger texel size or a smaller brush");
+    result.cell = cell;
     result.lo = first * cell;
     result.width = static_cast<int>(size.x);
     result.height = static_cast<int>(size.y);

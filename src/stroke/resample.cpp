@@ -24,11 +24,11 @@ double pose_distance(const Pose& a, const Pose& b, const ResampleOptions& o) {
     return std::sqrt(dx * dx + turn * turn + rest * rest);
 }
 
+/// Between knots of the centripetal spline.
+double knot(const Vec3& a, const Vec3& b) { return std::max(std::sqrt(glm::distance(a, b)), 1e-9); }
+
 // Barry and Goldman's pyramid for the centripetal spline between p1 and p2.
 Vec3 catmull_rom(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3, double s) {
-    const auto knot = [](const Vec3& a, const Vec3& b) {
-        return std::max(std::sqrt(glm::distance(a, b)), 1e-9);
-    };
     const double t0 = 0, t1 = t0 + knot(p0, p1), t2 = t1 + knot(p1, p2), t3 = t2 + knot(p2, p3);
     const double t = t1 + s * (t2 - t1);
     const Vec3 a1 = (t1 - t) / (t1 - t0) * p0 + (t - t0) / (t1 - t0) * p1;
@@ -37,6 +37,23 @@ Vec3 catmull_rom(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3,
     const Vec3 b1 = (t2 - t) / (t2 - t0) * a1 + (t - t0) / (t2 - t0) * a2;
     const Vec3 b2 = (t3 - t) / (t3 - t1) * a2 + (t - t1) / (t3 - t1) * a3;
     return (t2 - t) / (t2 - t1) * b1 + (t - t1) / (t2 - t1) * b2;
+}
+
+/// Part of the time from b to c that has passed at the part s of the spline between them: Hermite's
+/// cubic over the spline's own knots, with the slopes of the parabolas through three of them, no
+/// steeper than keeps it rising (Fritsch and Carlson 1980).
+double time_between(const Pose& a, const Pose& b, const Pose& c, const Pose& d, double s) {
+    constexpr double kSteepest = 3;  // of the mean
+    const double h = c.time - b.time;
+    if (!(h > 0)) return s;
+    const double k0 = knot(a.position, b.position), k1 = knot(b.position, c.position),
+                 k2 = knot(c.position, d.position);
+    // Slopes of the chords before and after, over that of the chord between.
+    const double before = (b.time - a.time) / h * (k1 / k0), after = (d.time - c.time) / h * (k1 / k2);
+    const double from = std::clamp((k1 * before + k0) / (k0 + k1), 0.0, kSteepest);
+    const double to = std::clamp((k1 * after + k2) / (k1 + k2), 0.0, kSteepest);
+    const double r = 1 - s;
+    return std::clamp(s * s * (3 - 2 * s) + r * s * (r * from - s * to), 0.0, 1.0);
 }
 
 /// Half the rotation vector that turns a into b.
@@ -87,11 +104,15 @@ Pose between(const Pose& a, const Pose& b, const Pose& c, const Pose& d, double 
     if (s <= 0) return b;
     if (s >= 1) return c;
     Pose p;
-    p.position = glm::distance(b.position, c.position) > 1e-9
-                     ? catmull_rom(a.position, b.position, c.position, d.position, s)
-                     : glm::mix(b.position, c.position, s);
-    p.rotation = rotation_between(a, b, c, d, s);
-    p.time = b.time + s * (c.time - b.time);
+    double passed = s;
+    if (glm::distance(b.position, c.position) > 1e-9) {
+        p.position = catmull_rom(a.position, b.position, c.position, d.position, s);
+        passed = time_between(a, b, c, d, s);
+    } else {
+        p.position = glm::mix(b.position, c.position, s);
+    }
+    p.rotation = rotation_between(a, b, c, d, passed);
+    p.time = b.time + passed * (c.time - b.time);
     return p;
 }
 

@@ -19,9 +19,10 @@ struct ResampleOptions {
 /// one at every multiple of `step`, and the last one.
 ///
 /// Between samples the position follows a centripetal Catmull–Rom spline (Catmull and
-/// Rom 1974; Yuksel et al. 2011: no cusps, no self-crossings within a segment) and the
-/// rotation a cumulative cubic in time (Kim, Kim and Shin 1995) with the rates of the parabolas
-/// through three samples, so that both are third-order exact. Length is measured in the space of poses,
+/// Rom 1974; Yuksel et al. 2011: no cusps, no self-crossings within a segment), time a rising
+/// cubic over the spline's knots (Fritsch and Carlson 1980) and the rotation a cumulative cubic in
+/// time (Kim, Kim and Shin 1995), with the rates of the parabolas through three samples, so that
+/// all are third-order exact. Length is measured in the space of poses,
 /// ds² = |dx|² + (lever dφ)² + (drift dt)², so the result is the same for any rate at
 /// which the device sampled the same motion, and the same whether the samples came one by
 /// one or all at once. The spline looks one sample ahead. Samples whose time falls are

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/error.h"
@@ -277,10 +278,18 @@ TEST(Rasterise, IsExactForAnyPlaceOnTheGrid) {
             EXPECT_EQ(f.coverage[std::size_t(f.height - 1) * f.width + i], 0);
         }
     }
+    EXPECT_TRUE(rasterise({}, kFlat, 0, kTexel).empty());
+}
+
+TEST(Rasterise, TakesCoarserCellsWhereTexelsAreSmallAgainstTheTuft) {
     Outline huge;
     huge.control = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const Footprint f = rasterise({&huge, 1}, kFlat, 0, kTexel);
+    EXPECT_LE(std::max(f.width, f.height), 4096);
+    EXPECT_GT(std::max(f.width, f.height), 1024);
+    EXPECT_NEAR(coverage_area(f) / area_of(curve_points(huge)), 1, 1e-4);
+    huge.control[1].x = std::numeric_limits<double>::infinity();
     EXPECT_THROW(rasterise({&huge, 1}, kFlat, 0, kTexel), Error);
-    EXPECT_TRUE(rasterise({}, kFlat, 0, kTexel).empty());
 }
 
 }  // namespace

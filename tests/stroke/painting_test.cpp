@@ -268,9 +268,9 @@ TEST(Painting, ASmoothMotionIsTheSameAtAnySamplingRate) {
         Painting slow(model);
         slow.paint(sway(rate));
         EXPECT_NEAR(slow.canvas().total(model.texels, 0) / total, 1, 1e-3) << rate;
-        // The hand is known to 2 µm at 100 Hz. What sticks and slips does so a step earlier or later:
-        // about 0.5 % at any rate. Shortest arcs between samples gave 4.6 % at 100 Hz.
-        EXPECT_LT(difference(slow, fast), rate > 200 ? 0.01 : 0.015) << rate;
+        // The hand is known to 2 µm at 100 Hz, to the third order. Measured: 0.30, 0.20, 0.05 and
+        // 0.01 %. Even time over each span gave 0.7 % at 100 Hz, shortest arcs between samples 4.6 %.
+        EXPECT_LT(difference(slow, fast), rate > 200 ? 0.002 : 0.006) << rate;
     }
 }
 

@@ -51,6 +51,44 @@ TEST(Resample, SplineConvergesToTheMotionWithTheThirdPowerOfTheSampling) {
     EXPECT_GT(error(20) / error(40), 6.0);  // third order or better: 8, with room for the end effects
 }
 
+TEST(Resample, TimeConvergesToTheMotionWithTheThirdPowerOfTheSampling) {
+    // Along a curve, faster and slower: where the hand is when.
+    const auto motion = [](double t) {
+        const double x = 0.05 * (t - 0.7 * std::sin(2 * pi * t) / (2 * pi));
+        return Vec3{x, 0.01 * std::sin(60 * x), 0};
+    };
+    const auto error = [&](int samples) {
+        std::vector<Pose> raw(static_cast<std::size_t>(samples));
+        for (int i = 0; i < samples; ++i) {
+            raw[i].time = static_cast<double>(i) / (samples - 1);
+            raw[i].position = motion(raw[i].time);
+        }
+        double worst = 0;
+        for (const Pose& p : resample(raw, {.step = 1e-4, .drift = 0}))
+            if (p.time > 0.2 && p.time < 0.8) worst = std::max(worst, glm::distance(p.position, motion(p.time)));
+        return worst;
+    };
+    EXPECT_GT(error(50) / error(100), 6.0);  // third order: 8
+    // Even time over each span of the spline left 30 µm at 100 Hz.
+    EXPECT_LT(error(101), 3e-6);
+}
+
+TEST(Resample, TimeNeverFalls) {
+    // From rest to a jump, with samples a micrometre apart and others at one time.
+    std::vector<Pose> raw;
+    for (const auto& [x, t] : {std::pair{0.0, 0.0}, {1e-6, 0.3}, {2e-6, 0.31}, {0.02, 0.311}, {0.021, 0.311},
+                               {0.0211, 0.9}, {0.05, 0.91}, {0.0500001, 1.5}, {0.06, 1.6}}) {
+        Pose p;
+        p.position = {x, 0, 0};
+        p.time = t;
+        raw.push_back(p);
+    }
+    const std::vector<Pose> even = resample(raw);
+    ASSERT_GT(even.size(), 500u);
+    for (std::size_t i = 1; i < even.size(); ++i) EXPECT_GE(even[i].time, even[i - 1].time) << i;
+    EXPECT_EQ(even.back().time, 1.6);
+}
+
 TEST(Resample, RotationsConvergeToTheMotionWithTheThirdPowerOfTheSampling) {
     // Turns about two axes at once, as a hand tilts and twists.
     const auto motion = [](double t) {
