@@ -11,9 +11,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kBuiltIn = 0.05;  ///< |w| of a tuft as it is bound: its ends do not lie quite evenly
-constexpr double kTurning = 8;     ///< the spine turns by up to this times (1 - |w|²) ds/ρ
-constexpr double kAligned = 0.1;   ///< radians: hair no further ahead than this its friction turns
-constexpr double kOpposite = 3.13; ///< radians: from there either way is as near, and it turns to the left
+constexpr double kTurnsAt = 0.15, kDrawn = 0.5;  ///< |w|, see splay.h
+constexpr double kElsewhere = 0.4; ///< radians: hair no further from its mean its friction turns
 constexpr double kLeastReach = 0.02;  ///< of the length, ρ at the first touch
 
 Vec3 second_side(const rod::Clamp& c) { return glm::cross(c.tangent, c.side); }
@@ -56,14 +55,10 @@ void turn_with_splay(const Preset& p, Spine& spine, const Pose& from, const Pose
         const Complex shift = std::tanh(size) * u / size;
         w = (w + shift) / (1.0 + std::conj(shift) * w);
     }
-    const double side = std::min(std::abs(w), 1.0);
-    if (side > 0 && std::abs(tip) > 1e-6) {
-        double off = std::arg(w / tip);
-        if (std::abs(off) > kOpposite) off = std::abs(off);
-        const double most = kTurning * (1 - side * side) * 2 * size;
-        const bool ahead = size > 0 && std::abs(std::arg(tip / u)) > std::abs(std::arg(w / u)) + kAligned;
-        if (ahead) rod::turn_about_clamp(m, std::clamp(off, -most, most));
-    }
+    const double side = std::abs(w);
+    const double off = side > 0 && std::abs(tip) > 1e-6 ? std::arg(w / tip) : 0;
+    if (size > 0 && side > kTurnsAt && side < kDrawn && std::abs(off) > kElsewhere) rod::turn_about_clamp(m, off);
+    if (side > kDrawn) w /= side;
     spine.one_sided = {w.real(), w.imag()};
 }
 

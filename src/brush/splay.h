@@ -10,16 +10,17 @@
 /// trails on its string of length ρ (a tractrix), dφ = -sin φ ds/ρ, which maps the circle to itself by
 /// Möbius maps; the mean w of all e^{iφ} is the image of its beginning,
 ///
-///   dw/ds = (u - w² ū) / (2ρ),   so that from rest |w| = tanh(s/2ρ):
+///   dw/ds = (u - w² ū) / (2ρ),   so that from rest |w| = tanh(s/2ρ).
 ///
-/// half of the hair trails after a length ρ. The one spine that stands for them lies along w, and turns
-/// there about the axis, which costs nothing; as |w| nears 1 all hair lies on one side, and only
-/// friction turns it. u and w are complex numbers across the axis.
+/// u and w are complex numbers across the axis. One spine stands for all of the hair: it lies where
+/// most of it does. Once the mean has gone to another side by 0.15 (after 0.3 ρ), the spine is laid there, turned
+/// about the axis, which costs nothing; no hair slides on the way. From |w| = 0.5 on all hair has been
+/// drawn to one side, and only friction turns it.
 namespace tuft::brush {
 
 /// Follows the ferrule's motion over one solve and turns the spine about the axis with its hair.
-/// Hair that has just touched is splayed if it is straight and stands upright, and lies on one side
-/// if it is bent or leans by more than the tuft's own taper (radius over length).
+/// Hair in the air is splayed if it is straight and stands upright; it is on one side if it is bent or
+/// leans by more than the tuft's own taper (radius over length).
 void turn_with_splay(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
                      std::span<const ContactPlane> planes);
 

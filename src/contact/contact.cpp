@@ -21,6 +21,7 @@ struct Work {
     double radius = 0;  // of the tuft, metres
     double near = 0;    // metres: farther than this nothing of the tuft can touch
     Stand root;         // of the ferrule's mouth
+    bool laid_over = false;  // the tip went so far that its hair was laid there: it did not slide
 };
 
 Stand stand_of_root(const Work& w, const Memory& memory, double length) {
@@ -222,7 +223,7 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
     std::vector<Vec3> centres;
     for (const brush::Branch& branch : result.tuft.branches)
         for (const brush::Section& s : branch.sections) centres.push_back(s.centre);
-    const bool followed = memory.touching && memory.centres.size() == centres.size();
+    const bool followed = memory.touching && memory.centres.size() == centres.size() && !w.laid_over;
     std::size_t at_centre = 0;
     double total = 0, heaviest = 0, gap = std::numeric_limits<double>::infinity();
     const Stand* from = nullptr;
@@ -314,6 +315,8 @@ Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery
         result.branch_planes.emplace_back();
         for (const Stand& s : branch) result.branch_planes.back().push_back(s.plane);
     }
+    constexpr double kLaid = 0.2;  // of the length, in one sample and beside the hand's own motion
+    w.laid_over = glm::distance(nodes.front(), brush::predicted_nodes(tuft, pose).front()) > kLaid * preset.length;
     place_frame(w, stands, memory, result);
     if (options.method == Method::vertices && result.triangle != kNone && result.tuft.touching) {
         const Vec3 holder = pose.position - preset.length * pose.axis();
