@@ -34,13 +34,15 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
                                                          .frame = frame,
                                                          .mesh = *model.mesh,
                                                          .atlas = model.atlas,
-                                                         .substrate = ink::substrate_toml(painting.painted_on())});
-        io::store_looks(project, painting);
-        for (const auto& preset : brushes_) project.put_brush(preset);
-        for (const auto& preset : inks_) project.put_ink(preset);
-        project.append(painting.journal().strokes());
-        if (!painting.journal().empty())
-            project.save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
+                                                         .substrate = ink::substrate_toml(painting.painted_on())},
+                                                  [&](io::Project& fresh) {
+                                                      io::store_looks(fresh, painting);
+                                                      for (const auto& preset : brushes_) fresh.put_brush(preset);
+                                                      for (const auto& preset : inks_) fresh.put_ink(preset);
+                                                      fresh.append(painting.journal().strokes());
+                                                      if (!painting.journal().empty())
+                                                          fresh.save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
+                                                  });
         project_ = std::move(project);
         pending_.clear();
         trouble_.clear();

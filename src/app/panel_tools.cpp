@@ -73,8 +73,8 @@ void brush_cell(Session& s, const std::string& name, const std::string& sort, fl
     draw_tuft_icon(s, preset, hair_colour(sort), at, width, height);
     if (!over) return;
     char text[256];
-    std::snprintf(text, sizeof text, "%s\n%.0f mm long, %.1f mm thick", s.ui.tr(name.c_str()), preset.length * 1e3, 2 * preset.radius * 1e3);
-    ImGui::SetTooltip("%s", text);
+    std::snprintf(text, sizeof text, s.ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3, 2 * preset.radius * 1e3);
+    ImGui::SetTooltip("%s\n%s", s.ui.tr(name.c_str()), text);
 }
 
 // A row for each sort of hair, small to large; sorts with a single brush share the last one.

@@ -140,7 +140,7 @@ void open_sample(Session& s, const fs::path& path) {
 
 void revise_with(Session& s, const fs::path& path) {
     if (!s.painter) return;
-    if (!s.last.trouble.empty()) return say(s, "The project must be on disk first: " + s.last.trouble);
+    if (!s.last.trouble.empty()) return say(s, s.ui.tr("The project must be on disk first: ") + s.last.trouble);
     const OpenOptions same{.frame = s.painter->frame(), .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate};
     const fs::path former = s.last.project;
     open_path(s, path);

@@ -171,7 +171,7 @@ Project::~Project() = default;
 Project::Project(Project&&) noexcept = default;
 Project& Project::operator=(Project&&) noexcept = default;
 
-Project Project::create(const fs::path& path, const ProjectModel& model) {
+Project Project::create(const fs::path& path, const ProjectModel& model, const std::function<void(Project&)>& fill) {
     write_atomically(path, [&](const fs::path& temporary) {
         std::error_code ec;
         fs::remove(temporary, ec);
@@ -189,6 +189,11 @@ Project Project::create(const fs::path& path, const ProjectModel& model) {
             store_model(db, model);
             transaction.commit();
         });
+        if (fill) {
+            Project filled = open(temporary);
+            filled.state_->path = path;  // for messages
+            fill(filled);
+        }
         settle_old_journal(path);
     });
     return open(path);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -54,8 +55,9 @@ struct SavedCanvases {
 /// `Error` naming the file when it is damaged or the disk is full. One thread at a time.
 class Project {
   public:
-    /// Makes a new project in place of any file of that name, complete or not at all.
-    static Project create(const std::filesystem::path& path, const ProjectModel& model);
+    /// Makes a new project in place of any file of that name, complete with what `fill` puts into
+    /// it, or not at all: on any error, or a kill, what was there stays.
+    static Project create(const std::filesystem::path& path, const ProjectModel& model, const std::function<void(Project&)>& fill = {});
     /// Opens a project. Throws `Error` for a file that is not a tuft project, is from a
     /// newer version, or is damaged (all pages are checked).
     static Project open(const std::filesystem::path& path);

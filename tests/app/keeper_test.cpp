@@ -74,5 +74,33 @@ TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
     EXPECT_EQ(io::Project::open(path).strokes().size(), 1u);
 }
 
+// A change of a stroke in the middle writes the file anew: when the disk gets full over that, the strokes of before
+// must still be in it.
+TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
+    const stroke::Model model = test::shipped_model("sheet.ply", 256);
+    stroke::Painting painting(model);
+    Keeper keeper;
+    const auto path = folder_ / "work.tuft";
+    ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
+    for (int i = 0; i < 8; ++i) paint(painting, keeper, 0.002 * i);
+    // Room for the model, and for the strokes but for one page of the file.
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    rlimit full = before;
+    full.rlim_cur = std::filesystem::file_size(path) - 8192;
+    setrlimit(RLIMIT_FSIZE, &full);
+    const std::string fault = keeper.start(path, "sheet.ply", {}, painting);
+    const std::string elsewhere = keeper.start(folder_ / "other.tuft", "sheet.ply", {}, painting);
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_NE(fault.find("work.tuft"), std::string::npos) << fault;
+    EXPECT_EQ(fault.find(".part"), std::string::npos) << fault;
+    EXPECT_NE(elsewhere, "");
+    EXPECT_EQ(io::Project::open(path).strokes().size(), 8u);
+    // Nothing half done lies about.
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) EXPECT_EQ(entry.path(), path);
+    paint(painting, keeper, 0.02);
+    EXPECT_EQ(io::Project::open(path).strokes().size(), 9u);
+}
+
 }  // namespace
 }  // namespace tuft::app
