@@ -175,6 +175,20 @@ void Painting::act(const Stroke& entry) {
     put_down(entry.id, entry.trace.brush, std::move(brush), {});
 }
 
+namespace {
+
+/// Each stamp of a tuft this wide takes a tenth of a second, and a stroke thousands of them.
+void check_width(const brush::Preset& preset, double texel) {
+    constexpr double kWidest = 2048;  // texels
+    const double width = 2 * preset.radius;
+    if (width > kWidest * texel)
+        throw Error("the brush is " + std::to_string(1e3 * width) + " mm wide, " +
+                    std::to_string(static_cast<long long>(width / texel)) + " texels of this model, more than " +
+                    std::to_string(static_cast<int>(kWidest)) + ": use a larger texel size or a smaller brush");
+}
+
+}  // namespace
+
 void Painting::begin(Stroke stroke) {
     check_layer(stroke);
     begin_hand(std::move(stroke));
@@ -188,6 +202,7 @@ void Painting::begin_hand(Stroke stroke) {
     const Model& model = ground_of(stroke);
     const ink::Substrate& substrate = substrate_of(stroke);
     const double texel = model.texels.texel_size;
+    check_width(brush.tuft.preset, texel);
     const bool paste = ink.yield > 0;
     const double spacing = std::max(stroke.settings.spacing * texel, paste ? kPasteStep : 0.0);
     ink::Canvas& canvas = this->canvas(stroke.layer);

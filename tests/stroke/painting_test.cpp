@@ -258,6 +258,18 @@ Stroke sway(double rate) {
     return s;
 }
 
+TEST(Painting, RefusesABrushOfThousandsOfTexelsBeforeItPaints) {
+    Model small = sheet();
+    const double width = 2 * brush::load_preset("wolf-small").radius;
+    Painting painting(small);
+    small.texels.texel_size = width / 2000;
+    EXPECT_NO_THROW(painting.begin(line("wolf-small", 4e-3)));
+    painting.cancel();
+    small.texels.texel_size = width / 2100;
+    EXPECT_THROW(painting.begin(line("wolf-small", 4e-3)), Error);
+    EXPECT_EQ(painting.canvas().total(small.texels, 0), 0);
+}
+
 TEST(Painting, ASmoothMotionIsTheSameAtAnySamplingRate) {
     const Model model = sheet();
     Painting fast(model);
