@@ -101,7 +101,13 @@ const ink::Ink* find_ink(const Session& s, const std::string& name) {
 }
 
 void size_brush(Session& s, double factor) {
-    s.brush = brush::name_of({brush::sized_name(s.brush).base, std::round(1e3 * factor) / 1e3});
+    const std::string sized = brush::name_of({brush::sized_name(s.brush).base, std::round(1e3 * factor) / 1e3});
+    try {
+        brush::load_preset(sized);
+        s.brush = sized;
+    } catch (const Error& error) {
+        say(s, error.what());  // not every brush has every size
+    }
 }
 
 void show_palette(Session& s, bool on) {
