@@ -42,31 +42,36 @@ ink::Canvas wet_canvas(const stroke::Model& model, std::size_t tiles) {
     return canvas;
 }
 
-double wet_texels(const stroke::Model& model, std::size_t tiles) {
+double wet_texels(const ink::Canvas& canvas) {
     double n = 0;
-    for (std::uint32_t slot = 0; slot < std::min(tiles, model.texels.n_slots()); ++slot)
-        for (const std::uint8_t piece : model.texels.tiles[slot].piece) n += piece != atlas::kNoPiece;
+    for (const std::uint32_t slot : canvas.wet_slots()) {
+        const ink::Plane *w = canvas.liquid(slot, ink::Liquid::film), *s = canvas.liquid(slot, ink::Liquid::pores);
+        for (int t = 0; t < atlas::kTileTexels; ++t) n += (w && (*w)[t] > 0) || (s && (*s)[t] > 0);
+    }
     return n;
 }
 
-/// Seconds a step takes, median of nine. One step is `advance` over less than its longest step,
-/// on a film that stays wet.
-double step_seconds(const stroke::Model& model, ink::WetFilm& film, std::size_t tiles, clockid_t clock) {
+struct StepTime {
+    double seconds = 0, per_texel = 0;  ///< of one step
+};
+
+/// Medians of nine runs of ten steps and more, on a film that stays wet, as painting does them.
+StepTime step_time(const stroke::Model& model, ink::WetFilm& film, std::size_t tiles, clockid_t clock) {
     ink::Canvas canvas = wet_canvas(model, tiles);
     ink::FilmParams p = ink::film_params(ink::load_substrate("bisque"));
     const double area = model.texels.texel_size * model.texels.texel_size;
     const double dt = 0.005 * area / (p.mobility * 3);
     film.advance(canvas, dt, p);
-    std::vector<double> runs;
+    std::vector<double> runs, per_texel;
     for (int i = 0; i < 9; ++i) {
-        // Thirty steps at once, as painting does them.
         p.shortest_step = 0;
         const double start = seconds(clock);
         std::size_t steps = 0;
         for (double t = 0; steps < 10; t += 1) steps += film.advance(canvas, 60 * dt, p).steps;
         runs.push_back((seconds(clock) - start) / static_cast<double>(steps));
+        per_texel.push_back(runs.back() / wet_texels(canvas));  // it spreads a little
     }
-    return median(runs);
+    return {median(runs), median(per_texel)};
 }
 
 double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
@@ -111,11 +116,11 @@ FilmFigures measure_film(const stroke::Model& model) {
     ink::WetFilm film(model.texels, atlas::build_seam_links(*model.mesh, model.atlas, model.texels));
     const int threads = thread_count();
     set_thread_count(1);
-    out.step_ns = 1e9 * step_seconds(model, film, tiles, CLOCK_THREAD_CPUTIME_ID) / wet_texels(model, tiles);
+    out.step_ns = 1e9 * step_time(model, film, tiles, CLOCK_THREAD_CPUTIME_ID).per_texel;
     out.transfer_ns = 1e9 * transfer_seconds(model, std::min<std::size_t>(tiles, 1024));
     if (model.atlas.size <= 2048) {
         set_thread_count(2);
-        out.steps_per_second = 1 / step_seconds(model, film, model.texels.n_slots(), CLOCK_MONOTONIC);
+        out.steps_per_second = 1 / step_time(model, film, model.texels.n_slots(), CLOCK_MONOTONIC).seconds;
     }
     set_thread_count(threads);
     return out;

@@ -3,59 +3,70 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <deque>
+#include <mutex>
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "ink/drips.h"
 #include "ink/drying.h"
-#include "ink/film_tile.h"
+#include "ink/film_list.h"
 
 namespace tuft::ink {
 namespace {
 
 using namespace wet;
 
+constexpr std::size_t kLines = 14;     // of memory asked for at once: as many as the processor waits for
 constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and drying
 // What may leave a texel in one step, of what it has: less than all of it together.
 constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
 constexpr double kBeadStep = 0.05;     // seconds: a bead goes a texel or a few
-constexpr std::size_t kMostBeads = 256;
-constexpr double kSeamPart = 4;        // conductances over seams together, over the texel's area
 constexpr double kLeastMixing = 2e-10; // m²/s
 constexpr double kStirring = 0.02;     // film units: mixing over mobility
 constexpr double kRimLength = 1e-3;    // metres: what the rim of a wet spot adds to its area, as for drying
 
-using PlanePtr = std::unique_ptr<Plane>;
+/// What goes over a link for pigments: dp = −out p(texel) + in p(other).
+struct Carried {
+    std::uint8_t texel, other_texel;
+    std::uint32_t other;  ///< place in the list
+    float out, in;
+};
 
-/// A tile in the list of a step.
-struct Active {
-    std::uint32_t slot = kNone;
-    std::array<std::uint32_t, 9> around{};  ///< places in the list, row by row, this one in the middle
-    std::array<const Plane*, 2> liquid{};   ///< as the step finds them
-    std::array<const Plane*, kMaxPigments> open{};
-    std::span<const atlas::SeamLink> links;
-    Outcome outcome;
-    bool seam_wet = false;
-    bool spreads = true;                    ///< wet in other places than before the step
-    bool idle = false;                      ///< nothing wet in sight
-    PlanePtr w, s;                          ///< of the step's end; between steps: spare
-    std::array<PlanePtr, kMaxPigments> p;
-    std::uint32_t pigments = 0;             ///< bits: those computed
-    std::unique_ptr<std::array<std::uint8_t, kTexels>> closing;  ///< where outcome.closing
+/// Memory that will be needed soon. Planes lie here and there, and the processor waits long for each line
+/// that it does not expect, but it can wait for a dozen at once: some between one loop and the next.
+struct Ahead {
+    std::array<const char*, 512> lines;
+    std::size_t n = 0, at = 0;
 
-    bool wet() const { return outcome.most_w + outcome.most_s > 0; }
+    void clear() { n = at = 0; }
+    void add(const void* from, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; from && i < end && n < lines.size(); i += 64)
+            lines[n++] = static_cast<const char*>(from) + i;
+    }
+    void fetch(std::size_t count) {
+        for (const std::size_t end = std::min(n, at + count); at < end; ++at) __builtin_prefetch(lines[at]);
+    }
+};
+
+/// What a thread works with.
+struct Worker {
+    Work work;
+    Ahead ahead;
+    std::vector<Carried> carried;
+    std::deque<PlanePtr> spare;  ///< planes that nobody reads any more
 };
 
 /// Copies a plane with a border of one texel from the tiles around; absent planes are zeros, and
 /// so are tiles that are not in the list: nothing there can move.
 template <class PlaneOf>
-bool load(Field& field, const std::vector<Active>& list, const std::array<std::uint32_t, 9>& around,
+bool load(Field& field, const std::vector<Sources>& sources, const std::array<std::uint32_t, 9>& around,
           PlaneOf&& plane_of) {
     static constexpr Plane kDry{};
     std::array<const float*, 9> planes;
     bool any = false;
     for (int i = 0; i < 9; ++i) {
-        const Plane* plane = around[i] == kNone ? nullptr : plane_of(list[around[i]]);
+        const Plane* plane = around[i] == kNone ? nullptr : plane_of(sources[around[i]]);
         any |= plane != nullptr;
         planes[i] = (plane ? plane : &kDry)->data();
     }
@@ -87,204 +98,38 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     return p;
 }
 
-struct WetFilm::State {
-    const atlas::TexelMap& map;
-    atlas::SeamLinks seams;
-    std::vector<std::unique_ptr<Geometry>> geometry;
-    std::vector<std::uint8_t> mark;  ///< [n_slots] scratch
-    std::vector<std::uint32_t> place;  ///< [n_slots] scratch
-    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> others;  ///< of the list: slots over
-                                                                             ///< seams, places in the list
-    std::vector<Active> list;
+struct WetFilm::State : TileList {
     std::vector<std::uint8_t> told;
     std::unique_ptr<Drips> drips;
-    std::vector<PlanePtr> spare;  ///< planes for tiles to come: making them costs as much as a step
+    std::vector<Sources> sources;  ///< of the list; empty: not looked up yet
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
 
-    State(const atlas::TexelMap& m, atlas::SeamLinks s)
-        : map(m), seams(std::move(s)), geometry(m.n_slots()), mark(m.n_slots(), 0), place(m.n_slots(), kNone) {
-        limit_links();
+    using TileList::TileList;
+
+    std::unique_ptr<Worker> take_worker() {
+        const std::lock_guard lock(mutex);
+        if (workers.empty()) return std::make_unique<Worker>();
+        auto worker = std::move(workers.back());
+        workers.pop_back();
+        return worker;
+    }
+    void give_back(std::unique_ptr<Worker> worker) {
+        const std::lock_guard lock(mutex);
+        workers.push_back(std::move(worker));
     }
 
-    /// Scales links so that what goes over seams stays within what a step allows a texel.
-    void limit_links() {
-        const double mean = map.texel_size * map.texel_size;
-        std::vector<float> scale(seams.links.size());
-        std::vector<std::array<float, kTexels>> of_slot;  // only of slots with links
-        std::vector<std::uint32_t> index(map.n_slots(), kNone);
-        for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
-            if (seams.start[slot] == seams.start[slot + 1]) continue;
-            index[slot] = static_cast<std::uint32_t>(of_slot.size());
-            std::array<float, kTexels>& sums = of_slot.emplace_back();
-            sums.fill(0);
-            for (const atlas::SeamLink& l : links_of(slot)) sums[l.texel] += l.weight;
-            for (int t = 0; t < kTexels; ++t) {
-                const double most = kSeamPart * static_cast<double>(map.tiles[slot].area[t]) / mean;
-                sums[t] = static_cast<double>(sums[t]) > most ? static_cast<float>(most) / sums[t] : 1;
-            }
-        }
-        for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
-            for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
-                atlas::SeamLink& l = seams.links[i];
-                l.weight *= std::min(of_slot[index[slot]][l.texel], of_slot[index[l.other_slot]][l.other_texel]);
-            }
-    }
-
-    std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const {
-        return std::span(seams.links).subspan(seams.start[slot], seams.start[slot + 1] - seams.start[slot]);
-    }
-
-    std::array<std::uint32_t, 9> around(std::uint32_t slot) const {
-        std::array<std::uint32_t, 9> out;
-        const auto n = static_cast<std::int64_t>(map.tiles_per_side);
-        const std::int64_t tx = map.tile_of_slot[slot] % n, ty = map.tile_of_slot[slot] / n;
-        for (int i = 0; i < 9; ++i) {
-            const std::int64_t x = tx + i % 3 - 1, y = ty + i / 3 - 1;
-            out[i] = x < 0 || y < 0 || x >= n || y >= n
-                         ? kNone : map.slot_of_tile[static_cast<std::size_t>(y * n + x)];
-        }
-        return out;
-    }
-
-    void begin(const Canvas& canvas) {
-        told.assign(map.n_slots(), 0);
-        const std::vector<std::uint32_t> wet = canvas.wet_slots();
+    /// Planes for films to come are kept: making them costs as much as a step.
+    void end(const Canvas& canvas) {
         list.clear();
-        list.resize(wet.size());
-        parallel_for(wet.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                Active& tile = list[i];
-                tile.slot = wet[i];
-                look_at(canvas, tile);
-            }
-        });
-        spread();
-    }
-
-    /// The list becomes the wet tiles and those that liquid may reach in the next step.
-    void spread() {
-        std::vector<std::uint32_t> wanted;
-        const auto want = [&](std::uint32_t slot) {
-            if (slot == kNone || mark[slot]) return;
-            mark[slot] = 1;
-            wanted.push_back(slot);
-        };
-        for (const Active& tile : list) {
-            if (!tile.wet()) continue;
-            want(tile.slot);
-            const std::array<std::uint32_t, 9> near = around(tile.slot);
-            constexpr std::array<std::uint8_t, 9> sides{5, 1, 9, 4, 0, 8, 6, 2, 10};
-            for (int i = 0; i < 9; ++i)
-                if (i != 4 && (tile.outcome.sides & sides[i]) == sides[i]) want(near[i]);
-            if (tile.seam_wet)
-                for (const atlas::SeamLink& l : links_of(tile.slot)) want(l.other_slot);
-        }
-        std::sort(wanted.begin(), wanted.end());
-        std::vector<Active> next(wanted.size());
-        std::size_t k = 0;
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-            while (k < list.size() && list[k].slot < wanted[i]) ++k;
-            if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
-            next[i].slot = wanted[i];
-            next[i].links = links_of(wanted[i]);
-            place[wanted[i]] = static_cast<std::uint32_t>(i);
-            mark[wanted[i]] = 0;
-        }
-        list = std::move(next);
-        for (Active& tile : list) {
-            tile.around = around(tile.slot);
-            for (std::uint32_t& slot : tile.around) slot = slot == kNone ? kNone : place[slot];
-        }
-        others.assign(list.size(), {});
-        for (std::size_t i = 0; i < list.size(); ++i)
-            for (const atlas::SeamLink& l : list[i].links)
-                if (others[i].empty() || others[i].back().first != l.other_slot)
-                    others[i].push_back({l.other_slot, place[l.other_slot]});
-        for (const Active& tile : list) place[tile.slot] = kNone;
-    }
-
-    /// Gives the tiles planes for the results of a step, those of the same places as far as there are any.
-    void equip(const Canvas& canvas) {
-        const int pigments = static_cast<int>(canvas.pigments().size());
-        const auto give = [&](PlanePtr& plane) {
-            if (plane) return;
-            if (spare.empty()) {
-                plane = std::make_unique<Plane>();
-            } else {
-                plane = std::move(spare.back());
-                spare.pop_back();
-            }
-        };
-        for (Active& tile : list) {
-            give(tile.w);
-            give(tile.s);
-            for (int p = 0; p < pigments; ++p) give(tile.p[p]);
-        }
-    }
-
-    void keep_spare(const Canvas& canvas) {
-        const auto take = [&](PlanePtr& plane) {
-            if (plane) spare.push_back(std::move(plane));
-        };
-        for (std::size_t i = list.size(); i-- > 0;) {
-            for (int p = kMaxPigments; p-- > 0;) take(list[i].p[p]);
-            take(list[i].s);
-            take(list[i].w);
-        }
-        list.clear();
-        if (!canvas.wet()) spare.clear();
+        sources.clear();
+        if (!canvas.wet()) workers.clear();
     }
 
     void tell(std::uint32_t slot, const BeforeFn& before) {
         if (!before || told[slot]) return;
         told[slot] = 1;
         before(slot);
-    }
-
-    static void look_at(const Canvas& canvas, Active& tile) {
-        tile.outcome.sides = 15;
-        tile.seam_wet = true;
-        const Plane *w = canvas.liquid(tile.slot, Liquid::film), *s = canvas.liquid(tile.slot, Liquid::pores);
-        tile.outcome.most_w = w ? greatest(w->data()) : 0;
-        tile.outcome.most_s = s ? greatest(s->data()) : 0;
-    }
-
-    /// Where beads may start: of each cube of a grain's length the place that gives way first, the
-    /// lowest first, so that it does not matter how the surface lies in the atlas.
-    std::vector<Drips::Seed> seeds_of_beads(const Canvas& canvas, const FilmParams& params) const {
-        struct Found {
-            std::array<std::int32_t, 3> cube;
-            float weak, height;
-            Drips::Seed seed;
-        };
-        std::vector<Found> found;
-        for (const Active& tile : list) {
-            const auto least = static_cast<float>(Drips::least(params));
-            if (tile.outcome.most_w < least) continue;
-            const Plane& w = *canvas.liquid(tile.slot, Liquid::film);
-            const std::size_t first = found.size();
-            for (int t = 0; t < kTexels; ++t) {
-                if (w[t] < least) continue;
-                const Vec3 at(map.position(tile.slot, t));
-                const auto cell = [](double x) { return static_cast<std::int32_t>(std::floor(x / kGrainLength)); };
-                const std::array cube{cell(at.x), cell(at.y), cell(at.z)};
-                const float grain = geometry[tile.slot]->grain[field_of(t)];
-                auto same = std::find_if(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
-                                         [&](const Found& f) { return f.cube == cube; });
-                if (same == found.end()) same = found.insert(found.end(), Found{cube, 0, 0, {}});
-                if (w[t] > same->weak * grain)
-                    *same = {cube, w[t] / grain, static_cast<float>(-glm::dot(params.down, at)),
-                             {{tile.slot, static_cast<std::uint8_t>(t)}, static_cast<double>(grain)}};
-            }
-        }
-        std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-            return a.cube != b.cube ? a.cube < b.cube : a.weak > b.weak;
-        });
-        found.erase(std::unique(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.cube == b.cube; }),
-                    found.end());
-        std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.height < b.height; });
-        std::vector<Drips::Seed> seeds;
-        for (std::size_t i = 0; i < std::min(found.size(), kMostBeads); ++i) seeds.push_back(found[i].seed);
-        return seeds;
     }
 
     /// Beads run for the time of a step. Whether any did.
@@ -296,31 +141,19 @@ struct WetFilm::State {
         const std::vector<std::uint32_t> written =
             drips->run(canvas, seeds, params, dt, [&](std::uint32_t slot) { tell(slot, before); });
         if (written.empty()) return false;
-        const std::size_t listed = list.size();
-        for (const std::uint32_t slot : written) {
-            const auto at = std::lower_bound(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(listed), slot,
-                                             [](const Active& a, std::uint32_t s) { return a.slot < s; });
-            const bool known = at != list.begin() + static_cast<std::ptrdiff_t>(listed) && at->slot == slot;
-            if (!known) {
-                list.emplace_back();
-                list.back().slot = slot;
-            }
-            look_at(canvas, known ? *at : list.back());
-        }
-        std::sort(list.begin(), list.end(), [](const Active& a, const Active& b) { return a.slot < b.slot; });
-        spread();
+        look_at(canvas, written);
         return true;
     }
 
-    /// Whether other tiles may be reached after this step than before it.
-    bool changed() const {
-        return std::any_of(list.begin(), list.end(), [](const Active& tile) { return tile.spreads; });
-    }
-
-    void prepare() {
+    void prepare(const Canvas& canvas) {
+        sources.resize(list.size());
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                if (auto& g = geometry[list[i].slot]; !g) g = std::make_unique<Geometry>(make_geometry(map, list[i].slot));
+            for (std::size_t i = begin; i < end; ++i) {
+                auto& g = geometry[list[i].slot];
+                if (!g) g = std::make_unique<Geometry>(make_geometry(map, list[i].slot));
+                list[i].stiffness = g->stiffness;
+                find_planes(canvas, i);
+            }
         });
     }
 
@@ -330,8 +163,7 @@ struct WetFilm::State {
         const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
         double stiffness = kSeamPart, most_w = 0, most_s = 0;
         for (const Active& tile : list) {
-            const Geometry& g = *geometry[tile.slot];
-            stiffness = std::max(stiffness, static_cast<double>(g.stiffness) + (tile.links.empty() ? 0 : kSeamPart / 2));
+            stiffness = std::max(stiffness, static_cast<double>(tile.stiffness) + (tile.links.empty() ? 0 : kSeamPart / 2));
             most_w = std::max(most_w, static_cast<double>(tile.outcome.most_w));
             most_s = std::max(most_s, static_cast<double>(tile.outcome.most_s));
         }
@@ -361,33 +193,31 @@ struct WetFilm::State {
     }
 
     /// Fluxes over the seams of a tile: added to dw, ds; what pigments need is kept.
-    struct Carried {
-        std::uint8_t texel, other_texel;
-        const Active* other;
-        float out, in;  ///< dp = −out p(texel) + in p(other)
-    };
     void seam_fluxes(std::size_t index, const Step& step, Work& work, std::vector<Carried>& carried) const {
         const Active& tile = list[index];
         const Geometry& g = *geometry[tile.slot];
         carried.clear();
         std::array<float, kTexels> dry;
         if (!tile.links.empty()) dry.fill(0);
-        const Active* other = nullptr;
+        const Sources& mine = sources[index];
+        std::uint32_t slot = kNone, other = kNone;
         for (const atlas::SeamLink& l : tile.links) {
-            if (!other || other->slot != l.other_slot) {
-                const auto found = std::find_if(others[index].begin(), others[index].end(),
-                                                [&](const auto& o) { return o.first == l.other_slot; });
-                other = found->second == kNone ? nullptr : &list[found->second];
+            if (slot != l.other_slot) {
+                slot = l.other_slot;
+                other = std::lower_bound(others[index].begin(), others[index].end(), std::pair(slot, 0u))->second;
             }
-            const std::array<float, 2> here{at(tile.liquid[0], l.texel), at(tile.liquid[1], l.texel)};
-            const std::array<float, 2> there{other ? at(other->liquid[0], l.other_texel) : 0,
-                                             other ? at(other->liquid[1], l.other_texel) : 0};
+            const std::array<float, 2> here{at(mine.liquid[0], l.texel), at(mine.liquid[1], l.texel)};
+            std::array<float, 2> there{};
+            if (other != kNone)
+                there = {at(sources[other].liquid[0], l.other_texel), at(sources[other].liquid[1], l.other_texel)};
             const float t = here[0] + here[1], u = there[0] + there[1];
-            if (!(t + u > 0) || !other) continue;
+            if (!(t + u > 0) || other == kNone) continue;
             if (!(u > 0)) dry[l.texel] += l.weight;
             // One order for both sides, so that both have the same numbers.
             const bool first = tile.slot != l.other_slot ? tile.slot < l.other_slot : l.texel < l.other_texel;
-            const float g0 = g.grain[field_of(l.texel)], g1 = geometry[l.other_slot]->grain[field_of(l.other_texel)];
+            const bool both = t > 0 && u > 0;  // then what pins rims has no say, and lies in memory far away
+            const float g0 = both ? 0 : g.grain[field_of(l.texel)];
+            const float g1 = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
             const SeamFlux f = first ? seam_flux(l.weight, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
                                      : seam_flux(l.weight, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
             const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
@@ -402,17 +232,21 @@ struct WetFilm::State {
         }
     }
 
-    void compute(std::size_t index, int pigments, const Step& step, std::uint64_t number, Work& work,
-                 std::vector<Carried>& carried) {
+    void compute(std::size_t index, int pigments, const Step& step, std::uint64_t number, Worker& worker) {
         Active& tile = list[index];
+        Work& work = worker.work;
         const Geometry& g = *geometry[tile.slot];
-        const bool any_w = load(work.w, list, tile.around, [](const Active& a) { return a.liquid[0]; });
+        const bool any_w = load(work.w, sources, tile.around, [](const Sources& a) { return a.liquid[0]; });
         if (!any_w) work.w.fill(0);
-        const bool any_s = load(work.s, list, tile.around, [](const Active& a) { return a.liquid[1]; });
+        const bool any_s = load(work.s, sources, tile.around, [](const Sources& a) { return a.liquid[1]; });
         if (!any_s) work.s.fill(0);
+        Ahead& ahead = worker.ahead;
+        ahead.fetch(kLines);
         fluxes(work, g, step);
+        ahead.fetch(2 * kLines);
         liquid_changes(work, g, step);
-        seam_fluxes(index, step, work, carried);
+        ahead.fetch(kLines);
+        seam_fluxes(index, step, work, worker.carried);
         // From what is there and nothing else: the same whenever this journal is painted.
         const std::uint64_t seed =
             hash_bits(hash_bits(tile.slot, number),
@@ -421,9 +255,12 @@ struct WetFilm::State {
         const bool seam_was = tile.seam_wet;
         tile.outcome = {};
         tile.pigments = 0;
-        tile.idle = !any_w && !any_s && carried.empty();
+        tile.idle = !any_w && !any_s && worker.carried.empty();
         if (tile.idle) return;
+        give(tile.w, worker);
+        give(tile.s, worker);
         std::array<std::uint8_t, kTexels> closing;
+        ahead.fetch(kLines);
         tile.outcome = local_step(tile.w->data(), tile.s->data(), work, g, step, seed, closing);
         if (tile.outcome.closing) {
             if (!tile.closing) tile.closing = std::make_unique<std::array<std::uint8_t, kTexels>>();
@@ -434,40 +271,67 @@ struct WetFilm::State {
             tile.seam_wet = tile.seam_wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
         tile.spreads = before.sides != tile.outcome.sides || seam_was != tile.seam_wet ||
                        (before.most_w + before.most_s > 0) != tile.wet();
-        for (int p = 0; p < pigments; ++p) {
-            bool any = load(work.p, list, tile.around, [p](const Active& a) { return a.open[p]; });
-            if (!any) work.p.fill(0);
-            for (const Carried& c : carried) any = any || c.other->open[p];
-            if (!any) continue;
-            if (!carried.empty()) work.dp.fill(0);
-            for (const Carried& c : carried) {
-                const int k = field_of(c.texel);
-                const float there = at(c.other->open[p], c.other_texel);
-                work.dp[c.texel] += (c.in * there - c.out * work.p[k]) * g.inverse[c.texel];
-            }
-            pigment_step(tile.p[p]->data(), work, g, !carried.empty(), seed + 1 + static_cast<std::uint64_t>(p));
-            tile.pigments |= 1u << p;
+        for (int p = 0; p < pigments; ++p) compute_pigment(index, p, seed + 1 + static_cast<std::uint64_t>(p), worker);
+    }
+
+    void compute_pigment(std::size_t index, int p, std::uint64_t seed, Worker& worker) {
+        Active& tile = list[index];
+        Work& work = worker.work;
+        const Geometry& g = *geometry[tile.slot];
+        bool any = load(work.p, sources, tile.around, [p](const Sources& a) { return a.open[p]; });
+        if (!any) work.p.fill(0);
+        for (const Carried& c : worker.carried) any = any || sources[c.other].open[p];
+        if (!any) return;
+        worker.ahead.fetch(kLines);
+        const bool over = !worker.carried.empty();
+        if (over) work.dp.fill(0);
+        for (const Carried& c : worker.carried) {
+            const int k = field_of(c.texel);
+            const float there = at(sources[c.other].open[p], c.other_texel);
+            work.dp[c.texel] += (c.in * there - c.out * work.p[k]) * g.inverse[c.texel];
+        }
+        give(tile.p[p], worker);
+        pigment_step(tile.p[p]->data(), work, g, over, seed);
+        worker.ahead.fetch(kLines);
+        tile.pigments |= 1u << p;
+    }
+
+    static void give(PlanePtr& plane, Worker& worker) {
+        if (worker.spare.empty()) {
+            plane = std::make_unique<Plane>();
+        } else {
+            plane = std::move(worker.spare.front());
+            worker.spare.pop_front();
         }
     }
 
-    /// Planes lie here and there: without a word beforehand the processor waits for each.
-    void fetch(const Active& tile) const {
-        const auto all_of = [](const void* from, std::size_t bytes) {
-            for (std::size_t i = 0; from && i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
+    /// Lists the memory of a tile that this thread comes to next: nobody takes its planes away before.
+    void look_ahead(std::size_t index, Ahead& ahead) const {
+        ahead.clear();
+        const auto planes_of = [&](std::uint32_t at, std::size_t begin, std::size_t end) {
+            if (at == kNone) return;
+            for (const Plane* plane : sources[at].liquid) ahead.add(plane, begin, end);
+            for (const Plane* plane : sources[at].open) ahead.add(plane, begin, end);
         };
-        for (const Plane* plane : tile.liquid) all_of(plane, sizeof(Plane));
-        for (const Plane* plane : tile.open) all_of(plane, sizeof(Plane));
-        all_of(geometry[tile.slot].get(), sizeof(Geometry));
-        for (const PlanePtr* plane : {&tile.w, &tile.s}) all_of(plane->get(), sizeof(Plane));
-        for (const PlanePtr& plane : tile.p) all_of(plane.get(), sizeof(Plane));
+        const Active& tile = list[index];
+        const Geometry* g = geometry[tile.slot].get();
+        planes_of(static_cast<std::uint32_t>(index), 0, sizeof(Plane));
+        for (const int above : {0, 1, 2}) planes_of(tile.around[above], sizeof(Plane) - 64, sizeof(Plane));
+        for (const int below : {6, 7, 8}) planes_of(tile.around[below], 0, 64);
+        ahead.add(g, 0, offsetof(Geometry, grain));
+        ahead.add(g->gd.get(), 0, sizeof(Geometry::Diagonals));
     }
 
-    void find_planes(const Canvas& canvas, Active& tile) const {
-        tile.liquid = {canvas.liquid(tile.slot, Liquid::film), canvas.liquid(tile.slot, Liquid::pores)};
-        for (int p = 0; p < kMaxPigments; ++p) tile.open[p] = canvas.plane(tile.slot, p);
+    void find_planes(const Canvas& canvas, std::size_t index) {
+        const std::uint32_t slot = list[index].slot;
+        Sources& from = sources[index];
+        from.liquid = {canvas.liquid(slot, Liquid::film), canvas.liquid(slot, Liquid::pores)};
+        for (int p = 0; p < kMaxPigments; ++p) from.open[p] = canvas.plane(slot, p);
     }
 
-    static void commit(Canvas& canvas, Active& tile, float stain) {
+    /// Puts into the canvas what a step made of a tile, when nobody needs what was there any more.
+    void commit(Canvas& canvas, std::size_t index, float stain, std::deque<PlanePtr>& spare) {
+        Active& tile = list[index];
         if (tile.idle) return;
         const auto put_liquid = [&](Liquid where, PlanePtr& plane, float most) {
             if (most > 0) {
@@ -476,30 +340,46 @@ struct WetFilm::State {
                 PlanePtr none;
                 canvas.swap_liquid(tile.slot, where, none);
             }
+            if (plane) spare.push_back(std::move(plane));
         };
         put_liquid(Liquid::film, tile.w, tile.outcome.most_w);
         put_liquid(Liquid::pores, tile.s, tile.outcome.most_s);
-        for (int p = 0; p < kMaxPigments; ++p)
-            if (tile.pigments >> p & 1 && (canvas.plane(tile.slot, p) || !all_zero(*tile.p[p])))
-                canvas.swap_open(tile.slot, p, tile.p[p]);
+        for (int p = 0; p < kMaxPigments; ++p) {
+            if (!(tile.pigments >> p & 1)) continue;
+            if (canvas.plane(tile.slot, p) || !all_zero(*tile.p[p])) canvas.swap_open(tile.slot, p, tile.p[p]);
+            if (tile.p[p]) spare.push_back(std::move(tile.p[p]));
+        }
         if (tile.outcome.closing) close_films(canvas, tile.slot, *tile.closing, stain);
+        find_planes(canvas, index);
+    }
+
+    static bool last_reader(std::atomic<std::uint32_t>& readers, bool alone) {
+        if (!alone) return readers.fetch_sub(1, std::memory_order_acq_rel) == 1;
+        const std::uint32_t left = readers.load(std::memory_order_relaxed) - 1;
+        readers.store(left, std::memory_order_relaxed);
+        return left == 0;
     }
 
     void step(Canvas& canvas, const FilmParams& params, const Step& rates, FilmReport& report) {
-        parallel_for(list.size(), 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) find_planes(canvas, list[i]);
-        });
+        const bool alone = thread_count() == 1;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            std::uint32_t n = 0;
+            each_read(i, [&](std::uint32_t) { ++n; });
+            readers[i].store(n, std::memory_order_relaxed);
+        }
         const int pigments = static_cast<int>(canvas.pigments().size());
-        parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
-            const auto work = std::make_unique<Work>();
-            std::vector<Carried> carried;
-            for (std::size_t i = begin; i < end; ++i) {
-                if (i + 2 < end) fetch(list[i + 2]);
-                compute(i, pigments, rates, report.steps, *work, carried);
-            }
-        });
         parallel_for(list.size(), 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) commit(canvas, list[i], static_cast<float>(params.stain));
+            std::unique_ptr<Worker> worker = take_worker();
+            worker->ahead.clear();
+            for (std::size_t i = begin; i < end; ++i) {
+                if (i + 1 < end) look_ahead(i + 1, worker->ahead);
+                compute(i, pigments, rates, report.steps, *worker);
+                each_read(i, [&](std::uint32_t read) {
+                    if (last_reader(readers[read], alone))
+                        commit(canvas, read, static_cast<float>(params.stain), worker->spare);
+                });
+            }
+            give_back(std::move(worker));
         });
         const double area = map.texel_size * map.texel_size;
         for (const Active& tile : list) report.evaporated += tile.outcome.evaporated * area;
@@ -517,25 +397,26 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     FilmReport report;
     if (!canvas.wet() || !(seconds > 0)) return report;
     State& s = *state_;
+    s.told.assign(s.map.n_slots(), 0);
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.down) > 0;
     for (double left = seconds; left > 0 && !s.list.empty();) {
-        s.prepare();
-        s.equip(canvas);
+        if (s.sources.empty()) s.prepare(canvas);
         for (const Active& tile : s.list) s.tell(tile.slot, before);
         Step step;
         const double dt = s.choose(params, left, running, step);
         s.step(canvas, params, step, report);
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
-        if (s.changed()) s.spread();
+        if (s.changed()) s.spread(), s.sources.clear();
         beads += dt;
         if (beads > 0.9 * kBeadStep || left == 0) {
             running = s.run_beads(canvas, params, beads, before);
+            if (running) s.sources.clear();
             beads = 0;
         }
     }
-    s.keep_spare(canvas);
+    s.end(canvas);
     return report;
 }
 

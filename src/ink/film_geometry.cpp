@@ -8,7 +8,7 @@ namespace tuft::ink::wet {
 namespace {
 
 constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of the border need both sides
-constexpr float kMostConductance = 4; // over the smaller of the two areas
+constexpr double kMostConductance = 4; // over the smaller of the two areas
 constexpr double kNoShear = 0.05;     // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
 constexpr double kGrainDepth = 0.4;   // of the mean
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
@@ -101,25 +101,24 @@ double grain(const Vec3& position) {
     return 1 + kGrainDepth * (2 * sum - 1);
 }
 
-float conductance(double g, const Spot& a, const Spot& b, double mean_area) {
-    const double most = static_cast<double>(kMostConductance) * std::min(a.area, b.area) / mean_area;
-    return static_cast<float>(std::clamp(g, 0.0, most));
+double conductance(double g, const Spot& a, const Spot& b, double mean_area) {
+    return std::clamp(g, 0.0, kMostConductance * std::min(a.area, b.area) / mean_area);
 }
 
-/// The face right of a texel, of the column left of the first too.
-template <class Faces, class Left>
-auto& x_face(Faces& faces, Left& left, int column, int row) {
-    return column < 0 ? left[row] : faces[row * kSide + column];
+std::uint16_t packed(double g) {
+    return static_cast<std::uint16_t>(std::min(std::round(g / static_cast<double>(kConductanceUnit)), 65535.0));
 }
 
 /// Σ conductances of a texel.
 float sum_at(const Geometry& g, int t) {
     const int column = t % kSide, row = t / kSide, k = field_of(t);
-    float sum = g.gx[t] + (column > 0 ? g.gx[t - 1] : g.gx_left[row]) + g.gy[t] + g.gy[t + kSide];
+    const int straight = g.gx[Geometry::right_of(column, row)] + g.gx[Geometry::right_of(column - 1, row)] + g.gy[t] + g.gy[t + kSide];
+    float sum = static_cast<float>(straight) * kConductanceUnit;
     if (!g.gd) return sum;
-    const Field& d = *g.gd;
-    for (const int low : {k, k - kRow - 1}) sum += std::max(d[low], 0.0f);
-    for (const int low : {k - 1, k - kRow}) sum += std::max(-d[low], 0.0f);
+    const auto& d = *g.gd;
+    const auto diagonal = [](int size) { return static_cast<float>(std::max(size, 0)) * kDiagonalUnit; };
+    for (const int low : {k, k - kRow - 1}) sum += diagonal(d[low]);
+    for (const int low : {k - 1, k - kRow}) sum += diagonal(-d[low]);
     return sum;
 }
 
@@ -129,7 +128,7 @@ Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot) {
     const Neighbourhood n = gather(map, slot);
     const double mean = map.texel_size * map.texel_size;
     Geometry g;
-    Field diagonals{};
+    Geometry::Diagonals diagonals{};
     bool any = false;
     for (int row = -1; row < kSide + 1; ++row)
         for (int column = -1; column < kSide + 1; ++column) {
@@ -145,19 +144,21 @@ Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot) {
             const Spot& s = n.at(column, row);
             if (const Spot& right = n.at(column + 1, row); row >= 0 && together(s, right)) {
                 const double sheared = 0.5 * (std::abs(shear(n, column, row)) + std::abs(shear(n, column, row - 1)));
-                x_face(g.gx, g.gx_left, column, row) = conductance(0.5 * (s.m11 + right.m11) - sheared, s, right, mean);
+                g.gx[Geometry::right_of(column, row)] = packed(conductance(0.5 * (s.m11 + right.m11) - sheared, s, right, mean));
             }
             if (const Spot& up = n.at(column, row + 1); column >= 0 && together(s, up)) {
                 const double sheared = 0.5 * (std::abs(shear(n, column, row)) + std::abs(shear(n, column - 1, row)));
-                g.gy[(row + 1) * kSide + column] = conductance(0.5 * (s.m22 + up.m22) - sheared, s, up, mean);
+                g.gy[(row + 1) * kSide + column] =
+                    packed(conductance(0.5 * (s.m22 + up.m22) - sheared, s, up, mean));
             }
             const double m = shear(n, column, row);
-            float& d = diagonals[field_at(column, row)];
-            if (m > 0) d = conductance(m, s, n.at(column + 1, row + 1), mean);
-            if (m < 0) d = -conductance(-m, n.at(column + 1, row), n.at(column, row + 1), mean);
+            const double size = m > 0 ? conductance(m, s, n.at(column + 1, row + 1), mean)
+                                      : conductance(-m, n.at(column + 1, row), n.at(column, row + 1), mean);
+            const double units = std::min(std::round(size / static_cast<double>(kDiagonalUnit)), 32767.0);
+            diagonals[field_at(column, row)] = static_cast<std::int16_t>(m > 0 ? units : -units);
             any |= m != 0;
         }
-    if (any) g.gd = std::make_unique<Field>(diagonals);
+    if (any) g.gd = std::make_unique<Geometry::Diagonals>(diagonals);
     for (int t = 0; t < kTexels; ++t) g.stiffness = std::max(g.stiffness, g.inverse[t] * sum_at(g, t));
     return g;
 }

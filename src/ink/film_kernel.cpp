@@ -64,11 +64,11 @@ TUFT_INLINE Carriers carriers(float g, float flux, float t0, float t1, const Ste
     return {positive(flux) + exchange, -positive(-flux) - exchange};
 }
 
-/// Sixteen faces.
-template <class Law>
+/// Faces side by side.
+template <class Law, int kFaces>
 TUFT_INLINE void faces(float* w, float* s, float* a, float* b, const float* g, const Ends& from, const Ends& to, const Step& p) {
 #pragma GCC ivdep
-    for (int x = 0; x < kSide; ++x) {
+    for (int x = 0; x < kFaces; ++x) {
         const End e0 = from.at(x), e1 = to.at(x);
         const float fw = Law::film_flux(g[x], e0, e1, p);
         float all = fw;
@@ -84,48 +84,33 @@ TUFT_INLINE void faces(float* w, float* s, float* a, float* b, const float* g, c
     }
 }
 
-/// The left sides of the first column, as one row.
-template <class Law>
-TUFT_INLINE void left_faces(Faces& f, const Work& o, const Geometry& g, const Step& p) {
-    alignas(64) float in[2][5][kSide], out[4][kSide];
-    for (int side = 0; side < 2; ++side)
-        for (int row = 0; row < kSide; ++row) {
-            const int k = field_at(side - 1, row);
-            in[side][0][row] = o.w[k];
-            in[side][1][row] = o.s[k];
-            in[side][2][row] = o.total[k];
-            in[side][3][row] = o.rate[k];
-            in[side][4][row] = g.grain[k];
-        }
-    const auto& [l, r] = in;
-    faces<Law>(out[0], out[1], out[2], out[3], g.gx_left.data(), {l[0], l[1], l[2], l[3], l[4]},
-               {r[0], r[1], r[2], r[3], r[4]}, p);
-    for (int row = 0; row < kSide; ++row) {
-        const int k = field_at(-1, row);
-        f.w[k] = out[0][row];
-        if constexpr (Law::pores) f.s[k] = out[1][row];
-        f.a[k] = out[2][row];
-        f.b[k] = out[3][row];
-    }
+TUFT_INLINE void unpack(Work& o, const Geometry& g) {
+    float* x = &o.gx[field_at(-8, 0)];
+    for (int i = 0; i < kSide * kRow; ++i) x[i] = static_cast<float>(g.gx[i]) * kConductanceUnit;
+    for (int row = -1; row < kSide; ++row)
+        for (int c = 0; c < kSide; ++c)
+            o.gy[field_at(c, row)] = static_cast<float>(g.gy[(row + 1) * kSide + c]) * kConductanceUnit;
+    if (!g.gd) return;
+    const std::int16_t* d = g.gd->data();
+    for (int k = 0; k < kField; ++k) o.gd[k] = static_cast<float>(d[k]) * kDiagonalUnit;
 }
 
 template <class Law>
 TUFT_INLINE void straight_faces(Work& o, const Geometry& g, const Step& p) {
-    left_faces<Law>(o.x, o, g, p);
     for (int row = 0; row < kSide; ++row) {
-        const int k = field_at(0, row), i = row * kSide;
-        faces<Law>(&o.x.w[k], &o.x.s[k], &o.x.a[k], &o.x.b[k], &g.gx[i], ends(o, g, k), ends(o, g, k + 1), p);
+        const int k = field_at(-8, row);
+        faces<Law, kRow>(&o.x.w[k], &o.x.s[k], &o.x.a[k], &o.x.b[k], &o.gx[k], ends(o, g, k), ends(o, g, k + 1), p);
     }
     for (int row = -1; row < kSide; ++row) {
-        const int k = field_at(0, row), i = (row + 1) * kSide;
-        faces<Law>(&o.y.w[k], &o.y.s[k], &o.y.a[k], &o.y.b[k], &g.gy[i], ends(o, g, k), ends(o, g, k + kRow), p);
+        const int k = field_at(0, row);
+        faces<Law, kSide>(&o.y.w[k], &o.y.s[k], &o.y.a[k], &o.y.b[k], &o.gy[k], ends(o, g, k), ends(o, g, k + kRow), p);
     }
 }
 
 /// A square has one diagonal at most: from k to k + 25 where gd > 0, else from k + 1 to k + 24.
 template <class Law>
 TUFT_INLINE void diagonal_faces(Work& o, const Geometry& g, const Step& p) {
-    const float* gd = g.gd->data();
+    const float* gd = o.gd.data();
     for (int row = -1; row < kSide; ++row) {
         const int k0 = field_at(-1, row);
         const Ends low = ends(o, g, k0), right = ends(o, g, k0 + 1), left = ends(o, g, k0 + kRow),
@@ -161,6 +146,7 @@ TUFT_INLINE void diagonal_faces(Work& o, const Geometry& g, const Step& p) {
 
 template <class Law>
 TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& p) {
+    unpack(o, g);
     straight_faces<Law>(o, g, p);
     if (g.gd) diagonal_faces<Law>(o, g, p);
 }
@@ -215,16 +201,14 @@ TUFT_CLONES void divergence_askew(float* __restrict d, const float* __restrict x
 }
 
 TUFT_CLONES void count_dry(float* __restrict n, const float* __restrict t, const Geometry& g) {
-    alignas(64) float left_side[kTexels + 1];
-    for (int i = 0; i < kTexels; ++i) left_side[i + 1] = g.gx[i];
-    for (int row = 0; row < kSide; ++row) left_side[row * kSide] = g.gx_left[row];
+    const std::uint16_t *gx = g.gx.data(), *gy = g.gy.data();
     for (int row = 0; row < kSide; ++row)
         for (int x = 0; x < kSide; ++x) {
-            const int k = field_at(x, row), i = row * kSide + x;
-            const float right = t[k + 1] > 0 || !(g.gx[i] > 0) ? 0.0f : 1.0f;
-            const float left = t[k - 1] > 0 || !(left_side[i] > 0) ? 0.0f : 1.0f;
-            const float up = t[k + kRow] > 0 || !(g.gy[i + kSide] > 0) ? 0.0f : 1.0f;
-            const float down = t[k - kRow] > 0 || !(g.gy[i] > 0) ? 0.0f : 1.0f;
+            const int k = field_at(x, row), i = row * kSide + x, side = Geometry::right_of(x, row);
+            const float right = t[k + 1] > 0 || gx[side] == 0 ? 0.0f : 1.0f;
+            const float left = t[k - 1] > 0 || gx[side - 1] == 0 ? 0.0f : 1.0f;
+            const float up = t[k + kRow] > 0 || gy[i + kSide] == 0 ? 0.0f : 1.0f;
+            const float down = t[k - kRow] > 0 || gy[i] == 0 ? 0.0f : 1.0f;
             const float across = right + left, along = up + down;
             n[i] = std::sqrt(across * across + along * along);
         }

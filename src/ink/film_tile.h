@@ -19,6 +19,9 @@ inline constexpr int kField = (kSide + 2) * kRow + 8;
 
 struct alignas(64) Field : std::array<float, kField> {};
 
+/// Conductances in 16 bits: half the memory, which is what steps wait for. 1 is exact.
+inline constexpr float kConductanceUnit = 0x1p-14f, kDiagonalUnit = 0x1p-13f;
+
 inline constexpr double kGrainLength = 1.2e-3;  ///< metres over which the pin of a place varies
 
 inline constexpr int field_at(int column, int row) { return (row + 1) * kRow + 8 + column; }
@@ -26,17 +29,19 @@ inline constexpr int field_of(int texel) { return field_at(texel % kSide, texel 
 
 /// What the metric says of a tile: made once, never changed.
 struct alignas(64) Geometry {
-    /// Length over distance of faces, at most 4 times the smaller area: of texels' right sides,
-    /// of the left sides of the first column, and of the sides below rows 0 to 16.
-    std::array<float, kTexels> gx{};
-    std::array<float, kSide> gx_left{};
-    std::array<float, kTexels + kSide> gy{};
+    /// Length over distance of faces, at most 4 times the smaller area, over kConductanceUnit: of texels'
+    /// right sides, rows of columns -8 to 15, 0 before -1; and of the sides below rows 0 to 16.
+    std::array<std::uint16_t, kSide * kRow> gx{};
+    std::array<std::uint16_t, kTexels + kSide> gy{};
     std::array<float, kTexels> inverse{};  ///< mean texel's area over the texel's; 0 outside the charts
     std::array<std::uint32_t, kSide + 2> valid{};  ///< bit column + 1: a texel of a chart
     float stiffness = 0;                   ///< greatest Σ conductances over area
-    /// Of diagonals: > 0 from k to k + 25, < 0 (its size) from k + 1 to k + 24; null: none.
-    std::unique_ptr<Field> gd;
+    /// Of diagonals, over kDiagonalUnit: > 0 from k to k + 25, < 0 (its size) from k + 1 to k + 24; null: none.
+    struct alignas(64) Diagonals : std::array<std::int16_t, kField> {};
+    std::unique_ptr<Diagonals> gd;
     Field grain{};                         ///< pin of the place, over the mean
+
+    static constexpr int right_of(int column, int row) { return row * kRow + 8 + column; }
 };
 Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot);
 
@@ -63,6 +68,7 @@ struct alignas(64) Faces {
 
 /// The fields of a tile in work.
 struct alignas(64) Work {
+    Field gx{}, gy{}, gd{};        ///< conductances: right of texels, above them, diagonals
     Field w{}, s{}, total{};       ///< liquid
     Field rate{};                  ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
     Field p{};                     ///< one pigment

@@ -17,22 +17,22 @@ float chance(std::uint64_t a, std::uint64_t b) { return static_cast<float>(unifo
 /// Conductances as of a stretched, sheared chart with a hole in it.
 void fill(Geometry& g, std::uint64_t seed) {
     g.valid.fill((1u << (kSide + 2)) - 1);
-    if (seed % 2) g.gd = std::make_unique<Field>();
+    if (seed % 2) g.gd = std::make_unique<Geometry::Diagonals>();
+    const auto size = [&](std::uint64_t k, int i) {
+        return static_cast<std::uint16_t>((0.6f + 0.8f * chance(seed + k, i)) / kConductanceUnit);
+    };
     for (int i = 0; i < kTexels; ++i) {
-        g.gx[i] = i % 37 ? 0.6f + 0.8f * chance(seed, i) : 0;
+        g.gx[Geometry::right_of(i % kSide, i / kSide)] = i % 37 ? size(0, i) : 0;
         g.inverse[i] = 0.7f + 0.6f * chance(seed + 1, i);
     }
-    for (int i = 0; i < kTexels + kSide; ++i) {
-        g.gy[i] = 0.6f + 0.8f * chance(seed + 3, i);
-    }
-    for (int i = 0; i < kSide; ++i) {
-        g.gx_left[i] = 0.6f + 0.8f * chance(seed + 5, i);
-    }
+    for (int i = 0; i < kTexels + kSide; ++i) g.gy[i] = size(3, i);
+    for (int i = 0; i < kSide; ++i) g.gx[Geometry::right_of(-1, i)] = size(5, i);
     for (int row = -1; row <= kSide; ++row)
         for (int column = -1; column <= kSide; ++column) {
             const int k = field_at(column, row);
             g.grain[k] = 0.6f + 0.8f * chance(seed + 7, k);
-            if (g.gd && row < kSide && column < kSide) (*g.gd)[k] = 0.4f * (chance(seed + 8, k) - 0.5f);
+            if (g.gd && row < kSide && column < kSide)
+                (*g.gd)[k] = static_cast<std::int16_t>(0.4f * (chance(seed + 8, k) - 0.5f) / kDiagonalUnit);
         }
 }
 

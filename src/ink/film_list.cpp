@@ -1,0 +1,181 @@
+#include "ink/film_list.h"
+
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace tuft::ink::wet {
+namespace {
+
+constexpr std::size_t kMostBeads = 256;
+
+void look(const Canvas& canvas, Active& tile) {
+    tile.outcome.sides = 15;
+    tile.seam_wet = true;
+    const Plane *w = canvas.liquid(tile.slot, Liquid::film), *s = canvas.liquid(tile.slot, Liquid::pores);
+    tile.outcome.most_w = w ? greatest(w->data()) : 0;
+    tile.outcome.most_s = s ? greatest(s->data()) : 0;
+}
+
+}  // namespace
+
+TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
+    : map(m), seams(std::move(s)), geometry(m.n_slots()), mark_(m.n_slots(), 0), place_(m.n_slots(), kNone) {
+    limit_links();
+}
+
+void TileList::limit_links() {
+    const double mean = map.texel_size * map.texel_size;
+    std::vector<std::array<float, kTexels>> of_slot;  // only of slots with links
+    std::vector<std::uint32_t> index(map.n_slots(), kNone);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        if (seams.start[slot] == seams.start[slot + 1]) continue;
+        index[slot] = static_cast<std::uint32_t>(of_slot.size());
+        std::array<float, kTexels>& sums = of_slot.emplace_back();
+        sums.fill(0);
+        for (const atlas::SeamLink& l : links_of(slot)) sums[l.texel] += l.weight;
+        for (int t = 0; t < kTexels; ++t) {
+            const double most = kSeamPart * static_cast<double>(map.tiles[slot].area[t]) / mean;
+            sums[t] = static_cast<double>(sums[t]) > most ? static_cast<float>(most) / sums[t] : 1;
+        }
+    }
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
+            atlas::SeamLink& l = seams.links[i];
+            l.weight *= std::min(of_slot[index[slot]][l.texel], of_slot[index[l.other_slot]][l.other_texel]);
+        }
+}
+
+std::span<const atlas::SeamLink> TileList::links_of(std::uint32_t slot) const {
+    return std::span(seams.links).subspan(seams.start[slot], seams.start[slot + 1] - seams.start[slot]);
+}
+
+std::array<std::uint32_t, 9> TileList::around(std::uint32_t slot) const {
+    std::array<std::uint32_t, 9> out;
+    const auto n = static_cast<std::int64_t>(map.tiles_per_side);
+    const std::int64_t tx = map.tile_of_slot[slot] % n, ty = map.tile_of_slot[slot] / n;
+    for (int i = 0; i < 9; ++i) {
+        const std::int64_t x = tx + i % 3 - 1, y = ty + i / 3 - 1;
+        out[i] = x < 0 || y < 0 || x >= n || y >= n
+                     ? kNone : map.slot_of_tile[static_cast<std::size_t>(y * n + x)];
+    }
+    return out;
+}
+
+void TileList::begin(const Canvas& canvas) {
+    const std::vector<std::uint32_t> wet = canvas.wet_slots();
+    list.clear();
+    list.resize(wet.size());
+    parallel_for(wet.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Active& tile = list[i];
+            tile.slot = wet[i];
+            look(canvas, tile);
+        }
+    });
+    spread();
+}
+
+void TileList::spread() {
+    std::vector<std::uint32_t> wanted;
+    const auto want = [&](std::uint32_t slot) {
+        if (slot == kNone || mark_[slot]) return;
+        mark_[slot] = 1;
+        wanted.push_back(slot);
+    };
+    for (const Active& tile : list) {
+        if (!tile.wet()) continue;
+        want(tile.slot);
+        const std::array<std::uint32_t, 9> near = around(tile.slot);
+        constexpr std::array<std::uint8_t, 9> sides{5, 1, 9, 4, 0, 8, 6, 2, 10};
+        for (int i = 0; i < 9; ++i)
+            if (i != 4 && (tile.outcome.sides & sides[i]) == sides[i]) want(near[i]);
+        if (tile.seam_wet)
+            for (const atlas::SeamLink& l : links_of(tile.slot)) want(l.other_slot);
+    }
+    std::sort(wanted.begin(), wanted.end());
+    std::vector<Active> next(wanted.size());
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        while (k < list.size() && list[k].slot < wanted[i]) ++k;
+        if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
+        next[i].slot = wanted[i];
+        next[i].links = links_of(wanted[i]);
+        place_[wanted[i]] = static_cast<std::uint32_t>(i);
+        mark_[wanted[i]] = 0;
+    }
+    list = std::move(next);
+    for (Active& tile : list) {
+        tile.around = around(tile.slot);
+        for (std::uint32_t& slot : tile.around) slot = slot == kNone ? kNone : place_[slot];
+    }
+    others.assign(list.size(), {});
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        for (const atlas::SeamLink& l : list[i].links)
+            if (others[i].empty() || others[i].back().first != l.other_slot)
+                others[i].push_back({l.other_slot, place_[l.other_slot]});
+        std::sort(others[i].begin(), others[i].end());
+        others[i].erase(std::unique(others[i].begin(), others[i].end()), others[i].end());
+    }
+    for (const Active& tile : list) place_[tile.slot] = kNone;
+    readers = std::make_unique<std::atomic<std::uint32_t>[]>(list.size());
+}
+
+bool TileList::changed() const {
+    return std::any_of(list.begin(), list.end(), [](const Active& tile) { return tile.spreads; });
+}
+
+void TileList::look_at(const Canvas& canvas, std::span<const std::uint32_t> slots) {
+    const std::size_t listed = list.size();
+    for (const std::uint32_t slot : slots) {
+        const auto end = list.begin() + static_cast<std::ptrdiff_t>(listed);
+        const auto at = std::lower_bound(list.begin(), end, slot, [](const Active& a, std::uint32_t s) { return a.slot < s; });
+        const bool known = at != end && at->slot == slot;
+        if (!known) {
+            list.emplace_back();
+            list.back().slot = slot;
+        }
+        look(canvas, known ? list[static_cast<std::size_t>(at - list.begin())] : list.back());
+    }
+    std::sort(list.begin(), list.end(), [](const Active& a, const Active& b) { return a.slot < b.slot; });
+    spread();
+}
+
+std::vector<Drips::Seed> TileList::seeds_of_beads(const Canvas& canvas, const FilmParams& params) const {
+    struct Found {
+        std::array<std::int32_t, 3> cube;
+        float weak, height;
+        Drips::Seed seed;
+    };
+    std::vector<Found> found;
+    for (const Active& tile : list) {
+        const auto least = static_cast<float>(Drips::least(params));
+        if (tile.outcome.most_w < least) continue;
+        const Plane& w = *canvas.liquid(tile.slot, Liquid::film);
+        const std::size_t first = found.size();
+        for (int t = 0; t < kTexels; ++t) {
+            if (w[t] < least) continue;
+            const Vec3 at(map.position(tile.slot, t));
+            const auto cell = [](double x) { return static_cast<std::int32_t>(std::floor(x / kGrainLength)); };
+            const std::array cube{cell(at.x), cell(at.y), cell(at.z)};
+            const float grain = geometry[tile.slot]->grain[field_of(t)];
+            auto same = std::find_if(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+                                     [&](const Found& f) { return f.cube == cube; });
+            if (same == found.end()) same = found.insert(found.end(), Found{cube, 0, 0, {}});
+            if (w[t] > same->weak * grain)
+                *same = {cube, w[t] / grain, static_cast<float>(-glm::dot(params.down, at)),
+                         {{tile.slot, static_cast<std::uint8_t>(t)}, static_cast<double>(grain)}};
+        }
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+        return a.cube != b.cube ? a.cube < b.cube : a.weak > b.weak;
+    });
+    found.erase(std::unique(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.cube == b.cube; }),
+                found.end());
+    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.height < b.height; });
+    std::vector<Drips::Seed> seeds;
+    for (std::size_t i = 0; i < std::min(found.size(), kMostBeads); ++i) seeds.push_back(found[i].seed);
+    return seeds;
+}
+
+}  // namespace tuft::ink::wet
