@@ -24,6 +24,8 @@ constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
 constexpr double kBeadStep = 0.05;     // seconds: a bead goes a texel or a few
 constexpr double kLeastMixing = 2e-10; // m²/s
 constexpr double kStirring = 0.02;     // film units: mixing over mobility
+constexpr double kMostUneven = 1.2;
+constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
 constexpr double kRimLength = 1e-3;    // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// What goes over a link for pigments: dp = −out p(texel) + in p(other).
@@ -94,6 +96,8 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     p.evaporation = static_cast<double>(substrate.evaporation);
     p.rim_evaporation = p.evaporation * static_cast<double>(substrate.edge) * kRimLength;
     p.stain = p.pores / (p.pores + 2);
+    if (substrate.pores > 0)
+        p.unevenness = kMostUneven * static_cast<double>(substrate.relief) / (static_cast<double>(substrate.relief) + kFilmHeight);
     if (glm::length(down) > 0) p.down = glm::normalize(down);
     return p;
 }
@@ -150,7 +154,7 @@ struct WetFilm::State : TileList {
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 auto& g = geometry[list[i].slot];
-                if (!g) g = std::make_unique<Geometry>(make_geometry(map, list[i].slot));
+                if (!g) g = std::make_unique<Geometry>(make_geometry(map, list[i].slot, unevenness()));
                 list[i].stiffness = g->stiffness;
                 find_planes(canvas, i);
             }
@@ -398,6 +402,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     if (!canvas.wet() || !(seconds > 0)) return report;
     State& s = *state_;
     s.told.assign(s.map.n_slots(), 0);
+    s.set_unevenness(params.unevenness);
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.down) > 0;

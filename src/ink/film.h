@@ -22,6 +22,7 @@ struct FilmParams {
     double evaporation = 1.0 / 60;   ///< film units a second
     double rim_evaporation = 0;      ///< film units · m a second, more, per metre of rim
     double stain = 0;                ///< part of a drying film that stays in bare substrate
+    double unevenness = 0;           ///< rms of ln of how easily liquid flows, from place to place; 0: even
     Vec3 down{0};                    ///< towards the ground, length 1; zero: no weight
     double hold = 2;                 ///< film units that neither weight nor surface tension moves
     double levelling = 1e-8;         ///< L, m²/s per film unit above `hold`: puddles draw together
@@ -34,7 +35,7 @@ struct FilmParams {
 };
 
 /// What a surface does by its substance (`Substrate`: diffusion, threshold, edge, absorbency,
-/// pores, evaporation) and the direction of weight.
+/// pores, evaporation, relief) and the direction of weight.
 FilmParams film_params(const Substrate& substrate, const Vec3& down = Vec3{0});
 
 struct FilmReport {
@@ -58,6 +59,9 @@ struct FilmReport {
 /// (drips.h), 256 at once at most. The rim evaporates faster by
 /// `rim_evaporation`, so that liquid, and pigment with it, is drawn there: dark edges.
 /// A texel with nothing wet any more is closed (drying.h).
+///
+/// Where fibres and pores lie in clouds (`unevenness`) D varies with the place over a millimetre or so, and
+/// fronts are crinkled.
 ///
 /// The fluxes through a face are the same numbers on both its sides, over seams too, so each
 /// amount is kept to rounding. Explicit steps, as many as stability needs (never negative, the

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "ink/elementary.h"
 #include "ink/film_tile.h"
 
 namespace tuft::ink::wet {
@@ -11,12 +12,14 @@ constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of t
 constexpr double kMostConductance = 4; // over the smaller of the two areas
 constexpr double kNoShear = 0.05;     // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
 constexpr double kGrainDepth = 0.4;   // of the mean
+constexpr double kFlocsRms = 0.45;    // of the octaves' sum
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
 
 struct Spot {
     bool valid = false;
     Vec3 position{0};
     double area = 0, reach = 0;
+    double grain = 1, ease = 1;        // of the pin; of the flow, its root
     double m11 = 1, m12 = 0, m22 = 1;  // √g times the inverse metric
 };
 
@@ -54,25 +57,6 @@ void set_metric(Neighbourhood& n, int column, int row) {
     s.m22 = g11 / root;
 }
 
-Neighbourhood gather(const atlas::TexelMap& map, std::uint32_t slot) {
-    Neighbourhood n;
-    const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
-    const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
-    for (int row = -2; row < kSide + 2; ++row)
-        for (int column = -2; column < kSide + 2; ++column) {
-            const atlas::TexelRef ref = atlas::texel_ref(map, x0 + column, y0 + row);
-            if (!ref.valid()) continue;
-            const float area = map.tiles[ref.slot].area[ref.texel];
-            n.at(column, row) = {.valid = area > 0,
-                                 .position = Vec3(map.position(ref.slot, ref.texel)),
-                                 .area = static_cast<double>(area),
-                                 .reach = static_cast<double>(map.reach[ref.slot])};
-        }
-    for (int row = -1; row < kSide + 1; ++row)
-        for (int column = -1; column < kSide + 1; ++column) set_metric(n, column, row);
-    return n;
-}
-
 /// The mixed term at the corner above and right of a texel; 0 where the square is broken.
 double shear(const Neighbourhood& n, int column, int row) {
     const Spot &a = n.at(column, row), &b = n.at(column + 1, row), &c = n.at(column, row + 1),
@@ -87,9 +71,9 @@ double lattice(std::int64_t x, std::int64_t y, std::int64_t z) {
     return uniform(kGrainSeed, bits(x) << 42 | bits(y) << 21 | bits(z));
 }
 
-/// Smooth noise of the place, mean 1.
-double grain(const Vec3& position) {
-    const Vec3 p = position / kGrainLength, floor = glm::floor(p), f = p - floor;
+/// Smooth noise of the place, −1 to 1, over `length`.
+double noise(const Vec3& position, double length) {
+    const Vec3 p = position / length, floor = glm::floor(p), f = p - floor;
     const Vec3 s = f * f * (3.0 - 2.0 * f);
     double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -98,11 +82,48 @@ double grain(const Vec3& position) {
         sum += weight * lattice(static_cast<std::int64_t>(floor.x) + i, static_cast<std::int64_t>(floor.y) + j,
                                 static_cast<std::int64_t>(floor.z) + k);
     }
-    return 1 + kGrainDepth * (2 * sum - 1);
+    return 2 * sum - 1;
+}
+
+/// exp(x), the same bits everywhere.
+double exponential(double x) {
+    const auto e = static_cast<double>(exp_minus(static_cast<float>(std::abs(x))));
+    return x > 0 ? 1 / e : e;
+}
+
+/// Clouds of fibres and pores as sponges and papers have them: noise of mean 0 and rms 1 in octaves.
+double flocs(const Vec3& position) {
+    const double sum = noise(position, 2 * kGrainLength) + 0.8 * noise(position, kGrainLength) + 0.6 * noise(position, 0.5 * kGrainLength);
+    return std::clamp(sum / kFlocsRms, -2.0, 1.5);  // what flows fastest sets the steps
+}
+
+Neighbourhood gather(const atlas::TexelMap& map, std::uint32_t slot, double unevenness) {
+    Neighbourhood n;
+    const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
+    const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
+    for (int row = -2; row < kSide + 2; ++row)
+        for (int column = -2; column < kSide + 2; ++column) {
+            const atlas::TexelRef ref = atlas::texel_ref(map, x0 + column, y0 + row);
+            if (!ref.valid()) continue;
+            const float area = map.tiles[ref.slot].area[ref.texel];
+            n.at(column, row) = {.valid = area > 0,
+                                 .position = Vec3(map.position(ref.slot, ref.texel)),
+                                 .area = static_cast<double>(area),
+                                 .reach = static_cast<double>(map.reach[ref.slot])};
+        }
+    for (int row = -1; row < kSide + 1; ++row)
+        for (int column = -1; column < kSide + 1; ++column) {
+            set_metric(n, column, row);
+            Spot& s = n.at(column, row);
+            if (!s.valid) continue;
+            s.grain = 1 + kGrainDepth * noise(s.position, kGrainLength);
+            if (unevenness > 0) s.ease = exponential(0.5 * unevenness * flocs(s.position));
+        }
+    return n;
 }
 
 double conductance(double g, const Spot& a, const Spot& b, double mean_area) {
-    return std::clamp(g, 0.0, kMostConductance * std::min(a.area, b.area) / mean_area);
+    return std::clamp(g * (a.ease * b.ease), 0.0, kMostConductance * std::min(a.area, b.area) / mean_area);
 }
 
 std::uint16_t packed(double g) {
@@ -124,8 +145,10 @@ float sum_at(const Geometry& g, int t) {
 
 }  // namespace
 
-Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot) {
-    const Neighbourhood n = gather(map, slot);
+double ease_of_flow(const Vec3& position, double unevenness) { return exponential(unevenness * flocs(position)); }
+
+Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot, double unevenness) {
+    const Neighbourhood n = gather(map, slot, unevenness);
     const double mean = map.texel_size * map.texel_size;
     Geometry g;
     Geometry::Diagonals diagonals{};
@@ -135,7 +158,7 @@ Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot) {
             const Spot& s = n.at(column, row);
             if (!s.valid) continue;
             g.valid[row + 1] |= 1u << (column + 1);
-            g.grain[field_at(column, row)] = static_cast<float>(grain(s.position));
+            g.grain[field_at(column, row)] = static_cast<float>(s.grain);
             if (row >= 0 && row < kSide && column >= 0 && column < kSide)
                 g.inverse[row * kSide + column] = static_cast<float>(mean / s.area);
         }

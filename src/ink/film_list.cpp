@@ -21,6 +21,22 @@ void look(const Canvas& canvas, Active& tile) {
 
 TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
     : map(m), seams(std::move(s)), geometry(m.n_slots()), mark_(m.n_slots(), 0), place_(m.n_slots(), kNone) {
+    for (const atlas::SeamLink& l : seams.links) weights_.push_back(l.weight);
+    limit_links();
+}
+
+void TileList::set_unevenness(double unevenness) {
+    if (unevenness == unevenness_) return;
+    unevenness_ = unevenness;
+    for (auto& g : geometry) g.reset();
+    const auto root = [&](std::uint32_t slot, int texel) {
+        return std::sqrt(ease_of_flow(Vec3(map.position(slot, texel)), unevenness_));
+    };
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
+            atlas::SeamLink& l = seams.links[i];
+            l.weight = static_cast<float>(static_cast<double>(weights_[i]) * (root(slot, l.texel) * root(l.other_slot, l.other_texel)));
+        }
     limit_links();
 }
 

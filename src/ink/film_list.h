@@ -53,6 +53,9 @@ struct TileList {
 
     TileList(const atlas::TexelMap& m, atlas::SeamLinks s);
 
+    /// For surfaces that let liquid flow more easily here than there (`ease_of_flow`). Costs when it changes.
+    void set_unevenness(double unevenness);
+    double unevenness() const { return unevenness_; }
     /// The list becomes the canvas' wet tiles and those round them.
     void begin(const Canvas& canvas);
     /// The list becomes the wet tiles and those that liquid may reach in the next step.
@@ -75,6 +78,8 @@ struct TileList {
     }
 
   private:
+    std::vector<float> weights_;        ///< of the links as they came
+    double unevenness_ = 0;
     std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch
     std::vector<std::uint32_t> place_;  ///< [n_slots] scratch
 

@@ -43,7 +43,10 @@ struct alignas(64) Geometry {
 
     static constexpr int right_of(int column, int row) { return row * kRow + 8 + column; }
 };
-Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot);
+Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot, double unevenness);
+/// How easily liquid flows at a place, over the mean: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to
+/// 2.4 mm, −2 to 1.5. On a plane the flow in the large is that of the geometric mean, 1 (Dykhne 1971).
+double ease_of_flow(const Vec3& position, double unevenness);
 
 /// FilmParams for one step, in texels: rates times the step's length.
 struct Step {

@@ -251,13 +251,17 @@ void absorb(Reservoir& tuft, const Content& lifted, const Touch& touch) {
         lacking -= v;
     };
     const auto room = [&](std::size_t i) { return std::max(0.0, tuft.room[i] - sum_of(tuft.content[i])); };
-    each_touched(tuft, touch, [&](std::size_t i, double part) {
-        put(i, std::min({part * amount, room(i), lacking}));
+    each_touched(tuft, touch, [&](std::size_t i, double share) {
+        put(i, std::min({share * amount, room(i), lacking}));
     });
-    for (std::size_t i = 0; i < tuft.content.size() && lacking > 0; ++i) put(i, std::min(room(i), lacking));
+    // Into all the hair that is not full, alike.
+    double rooms = 0;
+    for (std::size_t i = 0; i < tuft.content.size() && lacking > 0; ++i) rooms += room(i);
+    const double part = rooms > 0 ? std::min(1.0, lacking / rooms) : 0;
+    for (std::size_t i = 0; i < tuft.content.size() && part > 0; ++i) put(i, std::min(part * room(i), lacking));
     if (lacking > 0) {
         const double beyond = lacking;
-        each_touched(tuft, touch, [&](std::size_t i, double part) { put(i, part * beyond); });
+        each_touched(tuft, touch, [&](std::size_t i, double share) { put(i, share * beyond); });
         if (!tuft.content.empty()) put(0, lacking);  // what rounding of the parts left
     }
 }

@@ -98,7 +98,7 @@ Reservoir::Content take(Reservoir& tuft, double amount, const Touch& touch = {})
 double room_left(const Reservoir& tuft, const Touch& touch = {});
 
 /// Takes up `lifted` (film·m² by plane) from the surface into the cells that touch; what they
-/// have no room for goes on to the others. Nothing is lost: beyond the capacity the touching
+/// have no room for goes on to the others, in proportion to theirs. Nothing is lost: beyond the capacity the touching
 /// cells hold it all the same, so ask `room_left` before.
 void absorb(Reservoir& tuft, const Reservoir::Content& lifted, const Touch& touch = {});
 

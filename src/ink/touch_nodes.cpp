@@ -138,7 +138,7 @@ void spend(Reservoir& tuft, const NodeContents& given, const NodeTouch& nodes) {
 }
 
 NodeContents draw(Reservoir& tuft, const std::array<double, kNodes>& amounts, const NodeTouch& nodes,
-                  const Touch& touch) {
+                  const Touch& touch, bool from_afar) {
     NodeContents drawn{};
     std::array<double, kNodes> lacks = amounts;
     double lacking = 0;
@@ -161,7 +161,7 @@ NodeContents draw(Reservoir& tuft, const std::array<double, kNodes>& amounts, co
     // Parts that sum to one in floats leave so little that it is not worth asking all the hair.
     double all = 0;
     for (const double amount : amounts) all += amount;
-    if (!(lacking > kAlike * all)) return drawn;
+    if (!from_afar || !(lacking > kAlike * all)) return drawn;
     const Content rest = take(tuft, lacking, touch);
     for (int node = 0; node < kNodes; ++node)
         for (int p = 0; p < kPlanes; ++p) drawn[node][p] += std::max(lacks[node], 0.0) / lacking * rest[p];

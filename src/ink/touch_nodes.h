@@ -79,9 +79,9 @@ class MixtureGiven {
 void spend(Reservoir& tuft, const NodeContents& given, const NodeTouch& nodes);
 
 /// Takes ink for each node, `amounts` in film·m², from its cells, of each its own mixture; what they
-/// lack comes as from `take`.
+/// lack comes as from `take` if it may come `from_afar`, from hair that is not over the node.
 NodeContents draw(Reservoir& tuft, const std::array<double, kNodes>& amounts, const NodeTouch& nodes,
-                  const Touch& touch);
+                  const Touch& touch, bool from_afar = true);
 
 /// Takes up what was lifted at each node into its cells; what they have no room for goes as in the
 /// `absorb` for the whole touch.

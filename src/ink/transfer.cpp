@@ -108,6 +108,38 @@ void settle(const Booked& b, const Tents& tents, const TransferParams& params, N
 
 }  // namespace
 
+namespace {
+
+/// Where the hair has left the surface, what was on it spreads among the rest in line with it, which lacks
+/// some as it comes down: one film wets it all. What nobody lacks goes `back`.
+void pass_on(Skin& skin, NodeContents& back, const std::array<double, kNodes>& want, int across) {
+    constexpr double kSpare = 1.25;  // of what a node wants
+    std::array<double, kAlong> lack{}, over{};
+    double lacking = 0, loose = 0;
+    for (int i = 0; i < kAlong; ++i) {
+        const double volume = skin.volume(i * kAcross + across), most = want[i * kAcross + across];
+        lacking += lack[i] = std::max(0.0, most - volume);
+        loose += over[i] = std::max(0.0, volume - kSpare * most);
+    }
+    if (!(loose > 0)) return;
+    Reservoir::Content sum{};
+    for (int i = 0; i < kAlong; ++i) {
+        const int node = i * kAcross + across;
+        if (!(over[i] > 0)) continue;
+        const double out = over[i] / skin.volume(node), stays = std::min(1.0, lacking / loose);
+        for (int p = 0; p < Reservoir::kPlanes; ++p) {
+            const double v = out * skin.content[node][p];
+            skin.content[node][p] -= v;
+            sum[p] += stays * v;
+            back[node][p] += v - stays * v;
+        }
+    }
+    for (int i = 0; i < kAlong && lacking > 0; ++i)
+        for (int p = 0; p < Reservoir::kPlanes; ++p) skin.content[i * kAcross + across][p] += lack[i] / lacking * sum[p];
+}
+
+}  // namespace
+
 double Skin::volume(int node) const { return sum_of(content[node]); }
 
 void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes) {
@@ -117,22 +149,18 @@ void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& 
 
 void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes, const NodeAreas& areas,
              double dt, double pour) {
-    const double wet = std::min(1.0, saturation_at(tuft, touch) / kHalfFull);
+    const double filled = std::min(1.0, saturation_at(tuft, touch) / kHalfFull), wet = filled * filled;
     const double part = -std::expm1(-std::max(dt, 0.0) / kSkinTime);
     std::array<double, kNodes> want, lack;
     NodeContents back{};
-    for (int node = 0; node < kNodes; ++node) {
-        want[node] = (kSkinFilm * wet + pour) * areas[node];
-        const double volume = skin.volume(node);
-        if (!(volume > 0)) continue;
-        // Where the hair has left the surface, what was on it spreads among the rest.
-        const double leaves = std::max(part, 1 - std::min(1.0, 1.25 * want[node] / volume));
+    for (int node = 0; node < kNodes; ++node) want[node] = (kSkinFilm * wet + pour) * areas[node];
+    for (int across = 0; across < kAcross; ++across) pass_on(skin, back, want, across);
+    for (int node = 0; node < kNodes; ++node)
         for (int p = 0; p < Reservoir::kPlanes; ++p) {
-            const double v = leaves * skin.content[node][p];
+            const double v = part * skin.content[node][p];
             skin.content[node][p] -= v;
             back[node][p] += v;
         }
-    }
     absorb(tuft, back, nodes, touch);
     double all = 0;
     for (int node = 0; node < kNodes; ++node) {
@@ -142,7 +170,7 @@ void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& n
     if (!(all > 0)) return;
     const double within = std::min(1.0, tuft.remaining() / all);
     for (double& amount : lack) amount *= within;
-    const NodeContents fresh = draw(tuft, lack, nodes, touch);
+    const NodeContents fresh = draw(tuft, lack, nodes, touch, filled >= 1 || pour > 0);
     for (int node = 0; node < kNodes; ++node)
         for (int p = 0; p < Reservoir::kPlanes; ++p) skin.content[node][p] += fresh[node][p];
 }

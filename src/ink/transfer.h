@@ -21,8 +21,11 @@ struct Skin {
 };
 
 /// Before a touch: what is on the skin changes places with what is in the cells behind it with a
-/// time constant of 0.3 s, and each node is filled up to a film of 40 µm over its area (less
-/// where the hair is not half full). What skin and tuft hold together stays the same.
+/// time constant of 0.3 s, and each node is filled up to a film of 40 µm over its area; less by
+/// min(1, 2 s)² where the hair's saturation s is below a half, since what there is then hides between
+/// the hairs. What leaves the surface at one node fills those in line with it that lack some, and only
+/// then goes into the hair; hair that is not half full gives no more than it holds there, until `flow`
+/// brings more. What skin and tuft hold together stays the same.
 /// `pour`: film units more, that run off a dripping tuft in this touch.
 void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes, const NodeAreas& areas,
              double dt, double pour = 0);

@@ -209,5 +209,19 @@ TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     EXPECT_EQ(again.held(kBrush)->reservoir.remaining(), painting.held(kBrush)->reservoir.remaining());
 }
 
+TEST(DryBrush, LeavesFlyingWhiteWithWetInkAsWithInkThatStays) {
+    // The film on the outside of the hair may not wring out of the tuft what its hairs hold between them.
+    const Model model = sheet();
+    double ink[2];
+    for (const bool wet : {false, true}) {
+        Stroke s = drag(5, 0.2);
+        if (wet) s.settings.film = "wet";
+        const Painting painting = dry_stroke(model, 0.18, 5, {}, s);
+        ink[wet] = painting.canvas().total(model.texels, 0);
+    }
+    EXPECT_GT(ink[1], 0.4 * ink[0]);
+    EXPECT_LT(ink[1], 1.5 * ink[0]) << "the same hair, pressed the same way";
+}
+
 }  // namespace
 }  // namespace tuft::stroke
