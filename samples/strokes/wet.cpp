@@ -52,7 +52,7 @@ Writer on_sheet(double x, double y) {
 Stroke band(const char* name, Vec2 from, Vec2 to, double width) {
     const Vec2 way = to - from;
     const auto at = [&](double f, double w) { return Key{from.x + f * way.x, from.y + f * way.y, w}; };
-    return {name, {at(0, 0), at(0.02, 0.4 * width), at(0.1, width), at(0.5, width), at(0.9, width), at(1, 0)}};
+    return {name, {at(0, 0), at(0.05, 0.3 * width), at(0.25, 0.8 * width), at(0.5, width), at(0.88, width), at(1, 0)}};
 }
 
 /// Pressed with the tip outwards, drawn to the heart and lifted there.
@@ -88,12 +88,9 @@ std::vector<stroke::Trace> wet_sheet() {
     const char* inks[] = {"samples/inks/gamboge-wash.toml", "samples/inks/iron-red-wash.toml", "samples/inks/indigo-wash.toml"};
     for (int k = 0; k < 3; ++k) {
         const double a = (k * 60 + 10) * kDegree;
-        const Vec2 u{std::cos(a), std::sin(a)}, v{-u.y, u.x};
-        for (int pass = 0; pass < 2; ++pass) {
-            const Vec2 side = (pass ? 4.0 : -4.0) * v;
-            glazes.add(band("glaze", side - 30.0 * u, side + 30.0 * u, 11),
-                       {.brush = "mixed-large", .ink = inks[k], .options = {.speed = 0.06}, .before = pass ? std::vector<Care>{} : std::vector<Care>{kDry}});
-        }
+        const Vec2 u{std::cos(a), std::sin(a)};
+        glazes.add(band("glaze", -30.0 * u, 30.0 * u, 17),
+                   {.brush = "mixed-large*1.6", .ink = inks[k], .options = {.speed = 0.06}, .before = {kDry}});
     }
     append(out, std::move(glazes));
     // A wet stripe, and a clean wet brush drawn through it.
@@ -133,11 +130,8 @@ std::vector<stroke::Trace> wet_bowl() {
 
 std::vector<stroke::Trace> backrun() {
     Writer w = on_sheet(0, 0);
-    for (int k = 0; k < 3; ++k) {
-        const double y = 9.0 * k - 9;
-        w.add({"wash", {{-30, y, 0}, {-28, y, 8}, {-24, y, 13}, {0, y + 0.5, 13}, {24, y, 13}, {28, y, 8}, {30, y, 0}}},
-              {.brush = "mixed-large", .ink = "samples/inks/indigo-wash.toml", .options = {.speed = 0.05}});
-    }
+    w.add(band("wash", {-34, 0}, {34, 1}, 28),
+          {.brush = "mixed-large*2.6", .ink = "samples/inks/indigo-wash.toml", .options = {.speed = 0.05}});
     // When it has lost its shine, clean water.
     const double drops[][2] = {{-13, 3}, {12, -4}};
     for (const auto& [x, y] : drops)
