@@ -2,6 +2,7 @@
 #include "io/looks.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tuft::app {
 
@@ -9,10 +10,25 @@ template <class Action>
 void Keeper::attempt(const Action& action) {
     try {
         action();
-        trouble_.clear();
+        if (!behind_) trouble_.clear();
     } catch (const std::exception& error) {
         trouble_ = error.what();
     }
+}
+
+template <class Action>
+void Keeper::change(const Action& action) {
+    attempt([&] {
+        if (!project_) return;
+        const bool was = std::exchange(behind_, true);
+        action();
+        behind_ = was;
+    });
+}
+
+void Keeper::rewrite(const std::string& source, const FileFrame& frame, stroke::Painting& painting) {
+    behind_ = true;
+    if (std::string fault = start(path(), source, frame, painting); !fault.empty()) trouble_ = std::move(fault);
 }
 
 void Keeper::take_presets(const io::Project& project) {
@@ -24,6 +40,7 @@ void Keeper::adopt(io::Project project) {
     take_presets(project);
     project_ = std::move(project);
     pending_.clear();
+    behind_ = false;
 }
 
 std::string Keeper::start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
@@ -46,6 +63,7 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
         project_ = std::move(project);
         pending_.clear();
         trouble_.clear();
+        behind_ = false;
         return "";
     } catch (const std::exception& error) {
         return error.what();
@@ -111,18 +129,21 @@ void Keeper::remove(std::uint64_t id) {
         pending_.erase(waits);
         return;
     }
-    attempt([&] { if (project_) project_->remove(id); });
+    change([&] { project_->remove(id); });
 }
 
 void Keeper::set_hidden(std::uint64_t id, bool hidden) {
     for (stroke::Stroke& stroke : pending_)
-        if (stroke.id == id) stroke.hidden = hidden;
-    attempt([&] { if (project_) project_->set_hidden(id, hidden); });
+        if (stroke.id == id) {
+            stroke.hidden = hidden;
+            return;
+        }
+    change([&] { project_->set_hidden(id, hidden); });
 }
 
 void Keeper::store_canvas(const stroke::Painting& painting) {
     if (painting.journal().empty()) return;
-    attempt([&] { if (project_ && pending_.empty()) project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id); });
+    attempt([&] { if (project_ && pending_.empty() && !behind_) project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id); });
 }
 
 }  // namespace tuft::app

@@ -25,6 +25,9 @@ class Keeper {
     std::string start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                       stroke::Painting& painting);
 
+    /// `start` in the place of the file there is, which rows alone cannot bring up to date.
+    void rewrite(const std::string& source, const FileFrame& frame, stroke::Painting& painting);
+
     /// The presets as a replay of the file will read them; call before a stroke uses them. Empty: none.
     void prepare(stroke::Painting& painting, const std::string& brush, const std::string& ink);
     void add(const stroke::Stroke& stroke);
@@ -32,7 +35,9 @@ class Keeper {
     void store_looks(const stroke::Painting& painting);
     void remove(std::uint64_t id);
     void set_hidden(std::uint64_t id, bool hidden);
-    /// Stores the texels, so that the next opening needs no replay.
+    /// A change could not be written: the file has another journal until `start` writes it anew.
+    bool behind() const { return behind_; }
+    /// Stores the texels, so that the next opening needs no replay. Not beside another journal.
     void store_canvas(const stroke::Painting& painting);
 
     std::filesystem::path path() const { return project_ ? project_->path() : std::filesystem::path{}; }
@@ -43,12 +48,15 @@ class Keeper {
   private:
     template <class Action>
     void attempt(const Action& action);
+    template <class Action>
+    void change(const Action& action);
     void flush();
 
     std::optional<io::Project> project_;
     std::vector<stroke::Stroke> pending_;
     std::map<std::string, std::string> brushes_, inks_;  ///< TOML by name
     std::string trouble_;
+    bool behind_ = false;
 };
 
 }  // namespace tuft::app

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <set>
+#include <utility>
 
 namespace tuft::app {
 namespace {
@@ -126,13 +127,16 @@ void Painter::run() {
             perform(command);
         } catch (const Cancelled&) {
             say("Stopped; everything is as it was.");
+            publish(true);
         } catch (const std::exception& error) {
-            if (work_.painting->in_stroke()) work_.painting->cancel();
+            work_.painting->cancel();
+            drop_loads();
             say(error.what());
             publish(true);
         }
     }
     if (work_.painting->in_stroke()) end();
+    if (work_.keeper.behind()) work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
     work_.keeper.store_canvas(*work_.painting);
 }
 
@@ -227,10 +231,12 @@ void Painter::publish(bool strokes_changed) {
 }
 
 void Painter::begin(const BeginStroke& command) {
+    cancel();
     current_ = command;
     if (const stroke::BrushInHand* held = work_.painting->held(command.brush); command.as_it_is && held) current_.ink = held->named;
     work_.keeper.prepare(*work_.painting, command.brush, command.ink);
-    loads_ = load_tip(command);
+    if (!command.tip_ink.empty()) undone_before_ = work_.painting->journal().undone();
+    load_tip(command, loads_);
     stroke::Stroke stroke;
     stroke.trace.flat = false;
     stroke.trace.brush = command.brush;
@@ -283,6 +289,7 @@ void Painter::fill(const FillModel& command) {
 
 // An entry that is done at once.
 void Painter::act(stroke::Stroke entry) {
+    cancel();
     work_.painting->paint(std::move(entry));
     work_.keeper.add(work_.painting->journal().strokes().back());
     steps_.push_back({.made = 1});
@@ -291,6 +298,7 @@ void Painter::act(stroke::Stroke entry) {
 }
 
 void Painter::paint_traces(PaintTraces& command) {
+    cancel();
     std::vector<stroke::Trace> all = command.traces;
     for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry)) {
         if (glm::determinant(map.linear) < 0) continue;
@@ -334,10 +342,12 @@ void Painter::end() {
     painting.end();
     work_.keeper.add(painting.journal().strokes().back());
     const stroke::Stroke original = painting.journal().strokes().back();
-    std::size_t made = 1 + loads_;
+    steps_.push_back({.made = 1 + std::exchange(loads_, 0), .joined = current_.joined && !steps_.empty()});
+    std::size_t& made = steps_.back().made;
+    undone_.clear();
     publish(true);
     for (const stroke::PoseMap& map : stroke::symmetry_copies(current_.symmetry)) {
-        made += load_tip(current_);
+        load_tip(current_, made);
         stroke::Stroke copy = original;
         copy.trace.label = "symmetric to " + std::to_string(original.id);
         for (stroke::TraceSample& sample : copy.trace.samples) {
@@ -350,21 +360,28 @@ void Painter::end() {
         ++made;
         publish(true);
     }
-    steps_.push_back({.made = made, .joined = current_.joined && !steps_.empty()});
-    undone_.clear();
 }
 
 void Painter::cancel() {
     if (!work_.painting->in_stroke()) return;
     work_.painting->cancel();
-    for (; loads_ > 0; --loads_) {
-        work_.keeper.remove(work_.painting->journal().strokes().back().id);
-        work_.painting->undo();
-    }
+    drop_loads();
     publish(true);
 }
 
+// A stroke that does not come leaves no entry of its loading, and what could be redone before it still can.
+void Painter::drop_loads() {
+    if (loads_ == 0) return;
+    for (; loads_ > 0; --loads_) {
+        const std::uint64_t id = work_.painting->journal().strokes().back().id;
+        work_.painting->undo();
+        work_.keeper.remove(id);
+    }
+    work_.painting->restore_undone(std::move(undone_before_));
+}
+
 void Painter::undo() {
+    cancel();
     const double start = now();
     for (bool more = true; more && !steps_.empty();) {
         const Step& step = steps_.back();
@@ -383,6 +400,7 @@ void Painter::undo() {
 }
 
 void Painter::redo() {
+    cancel();
     for (bool more = true; more && !undone_.empty(); more = !undone_.empty() && undone_.back().joined) {
         const Step& step = undone_.back();
         if (step.change) put(*step.change, false);
@@ -395,6 +413,7 @@ void Painter::redo() {
 }
 
 void Painter::edit(const EditStroke& command) {
+    cancel();
     const std::vector<stroke::Stroke>& strokes = work_.painting->journal().strokes();
     const auto at = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.id == command.id; });
     if (at == strokes.end()) return;
@@ -426,8 +445,7 @@ void Painter::put(const Change& change, bool back) {
     if (!change.after && !back) return work_.keeper.remove(from.id);
     if (change.after && change.after->hidden != from.hidden) return work_.keeper.set_hidden(from.id, back ? from.hidden : change.after->hidden);
     // Rows can only be added and taken out: the file is written anew, whole or not at all.
-    const std::string fault = work_.keeper.start(work_.keeper.path(), work_.source, work_.frame, *work_.painting);
-    if (!fault.empty()) say(fault);
+    work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
 }
 
 // Ground, brushes, inks and looks as the journal's strokes were painted with.

@@ -227,6 +227,7 @@ class Painter {
     void extend(const ExtendStroke& command);
     void end();
     void cancel();
+    void drop_loads();
     void fill(const FillModel& command);
     void act(stroke::Stroke entry);
     void change_layers(const ChangeLayers& command);
@@ -239,7 +240,7 @@ class Painter {
     void send_pixels();
     void publish_looks();
     void look_at_brush();
-    std::size_t load_tip(const BeginStroke& command);
+    void load_tip(const BeginStroke& command, std::size_t& made);
     void paint_traces(PaintTraces& command);
     void care(const CareForBrush& command);
     void undo();
@@ -258,6 +259,7 @@ class Painter {
     Work work_;
     BeginStroke current_;
     std::size_t loads_ = 0;                ///< entries that loaded the brush for the stroke in work
+    std::vector<stroke::Stroke> undone_before_;  ///< them, of the journal
     std::vector<ink::Ink> own_inks_;
     stroke::PalettePicture palette_;
     std::optional<std::array<std::uint8_t, 3>> brush_colour_;

@@ -9,9 +9,9 @@
 namespace tuft::app {
 
 // A brush with another ink in its tip is loaded before every stroke: dipped, the tip wiped, the tip
-// dipped into the other ink. Returns the number of entries that this made.
-std::size_t Painter::load_tip(const BeginStroke& command) {
-    if (command.tip_ink.empty() || command.carry || command.erases) return 0;
+// dipped into the other ink. Counts the entries that this makes.
+void Painter::load_tip(const BeginStroke& command, std::size_t& made) {
+    if (command.tip_ink.empty() || command.carry || command.erases) return;
     work_.keeper.prepare(*work_.painting, command.brush, command.tip_ink);
     const std::pair<stroke::Action, std::string> steps[] = {
         {stroke::Action::dip, command.ink}, {stroke::Action::wipe, ""}, {stroke::Action::dip, command.tip_ink}};
@@ -25,8 +25,8 @@ std::size_t Painter::load_tip(const BeginStroke& command) {
         if (i > 0) entry.extent.depth = command.tip_depth;
         work_.painting->paint(std::move(entry));
         work_.keeper.add(work_.painting->journal().strokes().back());
+        ++made;
     }
-    return std::size(steps);
 }
 
 void Painter::add_ink(ink::Ink ink) {

@@ -293,8 +293,22 @@ void Project::append(std::span<const stroke::Stroke> strokes) {
     state_->change([&](SQLite::Database& db) { store_strokes(db, state_->path, strokes); });
 }
 
+namespace {
+
+// Texels that were stored after this entry, or after one that is gone, show other strokes than the journal has.
+void forget_texels_after(SQLite::Database& db, std::uint64_t stroke_id) {
+    SQLite::Statement s(db, "SELECT (SELECT ordinal FROM strokes WHERE id = ?) < (SELECT ordinal FROM strokes WHERE id = ?)");
+    s.bind(1, static_cast<std::int64_t>(std::strtoull(get_meta(db, "tiles_stroke").c_str(), nullptr, 10)));
+    s.bind(2, static_cast<std::int64_t>(stroke_id));
+    if (s.executeStep() && s.getColumn(0).getInt() == 1) return;
+    if (!get_meta(db, "tiles_slots").empty()) put_meta(db, "tiles_slots", "");
+}
+
+}  // namespace
+
 void Project::set_hidden(std::uint64_t stroke_id, bool hidden) {
     state_->change([&](SQLite::Database& db) {
+        forget_texels_after(db, stroke_id);
         SQLite::Statement s(db, "UPDATE strokes SET hidden = ? WHERE id = ?");
         s.bind(1, hidden ? 1 : 0);
         s.bind(2, static_cast<std::int64_t>(stroke_id));
@@ -305,6 +319,7 @@ void Project::set_hidden(std::uint64_t stroke_id, bool hidden) {
 
 void Project::remove(std::uint64_t stroke_id) {
     state_->change([&](SQLite::Database& db) {
+        forget_texels_after(db, stroke_id);
         SQLite::Statement s(db, "DELETE FROM strokes WHERE id = ?");
         s.bind(1, static_cast<std::int64_t>(stroke_id));
         if (s.exec() != 1)

@@ -74,6 +74,35 @@ TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
     EXPECT_EQ(io::Project::open(path).strokes().size(), 1u);
 }
 
+// Texels are never stored beside a journal that they do not show.
+TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
+    const stroke::Model model = test::shipped_model("sheet.ply", 256);
+    stroke::Painting painting(model);
+    Keeper keeper;
+    const auto path = folder_ / "behind.tuft";
+    ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
+    for (int i = 0; i < 3; ++i) paint(painting, keeper, 0.002 * i);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    rlimit full = before;
+    full.rlim_cur = 0;
+    setrlimit(RLIMIT_FSIZE, &full);
+    const std::uint64_t gone = painting.journal().strokes().back().id;
+    painting.undo();
+    keeper.remove(gone);
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_TRUE(keeper.behind());
+    paint(painting, keeper, 0.02);
+    EXPECT_NE(keeper.trouble(), "") << "one stroke too many is in the file";
+    keeper.store_canvas(painting);
+    EXPECT_FALSE(io::Project::open(path).load_canvas(model.texels.n_slots()));
+    keeper.rewrite("sheet.ply", {}, painting);
+    EXPECT_FALSE(keeper.behind());
+    EXPECT_EQ(keeper.trouble(), "");
+    EXPECT_EQ(io::Project::open(path).strokes().size(), 3u);
+    EXPECT_TRUE(io::Project::open(path).load_canvas(model.texels.n_slots()));
+}
+
 // A change of a stroke in the middle writes the file anew: when the disk gets full over that, the strokes of before
 // must still be in it.
 TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {

@@ -219,6 +219,34 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
     EXPECT_EQ(project.n_strokes(), changed.size());
 }
 
+TEST(Project, StoredTexelsAreForgottenWhenAStrokeUnderThemChanges) {
+    const Folder folder("project_forgotten");
+    ink::Canvas canvas(20);
+    canvas.add_pigment(ink::load_ink("carbon").parts[0].pigment);
+    canvas.touch(4, 0)[7] = 1;
+    const auto fresh = [&] {
+        std::filesystem::remove(folder / "a.tuft");
+        Project project = Project::create(folder / "a.tuft", sample_model());
+        for (const int id : {1, 2, 3, 4}) project.append(sample_stroke(static_cast<std::uint64_t>(id)));
+        project.save_canvas(canvas, 3);
+        return project;
+    };
+    {
+        Project project = fresh();
+        project.set_hidden(4, true);
+        EXPECT_TRUE(project.load_canvas(20)) << "it came after them";
+        project.remove(4);
+        EXPECT_TRUE(project.load_canvas(20));
+        project.set_hidden(3, true);
+        EXPECT_FALSE(project.load_canvas(20));
+        project.save_canvas(canvas, 3);
+        EXPECT_TRUE(project.load_canvas(20));
+    }
+    Project project = fresh();
+    project.remove(1);
+    EXPECT_FALSE(project.load_canvas(20));
+}
+
 TEST(Project, FilmsAndLiquidComeBackWithTheTiles) {
     const Folder folder("project_films");
     ink::Canvas canvas(20);
