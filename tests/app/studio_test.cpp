@@ -93,6 +93,13 @@ TEST_F(StudioProgram, SymmetricCopiesAreStrokesOfTheirOwnAndUndoneTogether) {
               test::stored_hash(path("work.tuft")));
 }
 
+// The buttons, which are grey where nothing can be undone or redone; keys would reach the painter all the same.
+TEST_F(StudioProgram, TheFirstStrokeCanBeUndoneByItsButtonAndANewOneLeavesNothingToRedo) {
+    const Ran ran = studio(kBowl + "stroke 46%,58% 50%,61%\nwait-ready\nclick Undo\nwait-ready\nexpect strokes 0\n"
+                                   "stroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 1\nclick Redo\nwait-ready\nexpect strokes 1\n");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
 TEST_F(StudioProgram, AJournalThatWasChangedReplaysToTheSameTexels) {
     const Ran ran = studio(kBowl + kTwoStrokes +
                            "stroke 50%,59% 53%,57%\nwait-ready\nclick \"stroke 2\"\nclick Hide\nwait-ready\nclick Show\nwait-ready\n"
