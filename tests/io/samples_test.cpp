@@ -56,7 +56,7 @@ TEST(Samples, OrnamentFitsThePlate) {
 }
 
 TEST(Samples, WetInkFitsTheSheetAndTheBowl) {
-    expect_fits("wet-sheet", "sheet", 5 + 3 * 2 + 1 + 3 + 2);
+    expect_fits("wet-sheet", "sheet", 5 + 3 + 1 + 3 + 2);
     expect_fits("wet-bowl", "bowl", 6);
 }
 
