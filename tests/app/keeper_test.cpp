@@ -10,6 +10,23 @@
 namespace tuft::app {
 namespace {
 
+/// No file may grow beyond `bytes` while it lives, as on a full disk.
+class FullDisk {
+  public:
+    explicit FullDisk(std::uintmax_t bytes) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        rlimit full = before_;
+        full.rlim_cur = bytes;
+        setrlimit(RLIMIT_FSIZE, &full);
+    }
+    ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+
+  private:
+    rlimit before_{};
+};
+
 class KeeperTest : public testing::Test {
   protected:
     void SetUp() override {
@@ -42,18 +59,12 @@ TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
     paint(painting, keeper, 0);
     EXPECT_EQ(keeper.trouble(), "");
 
-    // No file may grow any more, as on a full disk.
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    rlimit full = before;
-    full.rlim_cur = std::filesystem::file_size(path);
-    setrlimit(RLIMIT_FSIZE, &full);
-    for (int i = 1; i <= 6; ++i) paint(painting, keeper, 0.002 * i);
-    const std::string trouble = keeper.trouble();
-    const std::size_t waiting = keeper.waiting();
-    setrlimit(RLIMIT_FSIZE, &before);
-    EXPECT_NE(trouble, "");
-    EXPECT_GE(waiting, 1u);
+    {
+        const FullDisk disk(std::filesystem::file_size(path));
+        for (int i = 1; i <= 6; ++i) paint(painting, keeper, 0.002 * i);
+    }
+    EXPECT_NE(keeper.trouble(), "");
+    EXPECT_GE(keeper.waiting(), 1u);
 
     paint(painting, keeper, 0.02);
     EXPECT_EQ(keeper.trouble(), "");
@@ -82,15 +93,12 @@ TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
     const auto path = folder_ / "behind.tuft";
     ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
     for (int i = 0; i < 3; ++i) paint(painting, keeper, 0.002 * i);
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    rlimit full = before;
-    full.rlim_cur = 0;
-    setrlimit(RLIMIT_FSIZE, &full);
     const std::uint64_t gone = painting.journal().strokes().back().id;
     painting.undo();
-    keeper.remove(gone);
-    setrlimit(RLIMIT_FSIZE, &before);
+    {
+        const FullDisk disk(0);
+        keeper.remove(gone);
+    }
     EXPECT_TRUE(keeper.behind());
     paint(painting, keeper, 0.02);
     EXPECT_NE(keeper.trouble(), "") << "one stroke too many is in the file";
@@ -112,15 +120,13 @@ TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
     const auto path = folder_ / "work.tuft";
     ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
     for (int i = 0; i < 8; ++i) paint(painting, keeper, 0.002 * i);
-    // Room for the model, and for the strokes but for one page of the file.
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    rlimit full = before;
-    full.rlim_cur = std::filesystem::file_size(path) - 8192;
-    setrlimit(RLIMIT_FSIZE, &full);
-    const std::string fault = keeper.start(path, "sheet.ply", {}, painting);
-    const std::string elsewhere = keeper.start(folder_ / "other.tuft", "sheet.ply", {}, painting);
-    setrlimit(RLIMIT_FSIZE, &before);
+    std::string fault, elsewhere;
+    {
+        // Room for the model, and for the strokes but for two pages of the file.
+        const FullDisk disk(std::filesystem::file_size(path) - 8192);
+        fault = keeper.start(path, "sheet.ply", {}, painting);
+        elsewhere = keeper.start(folder_ / "other.tuft", "sheet.ply", {}, painting);
+    }
     EXPECT_NE(fault.find("work.tuft"), std::string::npos) << fault;
     EXPECT_EQ(fault.find(".part"), std::string::npos) << fault;
     EXPECT_NE(elsewhere, "");
