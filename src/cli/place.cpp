@@ -155,6 +155,8 @@ void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, con
     const Vec3 n = glm::normalize(sum);
     if (std::hypot(n.x, n.y) > 0.1) view.azimuth = std::atan2(n.x, -n.y) / kDegree;
     view.elevation = std::clamp(std::asin(n.z) / kDegree + 10, -80.0, 80.0);
+    // A wall that leans out is looked at from above the ground, as it stands; an underside from below.
+    if (n.z > -0.7) view.elevation = std::max(view.elevation, 5.0);
 }
 
 }  // namespace tuft::cli

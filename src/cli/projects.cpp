@@ -89,8 +89,10 @@ void write_map(const std::filesystem::path& path, const std::string& name, const
     if (name == "base-colour" && png) {
         write(io::view_of(ink::compose_srgb8(stack, model.texels, painting.substrate(), compose)));
     } else if (name == "base-colour") {
+        data.half = true;
         write(io::view_of(ink::compose_linear(stack, model.texels, painting.substrate(), compose)), data);
     } else if (name == "roughness") {
+        data.half = true;
         write(io::view_of(ink::compose_roughness(stack, model.texels, painting.substrate(), compose)), data);
     } else if (name == "pigments") {
         const std::vector<ink::Pigment>& pigments = painting.canvas().pigments();

@@ -40,7 +40,7 @@ std::string encode_checked(const EncodeRequest& request, std::vector<unsigned ch
     const PixelView& px = request.pixels;
     const bool exr = request.format == ImageFormat::exr;
     OIIO::TypeDesc stored = type_of(px.type);
-    if (exr) stored = OIIO::TypeDesc::FLOAT;
+    if (exr) stored = request.options->half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
     if (!exr && px.type == PixelView::Type::f32) stored = OIIO::TypeDesc::UINT16;
 
     OIIO::ImageSpec spec(px.width, px.height, px.channels, stored);

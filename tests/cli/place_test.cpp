@@ -195,6 +195,27 @@ TEST_F(Place, APictureIsTakenFromTheSideThatIsPaintedOn) {
     EXPECT_NE(by_itself, picture(" --view 0,10"));
 }
 
+// Straight at a wall that leans out would be from below the ground it stands on.
+TEST_F(Place, AWallThatLeansOutIsLookedAtFromAboveTheGround) {
+    std::ostringstream obj;  // a trough: its front leans out by 37 degrees
+    for (const int z : {-20, 20})
+        for (const int y : {-1, 1})
+            for (const int x : {-40, 40})
+                obj << "v " << x << ' ' << y * (z < 0 ? 20 : 50) << ' ' << z << '\n';
+    write("trough.obj", obj.str() + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    write("lines.inkml", lines(0, 0, 30));
+    const auto picture = [&](const std::string& view) {
+        const Ran ran =
+            tuft("paint " + path("trough.obj") + " --brush wolf-small --atlas-size 256 --place 0,-35,0 --size 64x64 --strokes " +
+                 path("lines.inkml") + " --preview " + path("v.png") + view);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return read(path("v.png"));
+    };
+    const std::string by_itself = picture("");
+    EXPECT_EQ(by_itself, picture(" --view 0,5"));
+    EXPECT_NE(by_itself, picture(" --view 0,-27"));
+}
+
 TEST_F(Place, AFileWithYUpIsTheSameModelStandingUpAndGoesBackAsItCame) {
     write("z.obj", box(false));
     write("y.obj", box(true));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "core/error.h"
@@ -56,6 +57,23 @@ TEST(Image, ExrBringsBackEveryFloat) {
         write_image(folder / "a.exr", view_of(image), options);
         EXPECT_EQ(read_image_float(folder / "a.exr"), image) << channels;
     }
+}
+
+// Binary16 has 11 significant bits: rounding is off by at most 2^-11 of the value, above its
+// least normal number, 2^-14 (below, by half of 2^-24).
+TEST(Image, HalfFloatsInExrAreOffByTheirRoundingOnly) {
+    const Folder folder("half");
+    const ImageF image = noise<float>(20, 17, 3, 3);
+    ImageOptions half;
+    half.half = true;
+    write_image(folder / "h.exr", view_of(image), half);
+    write_image(folder / "f.exr", view_of(image));
+    const ImageF read = read_image_float(folder / "h.exr");
+    ASSERT_EQ(read.pixels.size(), image.pixels.size());
+    for (std::size_t i = 0; i < read.pixels.size(); ++i)
+        EXPECT_LE(std::abs(read.pixels[i] - image.pixels[i]), std::max(std::ldexp(std::abs(image.pixels[i]), -11), 0x1p-25f));
+    EXPECT_NE(read, image);
+    EXPECT_LT(std::filesystem::file_size(folder / "h.exr"), std::filesystem::file_size(folder / "f.exr"));
 }
 
 TEST(Image, FloatsBecomeSixteenBitsInPng) {
