@@ -93,6 +93,7 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     p.pin = 2 * static_cast<double>(substrate.edge);
     p.absorbency = static_cast<double>(substrate.absorbency);
     p.pores = static_cast<double>(substrate.pores);
+    p.retention = static_cast<double>(substrate.retention);
     p.evaporation = static_cast<double>(substrate.evaporation);
     p.rim_evaporation = p.evaporation * static_cast<double>(substrate.edge) * kRimLength;
     p.stain = p.pores / (p.pores + 2);
@@ -190,6 +191,7 @@ struct WetFilm::State : TileList {
         step.grip = static_cast<float>(p.grip);
         step.soak = static_cast<float>(-std::expm1(-p.absorbency * dt));
         step.pores = static_cast<float>(p.pores);
+        step.passing = static_cast<float>(1 - p.retention);
         step.evaporation = static_cast<float>(p.evaporation * dt);
         step.rim = static_cast<float>(p.rim_evaporation * dt / map.texel_size);
         step.hold = static_cast<float>(p.hold);

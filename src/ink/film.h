@@ -19,6 +19,7 @@ struct FilmParams {
     double grip = 1;                 ///< film units: in thinner liquid, grains lie on the surface and lag behind
     double absorbency = 0;           ///< 1/s: part of the liquid that empty pores draw in
     double pores = 0;                ///< liquid that the substrate can hold inside; 0: none
+    double retention = 0;            ///< part of the pigments that stays behind when liquid seeps through pores
     double evaporation = 1.0 / 60;   ///< film units a second
     double rim_evaporation = 0;      ///< film units · m a second, more, per metre of rim
     double stain = 0;                ///< part of a drying film that stays in bare substrate
@@ -49,11 +50,12 @@ struct FilmReport {
 ///
 ///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − hold⟩) ∇w) − soak − e
 ///     ∂s/∂t = ∇·(D s ∇s) + soak,                           soak = a w (1 − s / pores)
-///     ∂p/∂t = ∇·((p/H)↑ j + D_p T ∇(p/H)),                 j: the flux of w and s together
+///     ∂p/∂t = ∇·((p/H)↑ j + D_p M ∇(p/H)),                 j: the flux of w and of s (1 − retention)
 ///
-/// ↑: of the texel the liquid comes from. H = max(T, grip): what liquid gets thin over stays there, so that
-/// a drop dries as it stood and does not draw its pigments into its middle. Liquid goes onto a dry texel only from one that has
-/// more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
+/// M = w + s (1 − retention): fibres sieve grains out of what seeps between them, so that water runs ahead
+/// of the ink and a line has a dark core. ↑: of the texel the liquid comes from. H = max(T, grip): what liquid
+/// gets thin over stays there, so that a drop dries as it stood and does not draw its pigments into its middle.
+/// Liquid goes onto a dry texel only from one that has more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
 /// about a millimetre, as surfaces are not clean). With a direction of weight
 /// contact lines keep mounds as they are (L = 0), and what is more than they hold runs down in beads
 /// (drips.h), 256 at once at most. The rim evaporates faster by

@@ -12,7 +12,7 @@ constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of t
 constexpr double kMostConductance = 4; // over the smaller of the two areas
 constexpr double kNoShear = 0.05;     // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
 constexpr double kGrainDepth = 0.4;   // of the mean
-constexpr double kFlocsRms = 0.45;    // of the octaves' sum
+constexpr double kFlocsRms = 0.437;    // of the octaves' sum
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
 
 struct Spot {
@@ -93,7 +93,8 @@ double exponential(double x) {
 
 /// Clouds of fibres and pores as sponges and papers have them: noise of mean 0 and rms 1 in octaves.
 double flocs(const Vec3& position) {
-    const double sum = noise(position, 2 * kGrainLength) + 0.8 * noise(position, kGrainLength) + 0.6 * noise(position, 0.5 * kGrainLength);
+    const double sum = 0.5 * noise(position, 2 * kGrainLength) + 0.8 * noise(position, kGrainLength) +
+                       0.8 * noise(position, 0.5 * kGrainLength) + 0.6 * noise(position, 0.25 * kGrainLength);
     return std::clamp(sum / kFlocsRms, -2.0, 1.5);  // what flows fastest sets the steps
 }
 

@@ -63,6 +63,10 @@ TUFT_INLINE Carriers carriers(float g, float flux, float t0, float t1, const Ste
     const float exchange = p.mixing * g * smaller(t0, t1);
     return {positive(flux) + exchange, -positive(-flux) - exchange};
 }
+/// Fibres hold grains back from what seeps.
+TUFT_INLINE Carriers carriers(float g, float fw, float fs, const End& e0, const End& e1, const Step& p) {
+    return carriers(g, fw + p.passing * fs, e0.w + p.passing * e0.s, e1.w + p.passing * e1.s, p);
+}
 
 /// Faces side by side.
 template <class Law, int kFaces>
@@ -71,13 +75,12 @@ TUFT_INLINE void faces(float* w, float* s, float* a, float* b, const float* g, c
     for (int x = 0; x < kFaces; ++x) {
         const End e0 = from.at(x), e1 = to.at(x);
         const float fw = Law::film_flux(g[x], e0, e1, p);
-        float all = fw;
+        Carriers c;
         if constexpr (Law::pores) {
             const float fs = Law::pore_flux(g[x], e0, e1, p);
             s[x] = fs;
-            all = fw + fs;
-        }
-        const Carriers c = carriers(g[x], all, e0.t, e1.t, p);
+            c = carriers(g[x], fw, fs, e0, e1, p);
+        } else c = carriers(g[x], fw, e0.t, e1.t, p);
         w[x] = fw;
         a[x] = c.a * e0.rate;
         b[x] = c.b * e1.rate;
@@ -125,14 +128,13 @@ TUFT_INLINE void diagonal_faces(Work& o, const Geometry& g, const Step& p) {
             const End e1{one(h.w, u.w), one(h.s, u.s), one(h.t, u.t), one(h.rate, u.rate), one(h.grain, u.grain)};
             const float size = up ? d : -d;
             const float fw = Law::film_flux(size, e0, e1, p);
-            float all = fw;
+            Carriers c;
             if constexpr (Law::pores) {
                 const float fs = Law::pore_flux(size, e0, e1, p);
                 o.up.s[k0 + x] = up ? fs : 0;
                 o.down.s[k0 + x] = up ? 0 : fs;
-                all = fw + fs;
-            }
-            const Carriers c = carriers(size, all, e0.t, e1.t, p);
+                c = carriers(size, fw, fs, e0, e1, p);
+            } else c = carriers(size, fw, e0.t, e1.t, p);
             const float a = c.a * e0.rate, b = c.b * e1.rate;
             o.up.w[k0 + x] = up ? fw : 0;
             o.down.w[k0 + x] = up ? 0 : fw;
@@ -415,7 +417,7 @@ SeamFlux seam_flux(float weight, const std::array<float, 2>& w, const std::array
     SeamFlux out;
     out.w = Law<true, true>::film_flux(weight, e0, e1, step);
     if (step.pores > 0) out.s = Law<true, true>::pore_flux(weight, e0, e1, step);
-    const Carriers c = carriers(weight, out.w + out.s, e0.t, e1.t, step);
+    const Carriers c = carriers(weight, out.w, out.s, e0, e1, step);
     out.a = c.a * rate_of(e0.t, step.grip);
     out.b = c.b * rate_of(e1.t, step.grip);
     return out;

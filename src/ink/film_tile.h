@@ -58,6 +58,7 @@ struct Step {
     float grip = 0;
     float soak = 0;        ///< part drawn in by empty pores: 1 − exp(−a dt)
     float pores = 0;
+    float passing = 1;     ///< part of the pigments that what seeps through the pores takes along
     float evaporation = 0; ///< film units
     float rim = 0;         ///< film units more, per dry neighbour
     float hold = 0;

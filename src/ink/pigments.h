@@ -93,6 +93,7 @@ struct Substrate {
     float relief_length = 60e-6f; ///< correlation length of the grain, metres
     float absorbency = 0.2f;      ///< part of the water standing on it that it draws in, 1/s
     float pores = 2;              ///< film units of water that it can hold inside
+    float retention = 0;          ///< 0–1: part of the pigments that its pores sieve out of what seeps
     float diffusion = 1e-8f;      ///< D of the wet film, m²/s per film unit of water
     float threshold = 0.1f;       ///< w_c: film units of water that do not move
     float edge = 0.5f;            ///< 0–1: how firmly the rim of a wet spot stays where it is,

@@ -11,7 +11,7 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     const toml::table table = preset::parse_table(text, source);
     const preset::Reader in(table, source);
     in.only({"name", "title", "reflectance", "roughness", "metallic", "capacity", "interface",
-             "relief_um", "relief_length_um", "absorbency", "pores", "diffusion", "threshold", "edge",
+             "relief_um", "relief_length_um", "absorbency", "pores", "retention", "diffusion", "threshold", "edge",
              "evaporation", "source"});
     Substrate s;
     const auto read = [&](float& field, std::string_view key, double lo, double hi,
@@ -30,6 +30,7 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     read(s.relief_length, "relief_length_um", 1, 10000, 1e-6);
     read(s.absorbency, "absorbency", 0, 100);
     read(s.pores, "pores", 0, 1000);
+    read(s.retention, "retention", 0, 1);
     read(s.diffusion, "diffusion", 0, 1e-4);
     read(s.threshold, "threshold", 0, 10);
     read(s.edge, "edge", 0, 1);
@@ -48,6 +49,7 @@ std::string substrate_toml(const Substrate& s) {
            "\nrelief_length_um = " + shortest_float(s.relief_length * 1e6f) +
            "\nabsorbency = " + shortest_float(s.absorbency) +
            "\npores = " + shortest_float(s.pores) +
+           "\nretention = " + shortest_float(s.retention) +
            "\ndiffusion = " + shortest_float(s.diffusion) +
            "\nthreshold = " + shortest_float(s.threshold) +
            "\nedge = " + shortest_float(s.edge) +

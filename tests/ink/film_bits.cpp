@@ -64,7 +64,8 @@ int main() {
         Geometry g;
         fill(g, 50 * round + (round & 1));
         const Step step{.flow = 0.02f, .levelling = 0.01f, .limit = 0.06f, .threshold = 0.1f, .pin = 1, .mixing = 0.02f, .grip = 0.5f,
-                        .soak = 0.01f, .pores = round & 4 ? 3.0f : 0.0f, .evaporation = 0.004f, .rim = 0.002f,
+                        .soak = 0.01f, .pores = round & 4 ? 3.0f : 0.0f, .passing = round & 8 ? 0.2f : 1.0f,
+                        .evaporation = 0.004f, .rim = 0.002f,
                         .hold = 1};
         Work work;
         gather(work.w, w_at);
