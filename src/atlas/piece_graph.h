@@ -9,8 +9,8 @@
 /// and how their tangent frames relate: what a stamp walks over.
 namespace tuft::atlas {
 
-/// A piece: connected texels of one chart in one tile, with normals within 35° of
-/// a seed. Its frame sits at one of its own texels.
+/// A piece: connected texels of one chart in one tile (a quarter of it where it bends), with
+/// normals within 35° of a seed. Its frame sits at one of its own texels.
 struct Piece {
     Vec3f centre{0};             ///< metres, a texel near the middle
     Vec3f normal{0, 0, 1};       ///< unit, of that texel

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::int64_t kSnap = 4096;  // sub-texel steps; 16384 texels × 4096 squared fits 64 bits
 const float kPieceCos = std::cos(35.0f * 0.0174532925f);
+const float kBendCos = std::cos(30.0f * 0.0174532925f);
 
 /// A triangle in the atlas on the snapped grid, counter-clockwise.
 struct SnappedTriangle {
@@ -179,10 +180,11 @@ bool hang_together(const TexelShape& shape, int a, int b, float reach) {
     return dx * dx + dy * dy + dz * dz <= reach * reach;
 }
 
-/// Grows the piece `piece` from `seed` over unassigned texels of the same chart.
+/// Grows the piece `piece` from `seed` over unassigned texels of the same chart in the same square of
+/// `side` × `side` texels.
 void grow_piece(const TexelShape& shape, TexelTile& tile,
                 const std::array<std::uint32_t, kTileTexels>& chart, float reach, int seed,
-                std::uint8_t piece, float min_cos) {
+                std::uint8_t piece, float min_cos, int side) {
     std::array<std::uint8_t, kTileTexels> open;
     int n_open = 0;
     const float nx = shape.nx[seed], ny = shape.ny[seed], nz = shape.nz[seed];
@@ -195,6 +197,7 @@ void grow_piece(const TexelShape& shape, TexelTile& tile,
             for (int bx = std::max(ax - 1, 0); bx <= std::min(ax + 1, kTile - 1); ++bx) {
                 const int b = by * kTile + bx;
                 if (tile.piece[b] != kNoPiece || chart[b] != chart[seed]) continue;
+                if (((bx ^ seed % kTile) | (by ^ seed / kTile)) & ~(side - 1)) continue;
                 const float c = shape.nx[b] * nx + shape.ny[b] * ny + shape.nz[b] * nz;
                 if (c < min_cos || !hang_together(shape, a, b, reach)) continue;
                 tile.piece[b] = piece;
@@ -204,12 +207,28 @@ void grow_piece(const TexelShape& shape, TexelTile& tile,
     }
 }
 
+/// Whether normals stray so far from their mean that what lies beyond the tile unrolls otherwise from one
+/// of its ends than from the other: folds, and walls that run round a corner. A quarter of such a tile is
+/// still near enough to a plane or a cylinder; raw scans stray less (of the armadillo's tiles at 4096² one
+/// in fifty does).
+bool bends(const TexelShape& shape, const std::array<std::uint32_t, kTileTexels>& chart) {
+    const auto normal = [&](int t) { return Vec3f{shape.nx[t], shape.ny[t], shape.nz[t]}; };
+    Vec3f sum{0};
+    for (int t = 0; t < kTileTexels; ++t)
+        if (chart[t] != kNone) sum += normal(t);
+    const float least = kBendCos * glm::length(sum);
+    for (int t = 0; t < kTileTexels; ++t)
+        if (chart[t] != kNone && glm::dot(sum, normal(t)) < least) return true;
+    return false;
+}
+
 /// Splits the tile's texels (those with a chart) into pieces; returns the chart of each.
 /// A tile so rough that it would need more than 254 is split by charts and gaps alone;
 /// texels beyond that (one-texel charts side by side) are given up.
 std::vector<std::uint32_t> split_into_pieces(const TexelShape& shape, TexelTile& tile,
                                              const std::array<std::uint32_t, kTileTexels>& chart,
                                              float reach) {
+    const int side = bends(shape, chart) ? kTile / 2 : kTile;
     for (const float min_cos : {kPieceCos, -2.0f}) {
         std::vector<std::uint32_t> charts;
         tile.piece.fill(kNoPiece);
@@ -218,7 +237,7 @@ std::vector<std::uint32_t> split_into_pieces(const TexelShape& shape, TexelTile&
             if (chart[t] == kNone || tile.piece[t] != kNoPiece) continue;
             all = charts.size() < kNoPiece;
             if (!all) break;
-            grow_piece(shape, tile, chart, reach, t, static_cast<std::uint8_t>(charts.size()), min_cos);
+            grow_piece(shape, tile, chart, reach, t, static_cast<std::uint8_t>(charts.size()), min_cos, side);
             charts.push_back(chart[t]);
         }
         if (all || min_cos < -1) return charts;

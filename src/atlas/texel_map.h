@@ -100,12 +100,12 @@ inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
     return {slot, texel};
 }
 
-/// Builds the map: a texel is covered when its centre lies in a triangle of the atlas
-/// (corners snapped to 1/4096 texel; a centre on a shared edge belongs to one side, and
-/// where triangles overlap to the one with the lowest index). Its piece is the set of
-/// texels of the same chart and tile that hang together with it and whose normals are
-/// within 35° of the first. The same bits for any number of threads; about 1 s at 4096²
-/// on two threads, memory for occupied tiles only. Tiles, pieces and areas do not depend on `store`.
+/// Builds the map: a texel is covered when its centre lies in a triangle of the atlas (corners snapped to 1/4096
+/// texel; a centre on a shared edge belongs to one side, and where triangles overlap to the one with the lowest index).
+/// Its piece is the set of texels of the same chart and tile that hang together with it and whose normals are within
+/// 35° of the first; where normals of the tile stray further than 30° from their mean, of the same quarter of it. The
+/// same bits for any number of threads; about 1 s at 4096² on two threads, memory for occupied tiles only. Tiles,
+/// pieces and areas do not depend on `store`.
 TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                          const ProgressFn& progress = {},
                          TexelStore store = TexelStore::automatic);

@@ -28,8 +28,8 @@ struct Model {
     atlas::PieceGraph graph;
     PlanScratch scratch;
 
-    Model(mesh::TriangleMesh m, std::uint32_t size) : mesh(std::move(m)) {
-        atlas = atlas::unwrap(mesh, {.size = size}).atlas;
+    Model(mesh::TriangleMesh m, std::uint32_t size, std::uint32_t gutter) : mesh(std::move(m)) {
+        atlas = atlas::unwrap(mesh, {.size = size, .gutter = gutter}).atlas;
         finish();
     }
     explicit Model(testing::Unwrapped u) : mesh(std::move(u.mesh)), atlas(std::move(u.atlas)) {
@@ -47,9 +47,9 @@ struct Model {
     }
 };
 
-Model shipped(const char* name, std::uint32_t size) {
+Model shipped(const char* name, std::uint32_t size, std::uint32_t gutter = 4) {
     const auto path = std::string(TUFT_SOURCE "/models/") + name + ".ply";
-    return {mesh::build_surface(mesh::read_polygon_file(path), {}).mesh, size};
+    return {mesh::build_surface(mesh::read_polygon_file(path), {}).mesh, size, gutter};
 }
 
 template <class Visit>
@@ -132,19 +132,22 @@ TEST(Geodesics, StampsKeepDistancesOnARoughSurface) {
 }
 
 TEST(Geodesics, StampsKeepDistancesOnTheCar) {
-    Model car = shipped("car", 2048);
-    std::vector<double> errors = distance_errors(car, 40, 60, 0.06);
-    const std::vector<double> more = distance_errors(car, 40, 60, 0.06, 7);
-    errors.insert(errors.end(), more.begin(), more.end());
-    ASSERT_GT(errors.size(), 5000u);
-    // Targets for real meshes: 0.4 % mean, 2.5 % at 99 %. The last percent are texels between the
-    // spokes of the wheels, which ways round several corners reach; how the layout of the atlas cuts
-    // the spokes decides which way is taken. Over four layouts the mean was 0.16 to 0.25 %, 98 % lay
-    // within 1.3 %, 99 % within 2.3 to 2.8 %.
-    EXPECT_LT(mean(errors), 0.003);
-    EXPECT_LT(quantile(errors, 0.95), 0.008);
-    EXPECT_LT(quantile(errors, 0.98), 0.02);
-    EXPECT_LT(quantile(errors, 0.99), 0.04);
+    // The last percent are texels in the folds between the spokes of the wheels; how the layout of the
+    // atlas cuts the spokes decides which way round them is taken. Over four layouts the mean was 0.10 to
+    // 0.15 %, 98 % lay within 0.9 %, 99 % within 1.7 %; with tiles there in one piece it was 0.13 to 0.21 %,
+    // 1.3 % and 2.6 %.
+    for (const std::uint32_t gutter : {4, 8}) {
+        Model car = shipped("car", 2048, gutter);
+        std::vector<double> errors = distance_errors(car, 40, 60, 0.06);
+        const std::vector<double> more = distance_errors(car, 40, 60, 0.06, 7);
+        errors.insert(errors.end(), more.begin(), more.end());
+        ASSERT_GT(errors.size(), 5000u);
+        // Targets for real meshes: 0.4 % mean, 2.5 % at 99 %.
+        EXPECT_LT(mean(errors), 0.002) << gutter;
+        EXPECT_LT(quantile(errors, 0.95), 0.006) << gutter;
+        EXPECT_LT(quantile(errors, 0.98), 0.012) << gutter;
+        EXPECT_LT(quantile(errors, 0.99), 0.025) << gutter;
+    }
 }
 
 struct Contact {
