@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -69,7 +71,8 @@ class OffReader {
     void check_counts(std::int64_t points, std::int64_t faces, std::size_t left,
                       std::size_t point_size, std::size_t face_size) const;
     std::uint32_t point_index(std::int64_t written) const;
-    void add_face(long place);
+    void add_face(long place, std::uint32_t group);
+    std::uint32_t face_colour();
     void finish_colours();
 
     std::string file_;
@@ -147,11 +150,26 @@ std::uint32_t OffReader::point_index(std::int64_t written) const {
     return static_cast<std::uint32_t>(written);
 }
 
-void OffReader::add_face(long place) {
+void OffReader::add_face(long place, std::uint32_t group) {
     face_uvs_.clear();
     if (kind_.has_uv)
         for (const std::uint32_t c : corners_) face_uvs_.push_back(point_uvs_[c]);
-    builder_.add_polygon(corners_, face_uvs_, kNone, place);
+    builder_.add_polygon(corners_, face_uvs_, group, place);
+}
+
+/// Three or four numbers behind the corners are the colour of the face, whole or real ones; fewer are
+/// an index into a table that there is none of.
+std::uint32_t OffReader::face_colour() {
+    std::array<double, 4> rgba{};
+    int n = 0;
+    bool is_real = false;
+    for (; n < 4 && text_.more(); ++n) {
+        const std::string_view word = text_.word();
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), rgba[n]);
+        if (error != std::errc() || end != word.data() + word.size()) break;
+        is_real = is_real || word.find_first_of(".eE") != std::string_view::npos;
+    }
+    return n < 3 ? kNone : builder_.colour_group(colour_from(rgba, is_real));
 }
 
 void OffReader::read_text_face() {
@@ -162,8 +180,9 @@ void OffReader::read_text_face() {
         text_.fail("a face cannot have " + std::to_string(n) + " corners here");
     corners_.clear();
     for (std::int64_t k = 0; k < n; ++k) corners_.push_back(point_index(text_.integer("a corner")));
-    text_.next_line();  // what is left is the colour of the face
-    add_face(line);
+    const std::uint32_t group = face_colour();
+    text_.next_line();
+    add_face(line, group);
 }
 
 /// Big-endian 32-bit values: counts, points, then per face its corners and a colour list.
@@ -216,7 +235,7 @@ PolygonSoup OffReader::read_binary() {
         if (n_colour > left() / 4)
             throw Error(file_, "face " + std::to_string(i + 1) + " is cut off");
         at += 4 * std::size_t{n_colour};
-        add_face(i + 1);
+        add_face(i + 1, kNone);
     }
     finish_colours();
     return builder_.finish();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -134,6 +135,23 @@ class PlyBody {
     const char* end_;
     const PlyElement* element_ = nullptr;
     std::size_t row_ = 0;
+};
+
+/// Where the rows of faces have their colour.
+struct FaceColour {
+    std::array<int, 3> property;
+    double scale = 255;  ///< of full red
+
+    explicit FaceColour(const PlyElement& element)
+        : property{element.find({"red", "diffuse_red", "r"}), element.find({"green", "diffuse_green", "g"}),
+                   element.find({"blue", "diffuse_blue", "b"})} {
+        for (const int p : property)
+            if (p < 0 || element.properties[static_cast<std::size_t>(p)].is_list) property[0] = -1;
+        if (!is_there()) return;
+        const PlyType type = element.properties[static_cast<std::size_t>(property[0])].type;
+        scale = is_real(type) ? 1 : size_of(type) == 2 ? 65535 : 255;
+    }
+    bool is_there() const { return property[0] >= 0; }
 };
 
 class PlyReader {
@@ -287,6 +305,7 @@ void PlyReader::read_faces(const PlyElement& element) {
     const int texture = element.find({"texnumber"});
     // The UVs of several images share one square: they are told apart as groups.
     const bool has_groups = texture >= 0 && header_.textures.size() > 1;
+    const FaceColour colour(element);
     builder_.soup.polygon_start.reserve(element.count + 1);
     builder_.soup.polygon_groups.reserve(element.count);
     builder_.soup.corners.reserve(
@@ -298,11 +317,14 @@ void PlyReader::read_faces(const PlyElement& element) {
         corners.clear();
         texcoords.clear();
         std::uint32_t group = kNone;
+        std::array<double, 4> rgb{};
         for (std::size_t k = 0; k < element.properties.size(); ++k) {
             const PlyProperty& p = element.properties[k];
             const int i = static_cast<int>(k);
             if (!p.is_list) {
                 const double value = body_.value(p.type);
+                for (std::size_t c = 0; c < 3; ++c)
+                    if (i == colour.property[c]) rgb[c] = value / colour.scale;
                 if (i != texture || !has_groups) continue;
                 const bool named =
                     value >= 0 && value < static_cast<double>(header_.textures.size());
@@ -317,6 +339,7 @@ void PlyReader::read_faces(const PlyElement& element) {
                 if (i == texcoord) texcoords.push_back(value);
             }
         }
+        if (colour.is_there() && !has_groups) group = builder_.colour_group(colour_from(rgb, true));
         add_face(corners, texcoords, group);
         body_.end_row();
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/error.h"
 
@@ -67,6 +68,20 @@ std::uint32_t SoupBuilder::group(const std::string& name) {
         group_of_.try_emplace(name, static_cast<std::uint32_t>(soup.group_names.size()));
     if (is_new) soup.group_names.push_back(name);
     return it->second;
+}
+
+std::uint32_t SoupBuilder::colour_group(const std::array<std::uint8_t, 4>& c) {
+    constexpr std::size_t kMostColours = 256;  // more are shades of a scan, not parts
+    if (too_many_colours_) return kNone;
+    const std::uint32_t key = std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
+    const auto found = group_of_colour_.find(key);
+    if (found != group_of_colour_.end()) return found->second;
+    too_many_colours_ = group_of_colour_.size() == kMostColours;
+    if (too_many_colours_) return kNone;
+    static constexpr char kDigits[] = "0123456789abcdef";
+    std::string name = "#";
+    for (int shift = 20; shift >= 0; shift -= 4) name += kDigits[key >> shift & 15];
+    return group_of_colour_[key] = group(name);
 }
 
 void SoupBuilder::drop_bad_points() {
@@ -138,14 +153,23 @@ PolygonSoup SoupBuilder::finish() {
                                    " vertices but no faces; a surface is needed");
         throw Error(file_, "has no vertices and no faces");
     }
-    if (!groups_used_) {
-        soup.polygon_groups.clear();
-        soup.group_names.clear();
-    } else {
-        for (std::uint32_t& g : soup.polygon_groups)
-            if (g == kNone) g = group("");
-    }
+    finish_groups();
     return std::move(soup);
+}
+
+void SoupBuilder::finish_groups() {
+    std::vector<std::uint32_t>& groups = soup.polygon_groups;
+    if (too_many_colours_)
+        soup.warnings.push_back("faces have more than 256 colours, too many to be groups of faces");
+    const bool by_colour = !group_of_colour_.empty();
+    const bool all_one = std::adjacent_find(groups.begin(), groups.end(), std::not_equal_to<>()) == groups.end();
+    if (!groups_used_ || too_many_colours_ || (by_colour && all_one)) {
+        groups.clear();
+        soup.group_names.clear();
+        return;
+    }
+    for (std::uint32_t& g : groups)
+        if (g == kNone) g = group("");
 }
 
 std::array<std::uint8_t, 4> colour_from(const std::array<double, 4>& channels, bool is_real) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -38,11 +39,15 @@ class SoupBuilder {
                      std::uint32_t group, long place);
     /// Index of the group with this name, new if need be.
     std::uint32_t group(const std::string& name);
+    /// Group of the faces of this colour, named "#rrggbb". Where a file has faces of one colour only, or
+    /// more than 256 colours, none of them is a group.
+    std::uint32_t colour_group(const std::array<std::uint8_t, 4>& colour);
     /// Warns in `soup` and hands it out; throws `Error` when there is no polygon.
     PolygonSoup finish();
 
   private:
     void drop_bad_points();
+    void finish_groups();
 
     std::string file_;
     const char* unit_;
@@ -50,6 +55,8 @@ class SoupBuilder {
     std::vector<std::uint32_t> bad_points_;
     Tally bad_rows_, bad_uvs_, short_polygons_, no_uv_;
     bool groups_used_ = false;
+    std::unordered_map<std::uint32_t, std::uint32_t> group_of_colour_;
+    bool too_many_colours_ = false;
 };
 
 /// A colour from four channels: bytes as they are, reals from [0, 1].

@@ -1,4 +1,6 @@
+#include <array>
 #include <cstring>
+#include <string_view>
 
 #include "core/error.h"
 #include "mesh/polygon_soup.h"
@@ -30,6 +32,36 @@ bool looks_like_text(const std::vector<char>& bytes, const std::string& file) {
     return true;
 }
 
+/// What the 16 bits behind a facet say of its colour: five bits each of red, green and blue. As VisCAM
+/// and SolidView write it, the highest bit says that there is one, and blue is lowest. Where the head has
+/// "COLOR=" and four bytes, as Materialise Magics writes it, that is the colour of all facets but of those
+/// whose highest bit is 0, and red is lowest.
+class FacetColours {
+  public:
+    explicit FacetColours(const std::vector<char>& bytes) {
+        constexpr std::string_view kKey = "COLOR=";
+        const std::string_view head(bytes.data(), kHead - 4);
+        const std::size_t at = head.find(kKey);
+        magics_ = at != std::string_view::npos && at + kKey.size() + 4 <= head.size();
+        if (!magics_) return;
+        for (std::size_t k = 0; k < 4; ++k)
+            whole_[k] = static_cast<std::uint8_t>(head[at + kKey.size() + k]);
+    }
+
+    std::uint32_t group(std::uint16_t bits, SoupBuilder& builder) const {
+        const bool high = bits & 0x8000;
+        if (magics_ == high) return magics_ ? builder.colour_group(whole_) : kNone;
+        const auto channel = [&](int shift) {
+            return static_cast<std::uint8_t>(((bits >> shift & 31) * 255 + 15) / 31);
+        };
+        return builder.colour_group({channel(magics_ ? 0 : 10), channel(5), channel(magics_ ? 10 : 0), 255});
+    }
+
+  private:
+    bool magics_ = false;
+    std::array<std::uint8_t, 4> whole_{};
+};
+
 PolygonSoup read_binary(const std::vector<char>& bytes, const std::string& file) {
     if (bytes.size() < kHead)
         throw Error(file,
@@ -55,15 +87,18 @@ PolygonSoup read_binary(const std::vector<char>& bytes, const std::string& file)
     builder.soup.corners.reserve(3 * n);
     builder.soup.polygon_start.reserve(n + 1);
     builder.soup.polygon_groups.reserve(n);
+    const FacetColours colours(bytes);
     for (std::size_t t = 0; t < n; ++t) {
         float values[12];
+        std::uint16_t attribute;
         std::memcpy(values, bytes.data() + kHead + kTriangle * t, sizeof values);
+        std::memcpy(&attribute, bytes.data() + kHead + kTriangle * t + sizeof values, sizeof attribute);
         const auto first = static_cast<std::uint32_t>(builder.soup.points.size());
         for (int k = 1; k <= 3; ++k)
             builder.add_point({values[3 * k], values[3 * k + 1], values[3 * k + 2]},
                               static_cast<long>(t + 1));
         const std::uint32_t corners[3] = {first, first + 1, first + 2};
-        builder.add_polygon(corners, {}, kNone, static_cast<long>(t + 1));
+        builder.add_polygon(corners, {}, colours.group(attribute, builder), static_cast<long>(t + 1));
     }
     return builder.finish();
 }

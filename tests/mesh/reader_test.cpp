@@ -318,6 +318,75 @@ TEST(Stl, SolidsOfATextFileAreGroups) {
     EXPECT_THAT(describe_defects(s.report), ElementsAre());
 }
 
+/// Puts 16 bits behind facet `t` of a binary STL file.
+void set_facet_bits(std::vector<char>& bytes, std::size_t t, std::uint16_t bits) {
+    std::memcpy(bytes.data() + 84 + 50 * t + 48, &bits, sizeof bits);
+}
+
+TEST(Stl, ColoursOfFacetsAreGroups) {
+    // VisCAM: the highest bit says that there is a colour, blue is lowest.
+    std::vector<char> bytes = binary_stl(make_box(), "");
+    for (std::size_t t = 0; t < 12; ++t) set_facet_bits(bytes, t, t < 2 ? 0x8000 | 31 << 10 : 0x8000 | 31);
+    set_facet_bits(bytes, 11, 31 << 5);  // the highest bit is 0: none
+    const PolygonSoup viscam = read_stl(bytes, "a.stl");
+    EXPECT_THAT(viscam.group_names, ElementsAre("#ff0000", "#0000ff", ""));
+    EXPECT_THAT(viscam.polygon_groups, ElementsAre(0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 2));
+
+    // Magics: the head has the colour of all, 0 in the highest bit another, red is lowest.
+    bytes = binary_stl(make_box(), std::string("COLOR=") + "\x10\x20\x30\xff" + ",MATERIAL=");
+    for (std::size_t t = 0; t < 12; ++t) set_facet_bits(bytes, t, 0x8000);
+    set_facet_bits(bytes, 3, 31);
+    set_facet_bits(bytes, 4, 16 << 10);
+    const PolygonSoup magics = read_stl(bytes, "a.stl");
+    EXPECT_THAT(magics.group_names, ElementsAre("#102030", "#ff0000", "#000084"));
+    EXPECT_THAT(magics.polygon_groups, ElementsAre(0, 0, 0, 1, 2, 0, 0, 0, 0, 0, 0, 0));
+
+    // "COLOR=" at the very end of the head has no four bytes behind it.
+    bytes = binary_stl(make_box(), std::string(72, ' ') + "COLOR=");
+    expect_unit_cube(read_stl(bytes, "a.stl"), "a cut colour");
+}
+
+TEST(Stl, NoGroupsWhereFacetsHaveOneColourOrAnyNumberOfThem) {
+    std::vector<char> bytes = binary_stl(make_box(), "");
+    for (std::size_t t = 0; t < 12; ++t) set_facet_bits(bytes, t, 0x8000 | 77);
+    expect_unit_cube(read_stl(bytes, "a.stl"), "one colour");
+    // What some programs leave there is no colour at all.
+    std::vector<char> many = binary_stl(make_sheet(20), "");
+    for (std::size_t t = 0; t < 800; ++t) set_facet_bits(many, t, static_cast<std::uint16_t>(0x8000 | t));
+    const PolygonSoup soup = read_stl(many, "a.stl");
+    EXPECT_THAT(soup.group_names, ElementsAre());
+    EXPECT_THAT(soup.polygon_groups, ElementsAre());
+    EXPECT_THAT(soup.warnings, ElementsAre(HasSubstr("more than 256 colours")));
+}
+
+TEST(Ply, ColoursOfFacesAreGroups) {
+    const auto ply = [](const std::string& type, const std::string& red, const std::string& blue) {
+        return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+               "element face 2\nproperty list uchar int vertex_indices\nproperty " + type + " red\nproperty " + type +
+               " green\nproperty " + type + " blue\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " + red +
+               "\n3 0 2 3 " + blue + "\n";
+    };
+    for (const std::string& text : {ply("uchar", "255 0 0", "0 0 255"), ply("float", "1 0 0", "0 0 1.5"),
+                                    ply("ushort", "65535 0 0", "0 0 65535")}) {
+        const PolygonSoup soup = read_ply(bytes_of(text), "a.ply");
+        EXPECT_THAT(soup.group_names, ElementsAre("#ff0000", "#0000ff"));
+        EXPECT_THAT(soup.polygon_groups, ElementsAre(0, 1));
+    }
+    const PolygonSoup one = read_ply(bytes_of(ply("uchar", "9 9 9", "9 9 9")), "a.ply");
+    EXPECT_THAT(one.group_names, ElementsAre());
+}
+
+TEST(Off, ColoursOfFacesAreGroups) {
+    const std::string points = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+    for (const char* faces : {"3 0 1 2 255 0 0\n3 0 2 3 0 0 255 128\n", "3 0 1 2 1.0 0 0 # red\n3 0 2 3 0 0 1.0\n"}) {
+        const PolygonSoup soup = read_off(bytes_of(points + faces), "a.off");
+        EXPECT_THAT(soup.group_names, ElementsAre("#ff0000", "#0000ff"));
+        EXPECT_THAT(soup.polygon_groups, ElementsAre(0, 1));
+    }
+    // An index into a table of colours, or words, are none.
+    EXPECT_THAT(read_off(bytes_of(points + "3 0 1 2 1\n3 0 2 3 red\n"), "a.off").group_names, ElementsAre());
+}
+
 TEST(Stl, OddLengthsAreTold) {
     std::vector<char> bytes = binary_stl(make_box(), "");
     bytes.push_back('x');
@@ -336,7 +405,7 @@ const std::string kOffBody =
 
 TEST(Off, CubeInEveryDialect) {
     const auto expect = [](const std::string& text, const char* what) {
-        expect_unit_cube(read_off(bytes_of(text), "a.off"), what);
+        expect_unit_cube(read_off(bytes_of(text), "a.off"), what, 3);  // two colours, and none
     };
     expect("OFF\n8 6 12\n" + kOffBody, "plain");
     expect("OFF # a comment\n# another\n\n8 6 0 # counts\n" + kOffBody, "comments");
