@@ -399,7 +399,8 @@ WetFilm::WetFilm(const atlas::TexelMap& map, atlas::SeamLinks seams)
 WetFilm::~WetFilm() = default;
 WetFilm::WetFilm(WetFilm&&) noexcept = default;
 
-FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before) {
+FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before,
+                            const ProgressFn& progress) {
     FilmReport report;
     if (!canvas.wet() || !(seconds > 0)) return report;
     State& s = *state_;
@@ -409,6 +410,10 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.down) > 0;
     for (double left = seconds; left > 0 && !s.list.empty();) {
+        if (progress && !progress("drying", 1 - left / seconds)) {
+            s.end(canvas);
+            throw Cancelled();
+        }
         if (s.sources.empty()) s.prepare(canvas);
         for (const Active& tile : s.list) s.tell(tile.slot, before);
         Step step;
@@ -427,11 +432,12 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     return report;
 }
 
-FilmReport WetFilm::dry(Canvas& canvas, const FilmParams& params, const BeforeFn& before, double limit) {
+FilmReport WetFilm::dry(Canvas& canvas, const FilmParams& params, const BeforeFn& before, double limit,
+                        const ProgressFn& progress) {
     FilmReport report;
     constexpr double kAtOnce = 60;
     for (double left = limit; left > 0 && canvas.wet(); left -= kAtOnce) {
-        const FilmReport part = advance(canvas, std::min(left, kAtOnce), params, before);
+        const FilmReport part = advance(canvas, std::min(left, kAtOnce), params, before, progress);
         report.steps += part.steps;
         report.tile_steps += part.tile_steps;
         report.evaporated += part.evaporated;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "atlas/seam_links.h"
+#include "core/progress.h"
 #include "ink/canvas.h"
 
 /// The wet film: water and pigment that flow on the surface, soak in and dry.
@@ -82,14 +83,15 @@ class WetFilm {
     /// Called for a slot before anything in it changes, in the order of slots within a step.
     using BeforeFn = std::function<void(std::uint32_t slot)>;
 
-    /// Lets `seconds` pass. Does nothing on a dry canvas.
+    /// Lets `seconds` pass. Does nothing on a dry canvas. `progress` is asked at every step; where it
+    /// says stop, the canvas is left as far as it came, for the caller to take back.
     FilmReport advance(Canvas& canvas, double seconds, const FilmParams& params,
-                       const BeforeFn& before = {});
+                       const BeforeFn& before = {}, const ProgressFn& progress = {});
 
     /// Lets time pass until nothing is wet, at most `limit` seconds; then what is left dries
     /// where it is. Also closes open films that never were wet.
     FilmReport dry(Canvas& canvas, const FilmParams& params, const BeforeFn& before = {},
-                   double limit = 3600);
+                   double limit = 3600, const ProgressFn& progress = {});
 
   private:
     struct State;

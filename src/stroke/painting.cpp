@@ -11,7 +11,6 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr std::size_t kPosesPerReport = 16;
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteStep = 1e-4, kPasteCell = 4e-5;
 
@@ -145,8 +144,8 @@ void Painting::forget_pigments(std::size_t n) {
     if (palette_) palette_->canvas.forget_pigments(n);
 }
 
-void Painting::act(const Stroke& entry) {
-    if (entry.action == Action::dry) return dry(entry);
+void Painting::act(const Stroke& entry, const ProgressFn& progress) {
+    if (entry.action == Action::dry) return dry(entry, progress);
     if (entry.action == Action::layer) return edit_layers(entry);
     if (entry.action == Action::mask) return edit_masks(entry);
     if (entry.action == Action::wash) return wash(entry);
@@ -242,6 +241,7 @@ void Painting::advance(std::span<const brush::Pose> poses) {
 void Painting::draw_poses() {
     Hand& h = *hand_;
     for (const brush::Pose& pose : h.poses) {
+        tuft::report(h.progress, "painting", h.done);
         h.tuft.ink_left = h.reservoir.fullness();
         h.tuft.wetness = wetness_of(h.reservoir);
         const double dt = h.moved ? pose.time - h.last_time : 0.0;
@@ -253,7 +253,7 @@ void Painting::draw_poses() {
         h.force = contact.hand_force;
         h.last_time = pose.time;
         h.moved = true;
-        if (h.wet) h.wet->pass(h.stamper, dt);
+        if (h.wet) h.wet->pass(h.stamper, dt, h.film_progress);
         h.bend(contact.tuft, pose);
         h.report.nearest = std::min(h.report.nearest, contact.distance);
         if (options_.record_forces)
@@ -319,7 +319,7 @@ StrokeReport Painting::finish_hand() {
         h.stamper.level(here ? seams() : atlas::build_seam_links(*h.model->mesh, h.model->atlas, h.model->texels),
                         ink::levelling_length(h.ink.yield, h.ink.film * ink::kFilmUnit));
     }
-    if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched, h.nodes);
+    if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched, h.nodes, h.film_progress);
     h.report.ink_left = h.reservoir.remaining();
     if (h.report.touched()) h.report.nearest = 0;
     h.report.removed = h.stamper.erased();
@@ -370,18 +370,19 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
     if (stroke.action != Action::stroke) {
         cancel();
         if (stroke.action == Action::fill) return lay_fill(stroke);
-        act(stroke);
+        act(stroke, progress);
         return {.stroke_id = stroke.id};
     }
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     const std::vector<brush::Pose> poses = poses_of(stroke);
     begin_hand(stroke);
+    hand_->progress = progress;
+    if (progress)
+        hand_->film_progress = [&progress, &h = *hand_](std::string_view, double) { return progress("painting", h.done); };
     try {
-        for (std::size_t i = 0; i < poses.size(); i += kPosesPerReport) {
-            const std::size_t n = std::min(kPosesPerReport, poses.size() - i);
-            advance(std::span(poses).subspan(i, n));
-            tuft::report(progress, "painting",
-                         static_cast<double>(i + n) / static_cast<double>(poses.size()));
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            advance(std::span(poses).subspan(i, 1));
+            hand_->done = static_cast<double>(i + 1) / static_cast<double>(poses.size());
         }
         return finish_hand();
     } catch (...) {

@@ -249,8 +249,9 @@ class Painting {
     void advance(std::span<const brush::Pose> poses);
     void draw_poses();
     StrokeReport finish_hand();
-    void act(const Stroke& entry);
-    void dry(const Stroke& entry);
+    void act(const Stroke& entry, const ProgressFn& progress);
+    void dry(const Stroke& entry, const ProgressFn& progress);
+    void take_back(const std::vector<LayerTiles>& before);
     ink::WetFilm& film();
     const atlas::SeamLinks& seams();
     Palette& plate();

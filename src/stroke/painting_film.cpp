@@ -3,6 +3,11 @@
 
 /// What a painting does with wet ink between strokes.
 namespace tuft::stroke {
+namespace {
+
+constexpr double kDryLimit = 3600;  // seconds, in which all is dry
+
+}  // namespace
 
 const atlas::SeamLinks& Painting::seams() {
     if (!seams_)
@@ -15,8 +20,13 @@ ink::WetFilm& Painting::film() {
     return *film_;
 }
 
+void Painting::take_back(const std::vector<LayerTiles>& before) {
+    for (const LayerTiles& of_layer : before)
+        for (const ink::TileSnapshot& tile : of_layer.tiles) canvas(of_layer.layer).restore(tile);
+}
+
 // Undo takes back the tiles; no brush has a part in it. All layers dry.
-void Painting::dry(const Stroke& entry) {
+void Painting::dry(const Stroke& entry, const ProgressFn& progress) {
     const ink::FilmParams params = ink::film_params(substrate_, entry.settings.down);
     Undo undo{.stroke_id = entry.id};
     for (const Layer& layer : layers_.layers) {
@@ -28,8 +38,13 @@ void Painting::dry(const Stroke& entry) {
             kept[slot] = 1;
             before.tiles.push_back(canvas.snapshot(slot));
         };
-        if (entry.seconds > 0) film().advance(canvas, entry.seconds, params, keep);
-        else film().dry(canvas, params, keep);
+        try {
+            if (entry.seconds > 0) film().advance(canvas, entry.seconds, params, keep, progress);
+            else film().dry(canvas, params, keep, kDryLimit, progress);
+        } catch (...) {
+            take_back(undo.before);
+            throw;
+        }
     }
     keep_undo(std::move(undo));
 }

@@ -31,6 +31,9 @@ struct Painting::Hand {
     double step = 0, cell = 0;
     std::vector<brush::Pose> poses;
     StrokeReport report;
+    ProgressFn progress;   // asked before every stamp whether to go on,
+    ProgressFn film_progress;  // and before every step of the film meanwhile
+    double done = 0;       // of the samples
     brush::TuftState state;
     double last_time = 0;
     double speed = 0, travel = 0;  // m/s; metres drawn so far

@@ -227,7 +227,7 @@ void Painting::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canva
     undo_bytes_ = 0;
     known_pigments_ = canvas_.pigments().size();
     for (auto s = rest; s != strokes.end(); ++s)
-        if (!s->hidden) act(*s);
+        if (!s->hidden) act(*s, {});
     for (Stroke& stroke : strokes) journal_.restore(std::move(stroke));
     apply_recolours();
 }

@@ -9,17 +9,17 @@ constexpr double kTick = 0.05;  // seconds: a film moves by less than a texel me
 
 }  // namespace
 
-void WetHand::advance(Stamper& stamper) {
-    film_->advance(*canvas_, pending_, params_, [&](std::uint32_t slot) { stamper.keep(slot); });
+void WetHand::advance(Stamper& stamper, const ProgressFn& progress) {
+    film_->advance(*canvas_, pending_, params_, [&](std::uint32_t slot) { stamper.keep(slot); }, progress);
     pending_ = 0;
 }
 
-void WetHand::pass(Stamper& stamper, double seconds) {
+void WetHand::pass(Stamper& stamper, double seconds, const ProgressFn& progress) {
     if (!(seconds > 0)) return;
     pending_ += seconds;
     since_ += seconds;
     step_ = seconds;
-    if (pending_ >= kTick) advance(stamper);
+    if (pending_ >= kTick) advance(stamper, progress);
 }
 
 double WetHand::lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
@@ -42,8 +42,9 @@ double WetHand::lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, 
     return sum;
 }
 
-void WetHand::end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes) {
-    advance(stamper);
+void WetHand::end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes,
+                  const ProgressFn& progress) {
+    advance(stamper, progress);
     ink::withdraw(skin_, tuft, touch, nodes);
 }
 

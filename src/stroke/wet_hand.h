@@ -15,16 +15,17 @@ class WetHand {
         : film_(&film), canvas_(&canvas), params_(params) {}
 
     /// Time goes by, touching or not.
-    void pass(Stamper& stamper, double seconds);
+    void pass(Stamper& stamper, double seconds, const ProgressFn& progress);
     /// One stamp, pressed by `stress` (0–1): ink goes both ways, and what the hair does not hold runs
     /// down. Returns the liquid given less what was taken, film·m².
     double lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
                const ink::NodeTouch& nodes, double stress, const ink::Drain& drain);
     /// The tuft is lifted for good: what is on the hair goes into it.
-    void end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes);
+    void end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes,
+             const ProgressFn& progress);
 
   private:
-    void advance(Stamper& stamper);
+    void advance(Stamper& stamper, const ProgressFn& progress);
 
     ink::WetFilm* film_;
     ink::Canvas* canvas_;
