@@ -16,6 +16,7 @@ constexpr double kSearch = 2.0;    // texels from the seam to the texel beside i
 struct Coupling {
     TexelRef a, b;
     double weight;
+    Vec3 lack_a, lack_b;  ///< of conductance: m11, m12, m22
 
     auto pair() const { return std::tie(a.slot, a.texel, b.slot, b.texel); }
 };
@@ -30,6 +31,19 @@ Vec2 texel_centre(const TexelMap& map, const TexelRef& ref) {
 double distance_to_seam(const TexelMap& map, const TexelRef& ref, const SeamSide& side) {
     const Vec2 d = texel_centre(map, ref) - side.uv;
     return std::abs(d.x * side.along.y - d.y * side.along.x);
+}
+
+/// How far the texel lies along the seam from where it was looked for.
+double along_seam(const TexelMap& map, const TexelRef& ref, const SeamSide& side) {
+    return glm::dot(texel_centre(map, ref) - side.uv, side.along);
+}
+
+/// `SeamBalance` of a piece of seam. Of an edge of the texels along (cos α, sin α) and as long as 1, |sin α| and
+/// |cos α| half faces are missing, across and along the atlas.
+Vec3 lack(const SeamSide& side, double length, double slip) {
+    const Vec2 t = glm::abs(side.along);
+    return (0.5 * length * (t.x * t.x * t.y + t.x * t.y * t.y) - slip) *
+           Vec3{t.x * t.x, side.along.x * side.along.y, t.y * t.y};
 }
 
 /// Side by side inside the atlas: the grid couples them already.
@@ -47,8 +61,11 @@ void couple(const TexelMap& map, const Atlas& atlas, const std::vector<SeamSampl
             nearest_texel(map, atlas.triangle_chart[s.b.triangle], s.b.uv, s.position, kSearch);
         if (!a.valid() || !b.valid() || a == b || grid_neighbours(map, a, b)) continue;
         const double distance = distance_to_seam(map, a, s.a) + distance_to_seam(map, b, s.b);
-        if (std::tie(b.slot, b.texel) < std::tie(a.slot, a.texel)) std::swap(a, b);
-        found.push_back({a, b, s.length / std::max(distance, 0.5)});
+        const double askew = along_seam(map, b, s.b) - along_seam(map, a, s.a), weight = s.length / std::max(distance, 0.5);
+        const double slip = 0.5 * weight * askew * askew;
+        const Vec3 lack_a = lack(s.a, s.length, slip), lack_b = lack(s.b, s.length, slip);
+        if (std::tie(b.slot, b.texel) < std::tie(a.slot, a.texel)) found.push_back({b, a, weight, lack_b, lack_a});
+        else found.push_back({a, b, weight, lack_a, lack_b});
     }
 }
 
@@ -60,11 +77,36 @@ void merge(std::vector<Coupling>& couplings) {
     for (const Coupling& c : couplings) {
         if (n > 0 && couplings[n - 1].pair() == c.pair()) {
             couplings[n - 1].weight += c.weight;
+            couplings[n - 1].lack_a += c.lack_a;
+            couplings[n - 1].lack_b += c.lack_b;
         } else {
             couplings[n++] = c;
         }
     }
     couplings.resize(n);
+}
+
+/// Sums per texel, in the order of the couplings.
+void add_balance(const std::vector<Coupling>& couplings, std::uint32_t n_slots, SeamLinks& result) {
+    struct Part {
+        TexelRef texel;
+        Vec3 m;
+    };
+    std::vector<Part> parts;
+    for (const Coupling& c : couplings) parts.push_back({c.a, c.lack_a}), parts.push_back({c.b, c.lack_b});
+    std::stable_sort(parts.begin(), parts.end(), [](const Part& x, const Part& y) {
+        return std::tie(x.texel.slot, x.texel.texel) < std::tie(y.texel.slot, y.texel.texel);
+    });
+    result.balance_start.assign(n_slots + 1, 0);
+    for (std::size_t i = 0; i < parts.size();) {
+        const TexelRef texel = parts[i].texel;
+        Vec3 sum{0};
+        for (; i < parts.size() && parts[i].texel == texel; ++i) sum += parts[i].m;
+        const Vec3f m(sum);
+        result.balance.push_back({texel.texel, m.x, m.y, m.z});
+        ++result.balance_start[texel.slot + 1];
+    }
+    for (std::size_t s = 0; s < n_slots; ++s) result.balance_start[s + 1] += result.balance_start[s];
 }
 
 }  // namespace
@@ -102,6 +144,7 @@ SeamLinks build_seam_links(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         result.links[next[c.a.slot]++] = {c.b.slot, weight, c.a.texel, c.b.texel};
         result.links[next[c.b.slot]++] = {c.a.slot, weight, c.b.texel, c.a.texel};
     }
+    add_balance(couplings, map.n_slots(), result);
     for (std::size_t s = 0; s < map.n_slots(); ++s) {
         std::sort(result.links.begin() + result.start[s],
                   result.links.begin() + result.start[s + 1],

@@ -19,9 +19,19 @@ struct SeamLink {
     std::uint8_t texel = 0, other_texel = 0;
 };
 
+/// What the texels beside a seam lack of conductance along it, or, below zero, have too much of: links run askew, by
+/// t texels along the seam, and let as much flow along it as ½ weight t² of a texel; and where the edge of the
+/// texels goes up in steps they have no faces on that side. A tensor as √g times the inverse metric is.
+struct SeamBalance {
+    std::uint8_t texel = 0;
+    float m11 = 0, m12 = 0, m22 = 0;
+};
+
 struct SeamLinks {
     std::vector<std::uint32_t> start;  ///< [n_slots + 1]
     std::vector<SeamLink> links;       ///< by slot, then texel, then other end
+    std::vector<std::uint32_t> balance_start;  ///< [n_slots + 1]
+    std::vector<SeamBalance> balance;  ///< by slot, then texel
 };
 
 /// Walks every seam in quarter texels and couples the nearest texels of both sides.

@@ -155,7 +155,7 @@ struct WetFilm::State : TileList {
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 auto& g = geometry[list[i].slot];
-                if (!g) g = std::make_unique<Geometry>(make_geometry(map, list[i].slot, unevenness()));
+                if (!g) g = std::make_unique<Geometry>(make_geometry(map, seams, list[i].slot, unevenness()));
                 list[i].stiffness = g->stiffness;
                 find_planes(canvas, i);
             }
@@ -193,7 +193,8 @@ struct WetFilm::State : TileList {
         step.pores = static_cast<float>(p.pores);
         step.passing = static_cast<float>(1 - p.retention);
         step.evaporation = static_cast<float>(p.evaporation * dt);
-        step.rim = static_cast<float>(p.rim_evaporation * dt / map.texel_size);
+        step.rim = static_cast<float>(p.rim_evaporation * dt / (map.texel_size * p.rim_depth));
+        step.rim_depth = static_cast<float>(p.rim_depth);
         step.hold = static_cast<float>(p.hold);
         return dt;
     }
@@ -203,8 +204,8 @@ struct WetFilm::State : TileList {
         const Active& tile = list[index];
         const Geometry& g = *geometry[tile.slot];
         carried.clear();
-        std::array<float, kTexels> dry;
-        if (!tile.links.empty()) dry.fill(0);
+        std::array<float, kTexels> slope;
+        if (!tile.links.empty()) slope.fill(0);
         const Sources& mine = sources[index];
         std::uint32_t slot = kNone, other = kNone;
         for (const atlas::SeamLink& l : tile.links) {
@@ -218,7 +219,7 @@ struct WetFilm::State : TileList {
                 there = {at(sources[other].liquid[0], l.other_texel), at(sources[other].liquid[1], l.other_texel)};
             const float t = here[0] + here[1], u = there[0] + there[1];
             if (!(t + u > 0) || other == kNone) continue;
-            if (!(u > 0)) dry[l.texel] += l.weight;
+            slope[l.texel] += l.weight * std::max(0.0f, std::min(t, step.rim_depth) - u);
             // One order for both sides, so that both have the same numbers.
             const bool first = tile.slot != l.other_slot ? tile.slot < l.other_slot : l.texel < l.other_texel;
             const bool both = t > 0 && u > 0;  // then what pins rims has no say, and lies in memory far away
@@ -234,7 +235,7 @@ struct WetFilm::State : TileList {
         for (std::size_t i = 0; i < tile.links.size(); ++i) {
             const std::uint8_t t = tile.links[i].texel;
             if (i > 0 && tile.links[i - 1].texel == t) continue;
-            if (dry[t] > 0) work.dry_neighbours[t] = std::sqrt(work.dry_neighbours[t] * work.dry_neighbours[t] + dry[t] * dry[t]);
+            if (slope[t] > 0) work.rim_slope[t] = std::sqrt(work.rim_slope[t] * work.rim_slope[t] + slope[t] * slope[t]);
         }
     }
 

@@ -23,6 +23,7 @@ struct FilmParams {
     double retention = 0;            ///< part of the pigments that stays behind when liquid seeps through pores
     double evaporation = 1.0 / 60;   ///< film units a second
     double rim_evaporation = 0;      ///< film units · m a second, more, per metre of rim
+    double rim_depth = 1;            ///< film units: rims are where less than that stands
     double stain = 0;                ///< part of a drying film that stays in bare substrate
     double unevenness = 0;           ///< rms of ln of how easily liquid flows, from place to place; 0: even
     Vec3 down{0};                    ///< towards the ground, length 1; zero: no weight

@@ -11,6 +11,7 @@ namespace {
 constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of the border need both sides
 constexpr double kMostConductance = 4; // over the smaller of the two areas
 constexpr double kNoShear = 0.05;     // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
+constexpr double kLeastPart = 0.5;     // of a face's conductance, where links over a seam do part of its work
 constexpr double kGrainDepth = 0.4;   // of the mean
 constexpr double kFlocsRms = 0.437;    // of the octaves' sum
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
@@ -21,6 +22,7 @@ struct Spot {
     double area = 0, reach = 0;
     double grain = 1, ease = 1;        // of the pin; of the flow, its root
     double m11 = 1, m12 = 0, m22 = 1;  // √g times the inverse metric
+    Vec3 lacking{0};                   // of that (m11, m12, m22), beside a seam
 };
 
 struct Neighbourhood {
@@ -66,6 +68,23 @@ double shear(const Neighbourhood& n, int column, int row) {
     return std::abs(m) < kNoShear ? 0 : m;
 }
 
+/// What the face between two texels beside a seam, (x, y) apart, takes of what they lack.
+double lack(const Spot& a, const Spot& b, double x, double y) {
+    if (a.lacking == Vec3{0} || b.lacking == Vec3{0}) return 0;
+    const double square = x * x + y * y;
+    return 0.5 * glm::dot(Vec3{x * x, 2 * x * y, y * y}, a.lacking + b.lacking) / (square * square);
+}
+
+/// The diagonal at the corner above and right of a texel: > 0 from it to the next, < 0 the other one.
+double diagonal(const Neighbourhood& n, int column, int row) {
+    const Spot &a = n.at(column, row), &b = n.at(column + 1, row), &c = n.at(column, row + 1), &d = n.at(column + 1, row + 1);
+    if (a.valid && b.valid && c.valid && d.valid) return shear(n, column, row);
+    // A step of the edge of the texels.
+    if ((b.valid || c.valid) && together(a, d, 1.5)) return std::max(0.0, lack(a, d, 1, 1));
+    if ((a.valid || d.valid) && together(b, c, 1.5)) return -std::max(0.0, lack(b, c, 1, -1));
+    return 0;
+}
+
 double lattice(std::int64_t x, std::int64_t y, std::int64_t z) {
     const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1fffff; };
     return uniform(kGrainSeed, bits(x) << 42 | bits(y) << 21 | bits(z));
@@ -98,7 +117,17 @@ double flocs(const Vec3& position) {
     return std::clamp(sum / kFlocsRms, -2.0, 1.5);  // what flows fastest sets the steps
 }
 
-Neighbourhood gather(const atlas::TexelMap& map, std::uint32_t slot, double unevenness) {
+/// Of a tile that lies off by (x, y).
+void take_balance(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t slot, int x, int y) {
+    for (std::uint32_t i = seams.balance_start[slot]; i < seams.balance_start[slot + 1]; ++i) {
+        const atlas::SeamBalance& b = seams.balance[i];
+        const int column = x + b.texel % kSide, row = y + b.texel / kSide;
+        if (column < -1 || row < -1 || column > kSide || row > kSide) continue;
+        n.at(column, row).lacking = {static_cast<double>(b.m11), static_cast<double>(b.m12), static_cast<double>(b.m22)};
+    }
+}
+
+Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, double unevenness) {
     Neighbourhood n;
     const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
     const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
@@ -120,7 +149,18 @@ Neighbourhood gather(const atlas::TexelMap& map, std::uint32_t slot, double unev
             s.grain = 1 + kGrainDepth * noise(s.position, kGrainLength);
             if (unevenness > 0) s.ease = exponential(0.5 * unevenness * flocs(s.position));
         }
+    const auto tiles = static_cast<std::int64_t>(map.tiles_per_side);
+    for (std::int64_t y = std::max<std::int64_t>(y0 / kSide - 1, 0); y < std::min(y0 / kSide + 2, tiles); ++y)
+        for (std::int64_t x = std::max<std::int64_t>(x0 / kSide - 1, 0); x < std::min(x0 / kSide + 2, tiles); ++x)
+            if (const std::uint32_t near = map.slot_of_tile[static_cast<std::size_t>(y * tiles + x)]; near != kNone)
+                take_balance(n, seams, near, static_cast<int>(x * kSide - x0), static_cast<int>(y * kSide - y0));
     return n;
+}
+
+/// Of a straight face, before shear.
+double along(double a, double b, double lacking) {
+    const double mean = 0.5 * (a + b);
+    return std::max(mean + lacking, kLeastPart * mean);
 }
 
 double conductance(double g, const Spot& a, const Spot& b, double mean_area) {
@@ -148,8 +188,8 @@ float sum_at(const Geometry& g, int t) {
 
 double ease_of_flow(const Vec3& position, double unevenness) { return exponential(unevenness * flocs(position)); }
 
-Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot, double unevenness) {
-    const Neighbourhood n = gather(map, slot, unevenness);
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, double unevenness) {
+    const Neighbourhood n = gather(map, seams, slot, unevenness);
     const double mean = map.texel_size * map.texel_size;
     Geometry g;
     Geometry::Diagonals diagonals{};
@@ -168,14 +208,14 @@ Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot, double un
             const Spot& s = n.at(column, row);
             if (const Spot& right = n.at(column + 1, row); row >= 0 && together(s, right)) {
                 const double sheared = 0.5 * (std::abs(shear(n, column, row)) + std::abs(shear(n, column, row - 1)));
-                g.gx[Geometry::right_of(column, row)] = packed(conductance(0.5 * (s.m11 + right.m11) - sheared, s, right, mean));
+                g.gx[Geometry::right_of(column, row)] = packed(conductance(along(s.m11, right.m11, lack(s, right, 1, 0)) - sheared, s, right, mean));
             }
             if (const Spot& up = n.at(column, row + 1); column >= 0 && together(s, up)) {
                 const double sheared = 0.5 * (std::abs(shear(n, column, row)) + std::abs(shear(n, column - 1, row)));
                 g.gy[(row + 1) * kSide + column] =
-                    packed(conductance(0.5 * (s.m22 + up.m22) - sheared, s, up, mean));
+                    packed(conductance(along(s.m22, up.m22, lack(s, up, 0, 1)) - sheared, s, up, mean));
             }
-            const double m = shear(n, column, row);
+            const double m = diagonal(n, column, row);
             const double size = m > 0 ? conductance(m, s, n.at(column + 1, row + 1), mean)
                                       : conductance(-m, n.at(column + 1, row), n.at(column, row + 1), mean);
             const double units = std::min(std::round(size / static_cast<double>(kDiagonalUnit)), 32767.0);

@@ -161,21 +161,29 @@ TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) {
     else all_faces<Law<false, true>>(o, g, p);
 }
 
-/// total and rate; whether a texel of a chart is dry.
-TUFT_CLONES bool totals(Work& o, const Geometry& g, float grip) {
+struct Least {
+    bool dry, thin;  ///< a texel of a chart has no liquid, less than is over a rim
+};
+/// total and rate, and what there is least of.
+TUFT_CLONES Least totals(Work& o, const Geometry& g, float grip, float depth) {
 #pragma GCC ivdep
     for (int k = 7; k < kField; ++k) {
         const float t = o.w[k] + o.s[k];
         o.total[k] = t;
         o.rate[k] = rate_of(t, grip);
     }
+    std::uint32_t dry = 0, thin = 0;
     for (int row = -1; row <= kSide; ++row) {
-        std::uint32_t wet = 0;
+        std::uint32_t none = 0, little = 0;
         const int k = field_at(-1, row);
-        for (int x = 0; x < kSide + 2; ++x) wet |= static_cast<std::uint32_t>(o.total[k + x] > 0) << x;
-        if (g.valid[static_cast<std::size_t>(row + 1)] & ~wet) return true;
+        for (int x = 0; x < kSide + 2; ++x) {
+            none |= static_cast<std::uint32_t>(!(o.total[k + x] > 0)) << x;
+            little |= static_cast<std::uint32_t>(o.total[k + x] < depth) << x;
+        }
+        dry |= g.valid[static_cast<std::size_t>(row + 1)] & none;
+        thin |= g.valid[static_cast<std::size_t>(row + 1)] & little;
     }
-    return false;
+    return {dry != 0, thin != 0};
 }
 
 /// Into texel k by the four sides, and by the diagonals.
@@ -202,15 +210,17 @@ TUFT_CLONES void divergence_askew(float* __restrict d, const float* __restrict x
         }
 }
 
-TUFT_CLONES void count_dry(float* __restrict n, const float* __restrict t, const Geometry& g) {
+/// Slope, over a texel, of what stands over the rim: Σ of the sides that go down, both ways squared.
+TUFT_CLONES void slope_to_rims(float* __restrict n, const float* __restrict t, const Geometry& g, float depth) {
     const std::uint16_t *gx = g.gx.data(), *gy = g.gy.data();
     for (int row = 0; row < kSide; ++row)
         for (int x = 0; x < kSide; ++x) {
             const int k = field_at(x, row), i = row * kSide + x, side = Geometry::right_of(x, row);
-            const float right = t[k + 1] > 0 || gx[side] == 0 ? 0.0f : 1.0f;
-            const float left = t[k - 1] > 0 || gx[side - 1] == 0 ? 0.0f : 1.0f;
-            const float up = t[k + kRow] > 0 || gy[i + kSide] == 0 ? 0.0f : 1.0f;
-            const float down = t[k - kRow] > 0 || gy[i] == 0 ? 0.0f : 1.0f;
+            const float here = smaller(t[k], depth);
+            const float right = gx[side] == 0 ? 0.0f : positive(here - t[k + 1]);
+            const float left = gx[side - 1] == 0 ? 0.0f : positive(here - t[k - 1]);
+            const float up = gy[i + kSide] == 0 ? 0.0f : positive(here - t[k + kRow]);
+            const float down = gy[i] == 0 ? 0.0f : positive(here - t[k - kRow]);
             const float across = right + left, along = up + down;
             n[i] = std::sqrt(across * across + along * along);
         }
@@ -245,7 +255,7 @@ TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restr
             const float over = positive(s1 - pores);  // by rounding
             s1 -= over;
             w1 += over;
-            const float all = evaporation + rim * o.dry_neighbours[i] * inverse[i];
+            const float all = evaporation + rim * o.rim_slope[i] * inverse[i];
             const float from_w = smaller(w1, all), from_s = smaller(s1, all - from_w);
             w1 -= from_w;
             s1 -= from_s;
@@ -341,10 +351,10 @@ void gather(Field& field, const std::array<const float*, 9>& planes) {
 }
 
 void fluxes(Work& work, const Geometry& g, const Step& step) {
-    const bool dry = totals(work, g, step.grip);
-    (dry ? faces_dry : faces_wet)(work, g, step);
-    if (dry) count_dry(work.dry_neighbours.data(), work.total.data(), g);
-    else work.dry_neighbours.fill(0);
+    const Least least = totals(work, g, step.grip, step.rim > 0 ? step.rim_depth : 0);
+    (least.dry ? faces_dry : faces_wet)(work, g, step);
+    if (least.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
+    else work.rim_slope.fill(0);
 }
 
 void liquid_changes(Work& work, const Geometry& g, const Step& step) {

@@ -43,7 +43,7 @@ struct alignas(64) Geometry {
 
     static constexpr int right_of(int column, int row) { return row * kRow + 8 + column; }
 };
-Geometry make_geometry(const atlas::TexelMap& map, std::uint32_t slot, double unevenness);
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, double unevenness);
 /// How easily liquid flows at a place, over the mean: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to
 /// 2.4 mm, −2 to 1.5. On a plane the flow in the large is that of the geometric mean, 1 (Dykhne 1971).
 double ease_of_flow(const Vec3& position, double unevenness);
@@ -60,7 +60,8 @@ struct Step {
     float pores = 0;
     float passing = 1;     ///< part of the pigments that what seeps through the pores takes along
     float evaporation = 0; ///< film units
-    float rim = 0;         ///< film units more, per dry neighbour
+    float rim = 0;         ///< film units more, per film unit of slope
+    float rim_depth = 0;
     float hold = 0;
 };
 
@@ -77,7 +78,7 @@ struct alignas(64) Work {
     Field rate{};                  ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
     Field p{};                     ///< one pigment
     Faces x, y, up, down;          ///< up: of diagonals k to k + 25, down: k + 1 to k + 24
-    std::array<float, kTexels> dw, ds, dry_neighbours;  ///< the last: length of rim, in texels
+    std::array<float, kTexels> dw, ds, rim_slope;  ///< the last: of liquid no higher than `rim_depth`, a texel
     std::array<float, kTexels> dp; ///< what seams bring of one pigment
 };
 
@@ -85,7 +86,7 @@ struct alignas(64) Work {
 void gather(Field& field, const std::array<const float*, 9>& planes);
 /// total, rate, and what goes through the faces.
 void fluxes(Work& work, const Geometry& g, const Step& step);
-/// dw, ds and dry_neighbours of the texels from the fluxes.
+/// dw and ds of the texels from the fluxes.
 void liquid_changes(Work& work, const Geometry& g, const Step& step);
 
 /// What a texel's liquid became.
