@@ -60,8 +60,9 @@ struct FilmReport {
 /// Liquid goes onto a dry texel only from one that has more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
 /// about a millimetre, as surfaces are not clean). With a direction of weight
 /// contact lines keep mounds as they are (L = 0), and what is more than they hold runs down in beads
-/// (drips.h), 256 at once at most. The rim evaporates faster by
-/// `rim_evaporation`, so that liquid, and pigment with it, is drawn there: dark edges.
+/// (drips.h), 256 at once at most. The rim evaporates faster, by
+/// `rim_evaporation` |∇ min(T, rim_depth)| / rim_depth, as much per metre of rim whatever the texels, so that
+/// liquid, and pigment with it, is drawn there: dark edges.
 /// A texel with nothing wet any more is closed (drying.h).
 ///
 /// Where fibres and pores lie in clouds (`unevenness`) D varies with the place over a millimetre or so, and
