@@ -223,20 +223,70 @@ std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame,
     return found;
 }
 
-void splay(std::vector<Trail>& trails, double amount) {
-    if (!(amount > 0)) return;
+namespace {
+
+constexpr double kTrackStep = 2.5e-5;  // metres between places of a track
+constexpr double kNarrowest = 0.2;   // of its width to which a section is drawn together
+
+/// The place's own value, between two of those that are there.
+double width_at(const HairTracks::Track& track, double place, double otherwise) {
+    const double at = place / kTrackStep - static_cast<double>(track.first), cell = std::floor(at);
+    const auto value = [&](double i) {
+        if (i < 0 || i >= static_cast<double>(track.width.size())) return otherwise;
+        const float v = track.width[static_cast<std::size_t>(i)];
+        return v < 0 ? otherwise : static_cast<double>(v);
+    };
+    return std::lerp(value(cell), value(cell + 1), at - cell);
+}
+
+/// Makes room for places from number lo to hi.
+void reach_over(HairTracks::Track& track, long long lo, long long hi) {
+    if (track.width.empty()) track.first = lo;
+    if (lo < track.first) {
+        track.width.insert(track.width.begin(), static_cast<std::size_t>(track.first - lo), -1.0f);
+        track.first = lo;
+    }
+    const auto size = static_cast<std::size_t>(hi - track.first + 1);
+    if (size > track.width.size()) track.width.resize(size, -1.0f);
+}
+
+/// Cuts [begin, end) of a trail: those up to the widest are where the tuft is, and so is what never touched.
+void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::Track& track, double slid, double length,
+                  double amount) {
+    const auto place = [&](std::size_t i) { return slid - trail.along[i] * length; };
+    std::size_t widest = end - 1;
+    for (std::size_t i = end - 1; i-- > begin;)
+        if (trail.cuts[i].a > trail.cuts[widest].a) widest = i;
+    const auto number = [](double p) { return static_cast<long long>(std::floor(p / kTrackStep)); };
+    reach_over(track, number(place(begin)), number(place(end - 1)) + 1);
+    std::size_t i = begin;
+    for (long long k = number(place(begin)); k <= number(place(end - 1)) + 1; ++k) {
+        const double at = static_cast<double>(k) * kTrackStep;
+        while (i + 2 < end && place(i + 1) < at) ++i;
+        const double run = place(i + 1) - place(i), f = run > 0 ? std::clamp((at - place(i)) / run, 0.0, 1.0) : 0;
+        float& width = track.width[static_cast<std::size_t>(k - track.first)];
+        if (width < 0 || at >= place(widest)) width = static_cast<float>(std::lerp(trail.cuts[i].a, trail.cuts[i + 1].a, f));
+    }
+    for (std::size_t k = begin; k < widest; ++k) {
+        Cut& cut = trail.cuts[k];
+        const double grow = std::max(1 + amount * (width_at(track, place(k), cut.a) / std::max(cut.a, 1e-9) - 1), kNarrowest);
+        cut.a *= grow;
+        cut.b /= grow;
+        // It lies as it lay: by the same part of its height.
+        cut.z *= cut.z > 0 ? 1 / grow : 1;
+    }
+}
+
+}  // namespace
+
+void splay(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount) {
     for (Trail& trail : trails) {
-        double widest = 0;
-        for (std::size_t i = trail.cuts.size(); i-- > 0;) {
-            Cut& cut = trail.cuts[i];
-            if (i + 1 == trail.trunk) widest = 0;  // a sub-spine does not grow as wide as the trunk
-            widest = std::max(widest, cut.a);
-            const double grow = 1 + amount * (widest / std::max(cut.a, 1e-9) - 1);
-            cut.a *= grow;
-            cut.b /= grow;
-            // It lies as it lay: by the same part of its height.
-            cut.z *= cut.z > 0 ? 1 / grow : 1;
-        }
+        const auto own = 2 * static_cast<std::size_t>(trail.branch);
+        if (tracks.tracks.size() < own + 2) tracks.tracks.resize(own + 2);
+        const std::size_t trunk = std::min(trail.trunk, trail.cuts.size());
+        if (trunk > 1) lay_on_track(trail, 0, trunk, tracks.tracks[own], slid, length, amount);
+        if (trail.cuts.size() > trunk + 1)
+            lay_on_track(trail, trunk, trail.cuts.size(), tracks.tracks[own + 1], slid, length, amount);
     }
 }
 

@@ -38,9 +38,22 @@ struct Trail {
 std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame,
                           std::span<const NodePlanes> planes, double length, double film);
 
-/// Spreads a tuft that no water holds to a point: towards the tip, hair keeps the width it has
-/// where it is widest, as far as `amount` (0–1) goes, and lies as much flatter.
-void splay(std::vector<Trail>& trails, double amount);
+/// Where the hair of a dry tuft lies on the surface: half widths of the tuft by place on the track that its hair
+/// is drawn along, place = slid − along · length, metres. Friction holds what lies there, so hair follows in the track of
+/// the hair before it, towards the root, and is neither swept aside nor drawn together while the tuft is pressed and lifted.
+struct HairTracks {
+    struct Track {
+        long long first = 0;       ///< number of the place of width[0]
+        std::vector<float> width;  ///< metres; negative: no hair has lain there yet
+    };
+    std::vector<Track> tracks;     ///< of each branch two: its sub-spine, the trunk
+};
+
+/// Spreads a tuft that no water holds to a point: hair that lies on the surface has the width that the tuft had
+/// where it is widest as that passed the place, as far as `amount` (0–1) goes, and lies as much flatter. `slid`:
+/// metres drawn over the surface since the touch that `tracks` began with. A steady drag is as wide up to its
+/// tip; a tuft pressed straight down lies as it came. `length` is the tuft's, metres.
+void splay(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount);
 
 /// The outline of a trail; without points when it is too small for one.
 Outline outline_of(const Trail& trail, int points);

@@ -11,11 +11,13 @@ namespace {
 
 constexpr double kClosing = 0.4;       // s_c
 constexpr double kFastHair = 0.7;      // v_c, m/s
-constexpr double kRolling = 12e-3;     // m of travel over which bristles roll off and on, longer than they touch
-constexpr double kOwnPhase = 64;       // of rolling: neighbours in readiness do not roll together
-constexpr double kRollingPart = 0.25;  // of the wetness at which they stop
-constexpr double kThinning = 0.1;      // wetness over which a bristle thins before it stops
-constexpr double kReach = 3;           // spacings that ink reaches at half wetness
+constexpr double kRolling = 12e-3;     // m of travel over which the hair of a bundle rolls off and on, longer than it touches
+constexpr double kBreaking = 4e-3;     // m of travel over which the ink under a single bristle breaks and closes
+constexpr double kRollingPart = 0.2, kBreakingPart = 0.2;  // of the wetness at which they stop
+constexpr double kThinning = 0.02;     // wetness over which a thread of ink tapers before it breaks
+constexpr double kMark = 45e-6;        // m, half width of what a bristle leaves by itself: hair is 70–135 µm thick
+constexpr double kBridge = 0.5;        // spacings that ink bridges from one bristle to the next at half wetness
+constexpr double kLeastContact = 0.1;  // part of what lies down of it that the driest bristle touches with
 constexpr double kSameEnd = 0.01;      // of the length
 constexpr double kBeyond = 0.5;        // widest half width that the outermost hair's ink may reach further
 
@@ -109,10 +111,16 @@ class Bands {
     std::vector<std::uint8_t> level_;
 };
 
-/// A band of hair that gives ink: places from lo to hi across the section.
+/// A band of hair that gives ink: from bristle to bristle across the section, and ink beyond them.
 struct Strand {
-    double lo = 0, hi = 0;
-    double end = 1;  ///< part of the tuft's length from the root
+    double lo = 0, hi = 0;            ///< places of its outermost bristles
+    double past_lo = 0, past_hi = 0;  ///< metres of ink beyond them
+    double begin = 0, end = 1;        ///< parts of the tuft's length from the root
+};
+
+/// From root to tip, parts of the tuft's length.
+struct Lying {
+    double begin = 0, end = 1;
 };
 
 /// One bristle of the lower half, as it is drawn.
@@ -121,34 +129,69 @@ struct Lower {
     const brush::Bristle* bristle = nullptr;
 };
 
-/// Bristles side by side into bands. Each covers the way to half between it and its neighbours,
-/// as far as its ink reaches, or nothing once it has stopped.
-std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& bundles, const HairInk& ink) {
+std::uint64_t own_seed(const brush::Bundles& bundles, const brush::Bristle& b) {
+    return hash_bits(bundles.seed, 100000 + static_cast<std::uint64_t>(&b - bundles.bristles.data()));
+}
+
+/// Wetness at which the thread of ink under a bristle breaks now.
+double breaks_at(const brush::Bundles& bundles, const brush::Bristle& b, double travel) {
+    const std::uint64_t own = own_seed(bundles, b);
+    const double phase = uniform(own, 1);
+    const double rolls = roll(hash_bits(bundles.seed, 1000 + b.bundle), travel / kRolling + 0.5 * phase + 1);
+    const double breaks = roll(own, travel / kBreaking + phase + 16);
+    return (1 - kThinning) * ((1 - kRollingPart - kBreakingPart) * (1 - static_cast<double>(b.readiness)) +
+                              kRollingPart * (0.5 + 0.5 * rolls) + kBreakingPart * (0.5 + 0.5 * breaks));
+}
+
+/// What lies down of the hair, parts of the tuft's length, and metres that it measures across the motion.
+struct Laid {
+    Lying lies;
+    double across = 0;
+};
+
+/// Where a bristle touches: with all that lies down of it where ink closes the gaps, with a part of it, here or there,
+/// where it must touch itself, since hair is not quite straight and lies over other hair. Drawn sideways it has ink for
+/// no wider a way than drawn along itself.
+Lying touching(const brush::Bundles& bundles, const brush::Bristle& b, double wet, const Laid& laid) {
+    const Lying& lies = laid.lies;
+    if (wet >= 1) return {-4, 4};
+    // Water draws the ends to a point.
+    const double end = static_cast<double>(b.end) + (1 - static_cast<double>(b.end)) * std::max(0.0, 2 * wet - 1);
+    const double way = 2 * kMark * std::max(1.0, 0.5 * wet / ((1 - wet) * (1 - wet)));
+    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, way / std::max(laid.across, 1e-9)});
+    const double rest = (1 - part) * std::max(0.0, end - lies.begin), behind = uniform(own_seed(bundles, b), 2);
+    return {part < 1 ? lies.begin + (1 - behind * behind) * rest : -4, part < 1 ? end - behind * behind * rest : end};
+}
+
+/// Bristles side by side into bands, in a section of half width `a` metres.
+std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& bundles, const HairInk& ink, double a,
+                               const Laid& laid) {
     std::vector<Strand> strands;
-    std::sort(lower.begin(), lower.end(), [](const Lower& a, const Lower& b) {
-        return a.x != b.x ? a.x < b.x : a.bristle < b.bristle;
+    std::sort(lower.begin(), lower.end(), [](const Lower& p, const Lower& q) {
+        return p.x != q.x ? p.x < q.x : p.bristle < q.bristle;
     });
-    const double spacing = 2.0 / std::max<double>(1, static_cast<double>(lower.size()));
-    std::vector<double> rolled(bundles.place.size());
+    const double spacing = 2 * a / std::max<double>(1, static_cast<double>(lower.size()));
+    const auto wet_of = [&](const brush::Bristle& b) { return b.bundle < ink.wet.size() ? ink.wet[b.bundle] : 1; };
+    double bridge_before = 0;
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
-        const double wet = b.bundle < ink.wet.size() ? ink.wet[b.bundle] : 1;
-        const double turn = roll(hash_bits(bundles.seed, 1000 + b.bundle),
-                                 ink.travel / kRolling + kOwnPhase * static_cast<double>(b.readiness));
-        const double stops = (1 - kThinning) * ((1 - kRollingPart) * (1 - static_cast<double>(b.readiness)) + kRollingPart * (0.5 + 0.5 * turn));
-        const double active = std::clamp((wet - stops) / kThinning, 0.0, 1.0);
+        const double wet = wet_of(b), active = std::clamp((wet - breaks_at(bundles, b, ink.travel)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;
-        const double reach = wet >= 1 ? 4 : kReach * spacing * wet / (1 - wet);
-        const double left = i == 0 ? 4 : 0.5 * (lower[i].x - lower[i - 1].x);
-        const double right = i + 1 == lower.size() ? 4 : 0.5 * (lower[i + 1].x - lower[i].x);
-        // Water draws the ends to a point.
-        const double end = wet >= 1 ? 4 : static_cast<double>(b.end) + (1 - static_cast<double>(b.end)) * std::max(0.0, 2 * wet - 1);
-        const Strand strand{lower[i].x - active * std::min(left, reach), lower[i].x + active * std::min(right, reach), end};
-        if (!strands.empty() && strands.back().hi >= strand.lo - 1e-12 &&
-            std::abs(strands.back().end - strand.end) < kSameEnd)
-            strands.back().hi = strand.hi;
-        else
-            strands.push_back(strand);
+        const double bridge = wet >= 1 ? 8 * a : active * std::max(kMark, kBridge * spacing * wet / (1 - wet));
+        const double mark = active * kMark;
+        const Lying on = touching(bundles, b, wet, laid);
+        const double past_lo = i == 0 && wet >= 1 ? bridge : mark;
+        const double past_hi = i + 1 == lower.size() && wet >= 1 ? bridge : mark;
+        const double gap = strands.empty() ? 1e9 : (lower[i].x - strands.back().hi) * a;
+        const bool bridged = gap <= bridge_before + bridge;
+        if (bridged && std::abs(strands.back().begin - on.begin) < kSameEnd && std::abs(strands.back().end - on.end) < kSameEnd) {
+            strands.back().hi = lower[i].x;
+            strands.back().past_hi = past_hi;
+        } else {
+            if (bridged) strands.back().past_hi = std::max(strands.back().past_hi, 0.5 * gap);
+            strands.push_back({lower[i].x, lower[i].x, bridged ? std::max(past_lo, 0.5 * gap) : past_lo, past_hi, on.begin, on.end});
+        }
+        bridge_before = bridge;
     }
     return strands;
 }
@@ -179,42 +222,39 @@ void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::s
         widest = std::max(widest, trail.cuts[at[k]].a);
     }
     for (const Strand& strand : strands) {
-        const double lo = std::clamp(strand.lo, -1.0, 1.0), hi = std::clamp(strand.hi, -1.0, 1.0);
-        const double x = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
-        // What reaches beyond the section's sides does so by a length of its own, so that the sides
-        // close where sections end in a point.
-        const double beyond_lo = std::clamp(-1 - strand.lo, 0.0, kBeyond) * widest / cell;
-        const double beyond_hi = std::clamp(strand.hi - 1, 0.0, kBeyond) * widest / cell;
-        const auto place = [&](std::size_t k) { return (on_surface(trail.cuts[at[k]], x) - zero) / cell + 0.5 * (beyond_hi - beyond_lo) * across[k]; };
-        const auto half_width = [&](std::size_t k) { return half * trail.cuts[at[k]].a / cell + 0.5 * (beyond_hi + beyond_lo); };
+        const double x = 0.5 * (strand.lo + strand.hi), half = 0.5 * (strand.hi - strand.lo);
+        // Ink reaches beyond the hair by a length of its own, so that the sides close where sections end in a point.
+        const double most = kBeyond * widest;
+        const double past_lo = std::min(strand.past_lo, most) / cell, past_hi = std::min(strand.past_hi, most) / cell;
+        const auto place = [&](std::size_t k) { return (on_surface(trail.cuts[at[k]], x) - zero) / cell + 0.5 * (past_hi - past_lo) * across[k]; };
+        const auto half_width = [&](std::size_t k) { return half * trail.cuts[at[k]].a / cell + 0.5 * (past_hi + past_lo); };
+        // Pieces from tip to root; the first and the last may end between two cuts.
+        const std::size_t last = at.size() - 1;
+        std::size_t k = 0;
+        while (k + 1 < last && trail.along[at[k + 1]] > strand.end) ++k;
         Vec2 before{0}, step{0};
         double half_before = 0;
-        bool had = false, first = true;
-        for (std::size_t k = 0; k < at.size(); ++k) {
-            const double along = trail.along[at[k]];
-            if (along > strand.end) continue;
-            const Vec2 here = place(k);
-            const double h = half_width(k);
-            if (!had && k > 0) {
-                // It ends between two cuts.
-                const double f = (strand.end - along) / std::max(trail.along[at[k - 1]] - along, 1e-12);
-                before = glm::mix(here, place(k - 1), f);
-                half_before = glm::mix(h, half_width(k - 1), f);
-                had = true;
-            }
-            if (had) {
-                step = here - before;
-                const Vec2 direction = glm::length(step) > 1e-9 ? glm::normalize(step) : Vec2{0};
-                if (first && k == 1 && trail.along[at[0]] <= strand.end)
-                    bands.draw(before - widest / cell * direction, before, half_before, half_before, across[k]);
-                bands.draw(before, here, half_before, h, across[k]);
-                first = false;
-            }
-            before = here;
-            half_before = h;
-            had = true;
+        const auto part_of = [&](std::size_t i, double along) {  // of the piece from cut i on
+            const double run = trail.along[at[i]] - trail.along[at[i + 1]];
+            return run > 1e-12 ? std::clamp((trail.along[at[i]] - along) / run, 0.0, 1.0) : 0.0;
+        };
+        const bool whole_tip = trail.along[at[0]] <= strand.end, whole_root = trail.along[at[last]] >= strand.begin;
+        bool first = true;
+        for (; k < last && trail.along[at[k]] > strand.begin && trail.along[at[k + 1]] < strand.end; ++k) {
+            const Vec2 p = place(k), q = place(k + 1);
+            const double r = half_width(k), s = half_width(k + 1), f = part_of(k, strand.end), g = part_of(k, strand.begin);
+            const double from = trail.along[at[k]] > strand.end ? f : 0, to = trail.along[at[k + 1]] < strand.begin ? g : 1;
+            const Vec2 start = glm::mix(p, q, from);
+            const double half_start = glm::mix(r, s, from);
+            before = glm::mix(p, q, to);
+            half_before = glm::mix(r, s, to);
+            step = q - p;
+            if (first && whole_tip && glm::length(step) > 1e-9)
+                bands.draw(start - widest / cell * glm::normalize(step), start, half_start, half_start, across[k]);
+            bands.draw(start, before, half_start, half_before, across[k]);
+            first = false;
         }
-        if (!first && glm::length(step) > 1e-9)
+        if (!first && whole_root && glm::length(step) > 1e-9)
             bands.draw(before, before + widest / cell * glm::normalize(step), half_before, half_before, across.back());
     }
 }
@@ -298,7 +338,12 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
             const Vec2* at = places[k].at(trail, widest);
             if (at && rise(trail.cuts[widest], *at) <= 0) lower.push_back({at->x, &bundles.bristles[k]});
         }
-        draw_strands(trail, begin, end, strands_of(lower, bundles, ink), f.lo, cell, bands);
+        Laid laid{.lies = {trail.along[end - 1], trail.along[begin]}};
+        for (std::size_t i = begin; i + 1 < end; ++i) {
+            const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
+            laid.across += std::abs(run.x * ink.way.y - run.y * ink.way.x);
+        }
+        draw_strands(trail, begin, end, strands_of(lower, bundles, ink, trail.cuts[widest].a, laid), f.lo, cell, bands);
     };
     for (const Trail& trail : trails) {
         // The bands of both parts meet between two cuts.

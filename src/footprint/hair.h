@@ -35,6 +35,7 @@ struct HairInk {
     std::span<const double> wet;  ///< [bundles] film a bundle brings over the film that closes the
                                   ///< gaps between its hairs; 1 and more: closed
     double travel = 0;            ///< metres of the stroke so far: bristles roll as they are drawn
+    Vec2 way{0};                  ///< unit, where the tuft is drawn, in the stamp's (u, v); zero: it stands
 };
 
 /// Film that a bundle brings over the film that closes its gaps,
@@ -50,12 +51,18 @@ struct HairMarks {
     double closed_area = 0;  ///< m², of the outlines
 };
 
-/// Picture of the bristles' marks inside the outlines of the trails. The bristles of the lower
-/// half lie side by side; each that gives ink covers the way to half between it and its
-/// neighbours, as far as its ink reaches, along the hair. One stops where its bundle's wetness
-/// falls below what it needs, the less ready ones first, and thins before. Ends and widths
-/// follow the hair, so a drag draws streaks; areas are exact at the edges. With wetness 1 in
-/// every bundle it is the picture of `rasterise`. All 500 bristles: about 0.2 ms.
+/// Picture of the bristles' marks inside the outlines of the trails. Each bristle of the lower half that gives
+/// ink leaves a streak along the hair, 90 µm wide, as thick as hair with the ink that clings to it; between
+/// bristles side by side it closes gaps of wet / (1 − wet) mean spacings. A bristle gives ink or none: the thread under it
+/// breaks where its bundle's wetness falls below what it needs, which differs from one to the next, the less ready
+/// ones first, and along the way, over 12 mm for all of a bundle and over 4 mm for it alone. Dry hair touches with a part of what
+/// lies down of it,
+///
+///     0.1 + 1.25 wet²,   and no more than measures max(1, wet / (2 (1 − wet)²)) streaks across the motion:
+///
+/// drawn sideways it has ink for no wider a way. All this is of the hair and of the way, in metres, and the same for any
+/// sampling and texel. Areas are exact at the edges. With wetness 1 in every bundle it is the picture
+/// of `rasterise`. All 500 bristles: about 0.2 ms.
 HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines,
                      const brush::Bundles& bundles, int branches, const HairInk& ink,
                      const Frame& frame, std::uint32_t triangle, double cell);

@@ -9,6 +9,9 @@
 namespace tuft::ink {
 namespace {
 
+constexpr double kThread = 0.6;  ///< part of the film below which the ink under a hair breaks
+constexpr double kThreadWets = 0.1;  ///< of the travel that a film takes: the thread under a hair is there at once
+
 /// Part of the supply that comes without any bending: hair wets what it touches.
 constexpr double kCapillarySupply = 0.25;
 constexpr double kFlowStep = 0.005;  // seconds
@@ -303,7 +306,7 @@ double supply_quantity(double eta, double moment_factor, double remaining, doubl
 DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampContact& contact,
                             const Substrate& substrate) {
     DepositParams out;
-    out.transfer_length = static_cast<float>(ink.transfer_length);
+    out.transfer_length = static_cast<float>((contact.by_hair ? kThreadWets : 1) * ink.transfer_length);
     out.capacity = substrate.capacity;
     out.extinction = extinction_of(ink);
     out.mix = mix_over(tuft, contact.touch);
@@ -318,7 +321,7 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
     const double offered = ink.supply * squeezed * near / ink.supply_length;  // film·m² per metre
     const double asked = ink.film * contact.width;
     double target = ink.film * std::min(1.0, 0.85 + 0.3 * k);
-    if (asked > 0) target *= -std::expm1(-offered / asked);
+    if (asked > 0) target *= std::max(-std::expm1(-offered / asked), contact.by_hair ? kThread : 0.0);
     if (contact.area > 0) target = std::min(target, left / contact.area);
     out.target = static_cast<float>(target);
     return out;

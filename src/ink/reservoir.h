@@ -145,6 +145,7 @@ struct StampContact {
     double moment_factor = 1;  ///< k = |M| / M_max of the tuft, 0–1
     double width = 0;          ///< metres across the motion, gaps between hairs left out
     double area = 0;           ///< m² of the contact patch
+    bool by_hair = false;      ///< single hairs touch, which leave a film of their own thickness or none
     std::span<const float> touch = {};  ///< as `Touch`; empty: the whole tuft alike
 };
 
@@ -157,8 +158,10 @@ struct StampContact {
 ///     c = film (1 − exp(−x)) min(1, 0.85 + 0.3 k)
 ///
 /// so a loaded tuft (x ≈ 5–100) paints full strength at any speed and in any width,
-/// and one that has given most of its ink pales, wide strokes first. c · area never
-/// exceeds what is left.
+/// and one that has given most of its ink pales, wide strokes first. Single hairs, of which
+/// the fewer touch the less ink there is, do not pale below 0.6 of the film: a thinner thread
+/// of ink breaks instead of spreading; and theirs is there at once, s0 being a tenth. c · area
+/// never exceeds what is left.
 DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampContact& contact,
                             const Substrate& substrate);
 

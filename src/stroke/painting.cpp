@@ -266,17 +266,19 @@ void Painting::draw_poses() {
         if (!contact.tuft.converged) ++h.report.unconverged;
 
         if (h.was_touching) h.move_on(pose, dt);
+        const Vec3 way = h.was_touching ? pose.position - h.last_position : Vec3{0};
+        const Vec2 shift{glm::dot(way, contact.frame.t), glm::dot(way, contact.frame.b)};
+        if (!h.was_touching) h.tracks = {};
+        const double slid = glm::length(shift);
+        h.slid += slid;
+        if (slid > 0) h.heading = shift / slid;
         Stamp stamp = h.make_stamp(contact, dt);
         if (stamp.footprint.empty()) {
             h.was_touching = false;
             continue;
         }
         ++h.report.stamps;
-        if (h.was_touching) {
-            // The hand's way, not the frame's: the patch also grows and shrinks.
-            const Vec3 d = pose.position - h.last_position;
-            stamp.motion.shift = {glm::dot(d, contact.frame.t), glm::dot(d, contact.frame.b)};
-        }
+        stamp.motion.shift = shift;  // the hand's way, not the frame's: the patch also grows and shrinks
         h.was_touching = true;
         h.last_position = pose.position;
         const double area = footprint_area(stamp.footprint);
@@ -285,6 +287,7 @@ void Painting::draw_poses() {
             .width = h.closed_area > 0 ? area / std::sqrt(h.closed_area) : std::sqrt(area),
             // A batch shares what is left; mixed ink comes stamp by stamp.
             .area = area * (h.mixed || h.paste ? 1.0 : static_cast<double>(Stamper::kBatch)),
+            .by_hair = stamp.by_hair,
             .touch = h.touched};
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
         stamp.ink.capacity = std::max(h.substrate->capacity, static_cast<float>(ink::standing_film(h.ink.yield)));

@@ -17,6 +17,7 @@ constexpr double kSpeedLength = 2e-3;   // metres of travel over which the hand'
 // Metres of ink under hair that brings just what closes its gaps: twice the grain of rough
 // paper, three times that of bisque.
 constexpr double kGrainFilm = 30e-6;
+constexpr double kRests = 1;            // rms heights over the mean of the grain that dry hair is held up by its hills
 constexpr double kLieLength = 1e-3;     // metres of hair on the surface that turn the grid of its ink
 constexpr double kSplays = 0.4;         // lack of wetness at which no water holds the tip together
 
@@ -161,7 +162,8 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
     // On the palette the pool itself fills the gaps of dry hair.
     const bool closed = least >= 1 || stroke.layer == kPaletteLayer;
     closed_area = 0;
-    if (!closed) footprint::splay(trails, std::clamp((1 - mean) / kSplays, 0.0, 1.0));
+    const double amount = closed ? 0 : std::clamp((1 - mean) / kSplays, 0.0, 1.0);
+    footprint::splay(trails, tracks, slid, tuft.preset.length, amount);
     std::vector<footprint::Outline> outlines;
     for (const footprint::Trail& trail : trails) {
         footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points);
@@ -171,9 +173,10 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, cell);
     } else {
         footprint::HairMarks marks = footprint::hair_marks(trails, outlines, tuft.bundles, branches,
-                                                           {wetness, travel}, contact.frame, contact.triangle, cell);
+                                                           {wetness, travel, heading}, contact.frame, contact.triangle, cell);
         stamp.footprint = std::move(marks.footprint);
-        stamp.grain_film = kGrainFilm * mean;
+        stamp.by_hair = true;
+        stamp.grain_film = kGrainFilm * mean - kRests * static_cast<double>(substrate->relief) * std::max(0.0, 1 - mean);
         closed_area = marks.closed_area;
     }
     if (wet || mixed || paste) place_nodes(stamp, trails, outlines);

@@ -37,6 +37,9 @@ struct Painting::Hand {
     brush::TuftState state;
     double last_time = 0;
     double speed = 0, travel = 0;  // m/s; metres drawn so far
+    double slid = 0;               // metres drawn over the surface since it was touched
+    Vec2 heading{0};               // unit, of the last motion over it; zero before the first
+    footprint::HairTracks tracks;  // of the hair that lies there
     ink::Touch touched;            // by the last stamp
     ink::Touch touch;              // of the stamps since the last flush, summed
     double closed_area = 0;        // m², of the last stamp with its gaps; 0: it has none

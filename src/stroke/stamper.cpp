@@ -30,6 +30,14 @@ const Stamper::Grain& Stamper::grain(std::uint32_t slot) {
     return *grain_[slot];
 }
 
+// Edges of a picture are soft over a texel: single hairs begin that much within the stamp before, so that their marks join.
+footprint::Motion Stamper::motion_of(const Stamp& stamp) const {
+    footprint::Motion motion = stamp.motion;
+    const double way = glm::length(motion.shift);
+    if (stamp.by_hair && way > 0) motion.shift *= 1 + model_.texels.texel_size / way;
+    return motion;
+}
+
 bool Stamper::add(Stamp stamp) {
     batch_.push_back(std::move(stamp));
     return batch_.size() >= kBatch;
@@ -40,7 +48,7 @@ double Stamper::flush() {
     const footprint::Surface surface = model_.surface();
     parallel_for(batch_.size(), 2, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            jobs_[i] = footprint::plan_stamp(surface, batch_[i].footprint, batch_[i].motion, options_of(batch_[i]),
+            jobs_[i] = footprint::plan_stamp(surface, batch_[i].footprint, motion_of(batch_[i]), options_of(batch_[i]),
                                              scratch_[i], std::move(jobs_[i]));
     });
 
@@ -70,7 +78,7 @@ double Stamper::flush() {
         const std::uint32_t slot = order[runs[r]].slot;
         if (!starts_.contains(slot)) starts_.emplace(slot, ink::erase_start(canvas_, slot));
     }
-    if (grain_.empty() && std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.grain_film > 0; }))
+    if (grain_.empty() && std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.by_hair; }))
         grain_.resize(model_.texels.n_slots());
     std::array<ink::DepositLaw, kBatch> laws;
     for (std::size_t i = 0; i < batch_.size(); ++i) laws[i] = ink::deposit_law(batch_[i].ink, batch_[i].ds);
@@ -96,7 +104,7 @@ double Stamper::flush() {
                                            starts_.at(job.slot), {.strength = stamp.erases});
                     continue;
                 }
-                if (stamp.grain_film > 0)
+                if (stamp.by_hair)
                     ink::expose_relief(exposure, grain(slot), grain_rms_,
                                        static_cast<float>(stamp.grain_film));
                 given[k] = ink::deposit(canvas_, slot, exposure, tile.area, stamp.ink, laws[job.stamp]);
@@ -115,14 +123,14 @@ void Stamper::keep(std::uint32_t slot) {
 }
 
 ink::NodeAreas Stamper::expose(const Stamp& stamp) {
-    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, stamp.motion, options_of(stamp), scratch_[0],
+    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, motion_of(stamp), options_of(stamp), scratch_[0],
                                      std::move(jobs_[0]));
     const footprint::StampJobs& plan = jobs_[0];
     exposed_.clear();
     if (plan.empty()) return {};
     piecewise_ = footprint::choose_mode(jobs_[0], piecewise_, options_);
     exposed_.resize(plan.tiles.size());
-    if (grain_.empty() && stamp.grain_film > 0) grain_.resize(model_.texels.n_slots());
+    if (grain_.empty() && stamp.by_hair) grain_.resize(model_.texels.n_slots());
     parallel_for(exposed_.size(), 4, [&](std::size_t begin, std::size_t end) {
         footprint::Unpacked unpacked;
         atlas::TexelShape room;
@@ -134,7 +142,7 @@ ink::NodeAreas Stamper::expose(const Stamp& stamp) {
             if (mask_ && mask_->none(slot)) continue;
             if (mask_) mask_->apply(slot, e.exposure);
             e.slot = slot;
-            if (stamp.grain_film > 0)
+            if (stamp.by_hair)
                 ink::expose_relief(e.exposure, grain(slot), grain_rms_, static_cast<float>(stamp.grain_film));
             ink::place_texels(e.places, stamp.grid, stamp.footprint.frame, atlas::shape_of(model_.texels, slot, room));
             ink::tents_of(tents, e.places, e.exposure);

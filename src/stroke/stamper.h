@@ -23,7 +23,8 @@ struct Stamp {
     ink::DepositParams ink;
     double ds = 0;               ///< metres of travel it stands for
     double erases = 0;           ///< strength of an eraser, which takes ink instead; 0: it is none
-    double grain_film = 0;       ///< metres of ink under the hair, to fill the surface's grain; 0: it does
+    bool by_hair = false;        ///< single hairs touch, and the surface's grain where it is not filled
+    double grain_film = 0;       ///< then: metres of ink under the hair over the grain's mean height
     ink::TouchGrid grid;         ///< over the footprint, for ink that is not the same all over it
 };
 
@@ -75,9 +76,11 @@ class Stamper {
     /// Single hairs drawn sideways ink all that they pass over; sub-poses would leave a comb.
     footprint::StampOptions options_of(const Stamp& stamp) const {
         footprint::StampOptions o = options_;
-        o.passes_over = stamp.grain_film > 0;
+        o.passes_over = stamp.by_hair;
         return o;
     }
+
+    footprint::Motion motion_of(const Stamp& stamp) const;
 
     using Grain = std::array<float, atlas::kTileTexels>;
     const Grain& grain(std::uint32_t slot);

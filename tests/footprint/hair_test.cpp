@@ -82,9 +82,17 @@ TEST(Hair, SplayedHairGivesInkFromItsWholeLowerHalf) {
     // the lower ones must not hang on which of them is taken, or on a touch of lean.
     const Pressed& p = pressed();
     const std::vector<double> wet(p.tuft.bundles.place.size(), 0.5);
+    // Drawn on for the length of the patch, the tip has the width of the belly.
+    const double length = p.tuft.preset.length, patch = (p.trails[0].along.front() - p.trails[0].along.back()) * length;
+    HairTracks tracks;
+    for (double slid = 0; slid < patch + 1e-3; slid += 1e-4) {
+        std::vector<Trail> now = p.trails;
+        splay(now, tracks, slid, length, 1);
+    }
     const auto area = [&](double lean, double more) {
         std::vector<Trail> leaning = p.trails;
-        splay(leaning, 1);
+        HairTracks own = tracks;
+        splay(leaning, own, patch + 1e-3, length, 1);
         for (std::size_t i = 0; i < leaning[0].cuts.size(); ++i) {
             Cut& cut = leaning[0].cuts[i];
             cut.e.z += lean;
@@ -140,50 +148,97 @@ TEST(Hair, MirroredHairDrawsTheMirroredPicture) {
     EXPECT_NEAR(moment(a), -moment(b), 2e-3 * sum * pressed().tuft.preset.radius);
 }
 
-/// Lateral places of the bristles that give ink, sorted: those of the lower half of the widest section.
-std::vector<double> lower_places(const brush::Bundles& bundles) {
-    const auto& cuts = pressed().trails[0].cuts;
-    const Cut* widest = &cuts.back();
-    for (std::size_t i = cuts.size(); i-- > 0;)
-        if (cuts[i].a > (1 + 1e-6) * widest->a) widest = &cuts[i];
-    std::vector<double> x;
-    for (const brush::Bristle& b : bundles.bristles) {
-        const Vec2 at = brush::place_of(bundles, b);
-        if (widest->a * at.x * widest->e.z + widest->b * at.y * widest->m.z <= 0) x.push_back(at.x);
-    }
-    std::sort(x.begin(), x.end());
-    return x;
-}
-
-/// Part of the section's width, -1 to 1, that ink covers which reaches 3 spacings at half wetness: 3 · 2/n ·
-/// w/(1 - w) to both sides of each place.
-double covered_part(const std::vector<double>& x, double wet) {
-    const double reach = 3 * 2.0 / static_cast<double>(x.size()) * wet / (1 - wet);
-    double covered = 0, end = -1;
-    for (const double at : x) {
-        const double lo = std::max(end, at - reach), hi = std::min(1.0, at + reach);
-        covered += std::max(0.0, hi - lo);
-        end = std::max(end, hi);
-    }
-    return 0.5 * covered;
-}
-
 TEST(Hair, PartedBundlesLeaveGapsBetweenThem) {
-    for (const std::uint64_t seed : {11, 12, 13}) {
+    double together_area = 0, parted_area = 0;
+    for (const std::uint64_t seed : {11, 12, 13, 14}) {
         SCOPED_TRACE(seed);
         brush::Bundles together = brush::make_bundles(pressed().tuft.preset, seed), parted = together;
         std::fill(parted.apart.begin(), parted.apart.end(), 1.0);
-        for (const double wet : {0.3, 0.5}) EXPECT_LT(area_of(marks(parted, wet)), area_of(marks(together, wet))) << wet;
+        for (const double wet : {0.3, 0.5, 0.7}) {
+            together_area += area_of(marks(together, wet));
+            parted_area += area_of(marks(parted, wet));
+        }
         EXPECT_EQ(marks(parted, 1).coverage, marks(together, 1).coverage) << "ink closes them";
-        // With all bristles ready none stops above a wetness of 0.33, and only the ink's reach over the gaps counts.
-        for (brush::Bundles* b : {&together, &parted})
-            for (brush::Bristle& bristle : b->bristles) bristle.readiness = 1;
-        const std::vector<double> near = lower_places(together), apart = lower_places(parted);
-        for (const double wet : {0.35, 0.4, 0.5, 0.6, 0.7, 0.8}) {
-            const double share = area_of(marks(parted, wet)) / area_of(marks(together, wet));
-            EXPECT_LT(share, 1) << wet;
-            // Hair in the middle, where parting opens less, lies on the sheet a little longer than at the sides.
-            EXPECT_NEAR(share, covered_part(apart, wet) / covered_part(near, wet), 0.03) << wet;
+    }
+    EXPECT_LT(parted_area, 0.98 * together_area);
+}
+
+TEST(Hair, DriesIntoThreadsOfItsOwnWidth) {
+    // A bristle alone leaves 2 · 45 µm, whatever it holds, or nothing.
+    brush::Bundles one = pressed().tuft.bundles;
+    one.bristles.resize(1);
+    one.bristles[0].place = {0, 0};
+    one.bristles[0].readiness = 1;
+    one.bristles[0].end = 1;
+    double before = -1;
+    for (const double wet : {0.45, 0.5, 0.6, 0.7}) {
+        const Footprint f = marks(one, wet);
+        double most = 0, length = 0;
+        for (int i = 0; i < f.width; ++i) {
+            double column = 0;
+            for (int j = 0; j < f.height; ++j) column += f.coverage[static_cast<std::size_t>(j) * f.width + i] / 255.0 * f.cell;
+            most = std::max(most, column);
+            length += column > 40e-6 ? f.cell : 0;
+        }
+        EXPECT_NEAR(most, 90e-6, 4e-6) << wet << ": its slope, and cells of 1/255";
+        EXPECT_GE(length, before) << "the wetter it is, the more of it touches";
+        before = length;
+    }
+    one.bristles[0].readiness = 0;
+    EXPECT_EQ(area_of(marks(one, 0.3)), 0);
+}
+
+TEST(Hair, DrawnSidewaysHasInkForNoWiderAWay) {
+    // The tuft lies along x: drawn along y its bristles would paint with their whole length.
+    const Pressed& p = pressed();
+    const std::vector<double> wet(p.tuft.bundles.place.size(), 0.5);
+    const auto area = [&](const Vec2& way) {
+        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, way}, kFlat, 0, kCell).footprint);
+    };
+    EXPECT_NEAR(area({1, 0}), area({0, 0}), 0.02 * area({0, 0})) << "a drag along the hair, which is bent a little";
+    EXPECT_LT(area({0, 1}), 0.3 * area({1, 0}));
+    EXPECT_GT(area({0, 1}), 0);
+}
+
+TEST(Hair, FollowsInItsTrack) {
+    // What lies on the surface stays as wide when the tuft is pressed or lifted on the spot, and is drawn out by what
+    // the hair before it was.
+    const Pressed& p = pressed();
+    const double length = p.tuft.preset.length;
+    const Trail& lying = p.trails[0];
+    std::size_t widest = lying.cuts.size() - 1;
+    for (std::size_t i = widest; i-- > 0;)
+        if (lying.cuts[i].a > lying.cuts[widest].a) widest = i;
+    HairTracks tracks;
+    std::vector<Trail> now = p.trails;
+    splay(now, tracks, 0, length, 1);
+    // A track has a place every 25 µm, over which the very tip grows from nothing.
+    const auto near_tip = [&](std::size_t i) { return (lying.along[0] - lying.along[i]) * length < 5e-5; };
+    for (std::size_t i = 0; i < widest; ++i) {
+        if (near_tip(i)) continue;
+        EXPECT_NEAR(now[0].cuts[i].a, lying.cuts[i].a, 0.01 * lying.cuts[widest].a) << i;
+    }
+    now = p.trails;
+    for (Cut& cut : now[0].cuts) cut.a *= 1.5;  // pressed
+    splay(now, tracks, 0, length, 1);
+    for (std::size_t i = 0; i < widest; ++i) {
+        if (near_tip(i)) continue;
+        EXPECT_NEAR(now[0].cuts[i].a, lying.cuts[i].a, 0.01 * lying.cuts[widest].a) << i;
+    }
+    // Half way drawn on, the front half of the patch is as wide as the belly.
+    const double patch = (lying.along[0] - lying.along[widest]) * length;
+    for (double slid = 0; slid <= 0.5 * patch; slid += 1e-4) {
+        now = p.trails;
+        splay(now, tracks, slid, length, 1);
+    }
+    for (std::size_t i = 0; i < widest; ++i) {
+        const double behind = (lying.along[i] - lying.along[widest]) * length;
+        const double wanted = lying.cuts[widest].a;
+        if (behind < 0.45 * patch) {
+            EXPECT_NEAR(now[0].cuts[i].a, wanted, 0.03 * wanted) << behind / patch;
+        }
+        if (behind > 0.95 * patch) {
+            EXPECT_LT(now[0].cuts[i].a, 0.9 * wanted) << behind / patch;
         }
     }
 }

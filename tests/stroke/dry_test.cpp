@@ -113,6 +113,75 @@ TEST(DryBrush, StreaksLieWhereTheyLieAtAnySamplingRate) {
     EXPECT_LT(apart(slow, fast), 0.1);
 }
 
+/// Part of the area that shows ink at all, a tenth of its full tone, which shows less than half of it.
+double half_tone(const Painting& p, const ink::Ink& ink) {
+    const double extinction = ink::extinction_of(ink);
+    double half = 0, all = 0;
+    for (const std::uint32_t slot : p.canvas().touched_slots()) {
+        const ink::Plane* plane = p.canvas().plane(slot, 0);
+        for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
+            const double shows = -std::expm1(-extinction * static_cast<double>((*plane)[t]));
+            if (shows < 0.1) continue;
+            const auto area = static_cast<double>(p.model().texels.tiles[slot].area[t]);
+            all += area;
+            if (shows < 0.5) half += area;
+        }
+    }
+    return half / all;
+}
+
+TEST(DryBrush, HairLeavesInkOrNone) {
+    // Half tone is a density of streaks. What is left of it are the edges of streaks, a texel that is covered in part on either
+    // side, which get fewer as texels get finer than hair; 0.05 of thinning threads and ends beside.
+    const ink::Ink ink = ink::load_ink("carbon");
+    const double left = 0.2;
+    const Model coarse = sheet(), fine = sheet({}, 2 * kSize);
+    const double at_coarse = half_tone(dry_stroke(coarse, left, 3), ink), at_fine = half_tone(dry_stroke(fine, left, 3), ink);
+    EXPECT_LT(at_coarse, 0.25);
+    EXPECT_LT(at_fine, 0.05 + 0.6 * at_coarse);
+}
+
+/// Part of each square of `side` metres that is covered, over the sheet.
+std::vector<double> by_squares(const Painting& p, double side) {
+    const int n = static_cast<int>(std::ceil(kSide / side));
+    std::vector<double> sum(static_cast<std::size_t>(n) * n, 0);
+    const atlas::TexelMap& map = p.model().texels;
+    for (const std::uint32_t slot : p.canvas().touched_slots()) {
+        const ink::Plane* plane = p.canvas().plane(slot, 0);
+        for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
+            const double area = static_cast<double>(map.tiles[slot].area[t]);
+            if (!(area > 0)) continue;
+            const Vec3 at(map.position(slot, t));
+            const int i = std::clamp(static_cast<int>((at.x + 0.5 * kSide) / side), 0, n - 1);
+            const int j = std::clamp(static_cast<int>((at.y + 0.5 * kSide) / side), 0, n - 1);
+            sum[static_cast<std::size_t>(j) * n + i] += std::min(1.0, static_cast<double>((*plane)[t])) * area / (side * side);
+        }
+    }
+    return sum;
+}
+
+TEST(DryBrush, AFinerAtlasShowsTheSameStreaks) {
+    // Compared over squares of three coarse texels. Edges of streaks are soft over a texel of the one and of the other; hair
+    // of another seed has nothing in common but how much of it gives ink.
+    const Model coarse = sheet(), fine = sheet({}, 2 * kSize);
+    const auto apart_by = [](const std::vector<double>& a, const std::vector<double>& b) {
+        double difference = 0, all = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            difference += std::abs(a[i] - b[i]);
+            all += std::max(a[i], b[i]);
+        }
+        return difference / all;
+    };
+    for (const char* ground : {"porcelain", "rice-paper"}) {
+        const auto squares = [&](const Model& model, std::uint64_t seed) {
+            return by_squares(dry_stroke(model, 0.2, seed, {.substrate = ground}), 0.18e-3);
+        };
+        const std::vector<double> a = squares(coarse, 5), b = squares(fine, 5);
+        EXPECT_LT(apart_by(a, b), 0.5 * apart_by(a, squares(coarse, 6))) << ground << " " << apart_by(a, b);
+        EXPECT_LT(apart_by(a, b), 0.3) << ground;
+    }
+}
+
 TEST(DryBrush, TuftAndTexelsKeepTheInk) {
     const Model model = sheet();
     Painting painting(model);

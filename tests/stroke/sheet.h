@@ -12,7 +12,7 @@ inline constexpr double kSide = 0.06;        // metres
 inline constexpr std::uint32_t kSize = 1024; // texels; the sheet covers all but a margin of 8
 
 // A flat sheet in the plane through `centre` spanned by `frame`, with the UVs of a photograph.
-inline Model sheet(const Frame& frame = {}) {
+inline Model sheet(const Frame& frame = {}, std::uint32_t size = kSize) {
     constexpr int n = 20;
     mesh::TriangleMesh m;
     std::vector<Vec2f> uv;
@@ -20,7 +20,7 @@ inline Model sheet(const Frame& frame = {}) {
         for (int i = 0; i <= n; ++i) {
             const double x = static_cast<double>(i) / n, y = static_cast<double>(j) / n;
             m.positions.push_back(Vec3f(frame.to_world({(x - 0.5) * kSide, (y - 0.5) * kSide, 0})));
-            const double margin = 8.0 / kSize;
+            const double margin = 8.0 / size;
             uv.push_back(Vec2f(margin + x * (1 - 2 * margin), margin + y * (1 - 2 * margin)));
             m.bounds.add(Vec3(m.positions.back()));
         }
@@ -41,8 +41,8 @@ inline Model sheet(const Frame& frame = {}) {
                         m.triangles[i][(k + 1) % 3] == m.triangles[j][l])
                         m.neighbours[3 * i + k] = j;
     atlas::Atlas a;
-    a.size = kSize;
-    a.texel_size = kSide / (kSize - 16);
+    a.size = size;
+    a.texel_size = kSide / (size - 16);
     a.n_charts = 1;
     a.triangle_chart.assign(t, 0);
     for (const auto& triangle : m.triangles)
