@@ -34,7 +34,7 @@ bool FileDialog::reads() const { return purpose_ != Purpose::save && purpose_ !=
 bool FileDialog::suits(const fs::path& file) const {
     const std::string e = lower(file.extension().string());
     if (purpose_ == Purpose::save) return e == ".tuft";
-    if (purpose_ == Purpose::export_model) return e == ".glb" || e == ".gltf" || e == ".obj" || e == ".inkml";
+    if (purpose_ == Purpose::export_model) return e == ".glb" || e == ".gltf" || e == ".obj" || e == ".png" || e == ".exr" || e == ".inkml";
     if (purpose_ == Purpose::ink || purpose_ == Purpose::save_ink) return e == ".toml";
     if (purpose_ == Purpose::writing) return e == ".svg" || e == ".inkml";
     return (e == ".tuft" && purpose_ != Purpose::revise) || e == ".ply" || e == ".obj" || e == ".stl" || e == ".off" || e == ".glb" || e == ".gltf";

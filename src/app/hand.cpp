@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace tuft::app {
 namespace {
@@ -13,6 +15,12 @@ constexpr double kReport = 0.01;  // seconds between a tablet's reports while so
 constexpr double kJump = 0.004;   // metres between two aims that may be an edge of the outline
 constexpr double kGrazing = 6;    // times further on a slanting surface than across the view
 constexpr double kMaxTilt = 1.2;  // radians
+constexpr double kMostFelt = 0.008, kFeltOfModel = 0.02;  // metres round the aim, and part of the model's diagonal, at most
+constexpr double kShallow = 0.2;  // of how far gaps are felt: what is less deep is relief, and followed
+constexpr double kBent = 0.5;     // of it: how far two sides of a gap may lie out of one plane
+constexpr int kPairs = 12;        // of rays round the aim
+constexpr std::size_t kAgreeing = 3;  // of them that must lie on ground
+constexpr double kSlanting = 0.35;  // cosine to the line of sight under which no gap is told from an edge
 
 double part(double dt, double constant) { return 1.0 - std::exp(-dt / std::max(constant, 1e-6)); }
 
@@ -33,7 +41,55 @@ std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, cons
 }
 
 Hand::Hand(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const HandSettings& settings)
-    : surface_(surface), hold_(stroke::hold_options(preset)), settings_(settings) {}
+    : surface_(surface), hold_(stroke::hold_options(preset)), settings_(settings),
+      reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {}
+
+std::optional<Ground> Hand::ground(const Aim& aim) const {
+    const auto facing = [&](const mesh::SurfacePoint& p) { return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal; };
+    const auto hit = aim_at(surface_, aim);
+    const double nothing = std::numeric_limits<double>::infinity(), centre = hit ? hit->distance : nothing;
+    struct Pair {
+        double depth;
+        Vec3 normal;
+    };
+    std::vector<Pair> pairs;
+    for (int i = 0; i < kPairs; ++i) {
+        const double angle = std::numbers::pi * i / kPairs;
+        const Vec3 side = reach_ * (std::cos(angle) * aim.view_right + std::sin(angle) * aim.view_up);
+        Aim one = aim, other = aim;
+        one.ray.origin += side;
+        other.ray.origin -= side;
+        const auto a = aim_at(surface_, one), b = aim_at(surface_, other);
+        if (!a || !b) continue;
+        // On one ground, flat or evenly bent: each lies as far out of the other's plane. Else it is a rim or a step.
+        const Vec3 na = facing(*a), nb = facing(*b), way = b->position - a->position;
+        const double out_a = glm::dot(na, way), out_b = glm::dot(nb, way);
+        if (std::abs(out_a + out_b) < kShallow * reach_ && std::abs(out_a) < kBent * reach_) pairs.push_back({0.5 * (a->distance + b->distance), na + nb});
+    }
+    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.depth < b.depth; });
+    const double level = pairs.size() < kAgreeing ? nothing : pairs[pairs.size() / 2].depth;
+    Vec3 normal(0);
+    std::size_t agree = 0;
+    for (const Pair& pair : pairs)
+        if (std::abs(pair.depth - level) < kShallow * reach_) normal += pair.normal, ++agree;
+    const bool gap = agree >= kAgreeing && level < centre - kShallow * reach_ && glm::dot(normal, -aim.ray.direction) > kSlanting * glm::length(normal);
+    if (gap) return Ground{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
+    if (!hit) return std::nullopt;
+    return Ground{hit->position, facing(*hit), hit->distance, false};
+}
+
+// The smoothed point cuts the corners of a curved surface: it is brought back. Over a gap the nearest
+// place is an edge beside it; there it stays where it is.
+void Hand::onto_surface() {
+    const auto on = surface_.closest_point(point_, 5e-3);
+    if (!on) return;
+    const Vec3 way = on->position - point_;
+    const bool sideways = glm::length(way - glm::dot(way, normal_) * normal_) > 0.5 * glm::length(way);
+    if (bridged_ >= 0 && time_ - bridged_ < 5 * settings_.smoothing + 2 * kFrame && sideways) return;
+    const double side = glm::dot(on->normal, normal_) < 0 ? -1 : 1;
+    point_ = on->position;
+    if (settings_.string > 0) normal_ = side * on->normal;
+}
 
 brush::Pose Hand::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const {
     const Vec2 tilt = glm::clamp(aim.tilt.value_or(settings_.tilt), -kMaxTilt, kMaxTilt);
@@ -57,10 +113,11 @@ double Hand::goal_pressure(const Aim& aim) const {
     return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
 }
 
-void Hand::touch_down(const Aim& aim, const mesh::SurfacePoint& hit, const Vec3& normal, std::vector<HandStep>& steps) {
+void Hand::touch_down(const Aim& aim, const Ground& hit, std::vector<HandStep>& steps) {
     down_ = true;
     goal_ = point_ = hit.position;
-    normal_ = normal;
+    normal_ = hit.normal;
+    bridged_ = -1;
     start_ = aim.time;
     time_ = speed_ = rest_ = pressure_ = 0;
     steps.push_back({HandStep::Kind::begin, {}});
@@ -83,12 +140,7 @@ void Hand::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vec
         const Vec3 behind = target - settings_.smoothing * pace;
         point_ = behind + (1 - part(dt, settings_.smoothing)) * (point_ - behind + pace * dt);
         normal_ = glm::normalize(normal_ + part(dt, std::max(0.01, settings_.smoothing)) * (normal - normal_));
-        // The smoothed point cuts the corners of a curved surface: bring it back.
-        if (const auto on = surface_.closest_point(point_, 5e-3)) {
-            const double side = glm::dot(on->normal, normal_) < 0 ? -1 : 1;
-            point_ = on->position;
-            if (settings_.string > 0) normal_ = side * on->normal;
-        }
+        onto_surface();
         const double v = glm::distance(before, point_) / dt;
         speed_ += part(dt, 0.05) * (v - speed_);
         rest_ = speed_ < 0.004 ? rest_ + dt : 0;
@@ -101,7 +153,7 @@ void Hand::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vec
 
 std::vector<HandStep> Hand::move(const Aim& aim) {
     std::vector<HandStep> steps;
-    const auto hit = aim_at(surface_, aim);
+    const auto hit = ground(aim);
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
     const double expected = down_ && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
                                                glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
@@ -109,9 +161,8 @@ std::vector<HandStep> Hand::move(const Aim& aim) {
     if (down_ && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected))
         steps = lift();
     if (!hit) return steps;
-    const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
     if (!down_) {
-        touch_down(aim, *hit, normal, steps);
+        touch_down(aim, *hit, steps);
     } else {
         HandStep step;
         // A tablet reports what changes: where it was silent, the pen was held still until shortly before.
@@ -120,11 +171,12 @@ std::vector<HandStep> Hand::move(const Aim& aim) {
             still.time = aim.time - kReport;
             follow(still, goal_, goal_normal_, step.poses);
         }
-        follow(aim, hit->position, normal, step.poses);
+        if (hit->bridged) bridged_ = time_;
+        follow(aim, hit->position, hit->normal, step.poses);
         steps.push_back(std::move(step));
     }
     aim_ = aim;
-    goal_normal_ = normal;
+    goal_normal_ = hit->normal;
     return steps;
 }
 
@@ -146,10 +198,9 @@ std::vector<HandStep> Hand::lift() {
 }
 
 std::optional<brush::Pose> Hand::hover(const Aim& aim) const {
-    const auto hit = aim_at(surface_, aim);
+    const auto hit = ground(aim);
     if (!hit) return std::nullopt;
-    const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
-    return pose_at(aim, hit->position, normal, 0, aim.time);
+    return pose_at(aim, hit->position, hit->normal, 0, aim.time);
 }
 
 }  // namespace tuft::app

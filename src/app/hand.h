@@ -38,6 +38,14 @@ struct Aim {
     Vec4f section{0};                            ///< cut plane: what it hides is not met
 };
 
+/// What lies under the brush, as a hand feels it.
+struct Ground {
+    Vec3 position{0};                            ///< metres
+    Vec3 normal{0, 0, 1};                        ///< unit, towards who looks
+    double distance = 0;                         ///< metres from the eye
+    bool bridged = false;                        ///< over a gap or groove
+};
+
 /// Part of a stroke, for the painter.
 struct HandStep {
     enum class Kind { begin, poses, end };
@@ -47,7 +55,8 @@ struct HandStep {
 
 /// Makes a cursor hold a brush: its point on the surface, smoothed or drawn on a string;
 /// pressure from a pen, or from speed and rest (a fast mouse presses less, a resting one
-/// more, as a hand does); a soft landing and a soft lift. Where the cursor leaves the model or
+/// more, as a hand does); a soft landing and a soft lift. It goes over gaps and grooves narrower than
+/// the tuft, such as shut lines, without dipping into them. Where the cursor leaves the model or
 /// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it.
 class Hand {
   public:
@@ -61,16 +70,22 @@ class Hand {
     /// The brush above what the cursor points at, not pressed; nothing where it meets nothing.
     std::optional<brush::Pose> hover(const Aim& aim) const;
     const stroke::HoldOptions& hold() const { return hold_; }
+    /// What the aim meets; over a gap narrower than the tuft the ground on both sides of it. Found with
+    /// pairs of rays on opposite sides of the aim: on a plane their mean depth is that of the aim.
+    std::optional<Ground> ground(const Aim& aim) const;
 
   private:
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
-    void touch_down(const Aim& aim, const mesh::SurfacePoint& hit, const Vec3& normal, std::vector<HandStep>& steps);
+    void touch_down(const Aim& aim, const Ground& hit, std::vector<HandStep>& steps);
     void follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses);
+    void onto_surface();
     double goal_pressure(const Aim& aim) const;
 
     const mesh::SurfaceQuery& surface_;
     stroke::HoldOptions hold_;
     HandSettings settings_;
+    double reach_;                         ///< metres round the aim in which gaps are felt
+    double bridged_ = -1;                  ///< `time_` when the goal was last over a gap; below 0: never
     bool down_ = false;
     Aim aim_;                              ///< the last one
     Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};

@@ -70,6 +70,13 @@ void Painter::post(Command command) {
     wake_.notify_all();
 }
 
+const atlas::AtlasReport* Painter::atlas_report() {
+    const stroke::Model& model = *work_.model;
+    if (model.atlas_report.charts > 0) return &model.atlas_report;
+    if (!measured_.valid()) measured_ = std::async(std::launch::async, [&model] { return atlas::measure(*model.mesh, model.atlas); }).share();
+    return measured_.wait_for(std::chrono::seconds(0)) == std::future_status::ready ? &measured_.get() : nullptr;
+}
+
 bool Painter::idle() const {
     const std::lock_guard lock(mutex_);
     return queue_.empty() && !working_;

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <deque>
 #include <filesystem>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -108,6 +109,7 @@ struct SaveProject {
 struct ExportModel {
     std::filesystem::path path;
     bool height = true, orm = true;  ///< maps besides the base colour
+    bool pigments = false;        ///< likewise, where the path is an .exr file
     std::uint32_t size = 0;       ///< texels per side; 0: as painted
     int pictures = 0;             ///< of the model beside it: none, one, or that many all round
     int picture_width = 1280;     ///< pixels; 16 : 9
@@ -205,6 +207,8 @@ class Painter {
     const stroke::Model& model() const { return *work_.model; }  ///< never changes
     /// The texture as it was at the start; once.
     render::MapPixels take_pixels() { return std::move(work_.pixels); }
+    /// Figures of the model's atlas; nullptr while they are measured, which the first call begins.
+    const atlas::AtlasReport* atlas_report();
     const std::string& source() const { return work_.source; }
     const FileFrame& frame() const { return work_.frame; }  ///< of the model file
 
@@ -250,6 +254,7 @@ class Painter {
     void put(const Change& change, bool back);
     void take_presets(stroke::Painting& painting);
     void export_model(const ExportModel& command);
+    void export_maps(const ExportModel& command, const stroke::Painting& painting, const ink::ComposeOptions& compose);
     void export_strokes(const std::filesystem::path& path);
     void draw_pictures(const ExportModel& command, const stroke::Painting& painting);
     void publish(bool strokes_changed = false);
@@ -257,6 +262,7 @@ class Painter {
     ProgressFn progress(const std::string& name);
 
     Work work_;
+    std::shared_future<atlas::AtlasReport> measured_;
     BeginStroke current_;
     std::size_t loads_ = 0;                ///< entries that loaded the brush for the stroke in work
     std::vector<stroke::Stroke> undone_before_;  ///< them, of the journal

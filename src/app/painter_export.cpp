@@ -1,11 +1,14 @@
 #include "app/painter.h"
 #include "io/export.h"
+#include "io/export_maps.h"
 #include "io/image.h"
 #include "io/inkml.h"
 #include "render/picture.h"
 #include "stroke/journal_traces.h"
 
 /// Exports and pictures, on the painter's thread.
+namespace fs = std::filesystem;
+
 namespace tuft::app {
 
 void Painter::export_model(const ExportModel& command) {
@@ -29,6 +32,12 @@ void Painter::export_model(const ExportModel& command) {
     const stroke::Model& m = painting->model();
     ink::ComposeOptions compose = painting->compose_options();
     compose.progress = progress("Exporting");
+    if (const fs::path e = command.path.extension(); e == ".png" || e == ".exr") {
+        export_maps(command, *painting, compose);
+        if (command.pictures > 0) draw_pictures(command, *painting);
+        say("Exported " + command.path.string());
+        return publish();
+    }
     io::ModelMaps maps = io::make_maps(painting->stack(), m.texels, painting->substrate(), compose);
     if (!command.height) maps.height = {};
     if (!command.orm) maps.orm = {};
@@ -36,6 +45,20 @@ void Painter::export_model(const ExportModel& command) {
     if (command.pictures > 0) draw_pictures(command, *painting);
     say("Exported " + command.path.string());
     publish();
+}
+
+// The base colour as the path says; NAME_normal and so on beside it.
+void Painter::export_maps(const ExportModel& command, const stroke::Painting& painting, const ink::ComposeOptions& compose) {
+    std::vector<std::string> names{"base-colour"};
+    if (command.orm) names.emplace_back("roughness");
+    if (command.height) names.insert(names.end(), {"normal", "height"});
+    if (command.pigments && command.path.extension() == ".exr" && !painting.canvas().pigments().empty()) names.emplace_back("pigments");
+    io::write_together(command.path, [&](const fs::path& folder) {
+        for (const std::string& name : names) {
+            const std::string suffix = name == "base-colour" ? "" : "_" + name;
+            io::write_map(folder / (command.path.stem().string() + suffix + command.path.extension().string()), name, painting, compose, 16);
+        }
+    });
 }
 
 void Painter::export_strokes(const std::filesystem::path& path) {

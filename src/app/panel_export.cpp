@@ -18,6 +18,8 @@ constexpr Preset kPresets[] = {
     {"Unreal", ".glb", "One GLB file; drag it into the content browser", true, true, 8192},
     {"Unity", ".gltf", "glTF with pictures beside it, for the glTFast package", true, true, 8192},
     {"Web", ".glb", "A small GLB file for model viewers in a browser", false, false, 2048},
+    {"16-bit maps", ".png", "PNG pictures alone, 16 bits a channel, one for each map", true, true, 0},
+    {"EXR maps", ".exr", "Floating-point pictures alone, linear colour, one for each map", true, true, 0},
     {"Strokes", ".inkml", "The strokes alone, to be painted again with tuft paint", false, false, 0},
     {"Print proof", ".obj", "OBJ, MTL and PNG for colour printers and print shops", false, false, 0},
 };
@@ -45,7 +47,7 @@ void row(Session& s, const char* name) {
 
 ExportModel export_command(const Session& s, const std::filesystem::path& path) {
     const ExportChoice& c = s.export_choice;
-    return {.path = path, .height = c.relief, .orm = c.roughness, .size = c.size, .pictures = c.picture, .picture_width = c.picture_width,
+    return {.path = path, .height = c.relief, .orm = c.roughness, .pigments = c.pigments, .size = c.size, .pictures = c.picture, .picture_width = c.picture_width,
             .azimuth = s.view.orbit.azimuth, .elevation = s.view.orbit.elevation};
 }
 
@@ -72,6 +74,10 @@ void export_dialog(Session& s) {
     ui.toggle("Roughness", c.roughness, "Occlusion, roughness and metal in one picture");
     row(s, "");
     ui.toggle("Relief of the ink", c.relief, "A normal map made from the film's height");
+    if (preset_of(c.preset).extension == std::string(".exr")) {
+        row(s, "");
+        ui.toggle("Pigment amounts", c.pigments, "A channel for each pigment, in film units");
+    }
     row(s, "Texels per side");
     static const std::vector<std::string> sizes{"As painted", "512", "1024", "2048", "4096", "8192"};
     std::string size = c.size ? std::to_string(c.size) : "As painted";

@@ -32,7 +32,7 @@ void draw_way(const Session& s, const StrokeLine& line, ImVec2 at, float size) {
 
 void edit_row(Session& s, const StrokeLine& line) {
     Ui& ui = s.ui;
-    const float half = (kJournalWidth - 24 - 8) / 2 - (ImGui::GetScrollMaxY() > 0 ? 6.0f : 0.0f);
+    const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
     if (ui.button(line.hidden ? "Show" : "Hide", line.hidden ? "Paints it again in its place" : "The other strokes are painted again without it", half))
         s.painter->post(EditStroke{.id = line.id, .hidden = !line.hidden});
     ImGui::SameLine();
@@ -80,10 +80,11 @@ void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
 void journal_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
     begin_side_panel(s, "###journal", left, top, kJournalWidth, bottom);
-    const float half = (kJournalWidth - 24 - 8) / 2;
-    if (ui.button("Undo", "Ctrl+Z", half, s.last.can_undo)) s.painter->post(UndoStroke{});
+    if (!s.journal_fits && ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale)) s.show_journal = false;
+    const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
+    if (ui.button("Undo", name_of(s.keys.chord(Act::undo)).c_str(), half, s.last.can_undo)) s.painter->post(UndoStroke{});
     ImGui::SameLine();
-    if (ui.button("Redo", "Ctrl+Shift+Z", half, s.last.can_redo)) s.painter->post(RedoStroke{});
+    if (ui.button("Redo", name_of(s.keys.chord(Act::redo)).c_str(), half, s.last.can_redo)) s.painter->post(RedoStroke{});
     if (!s.last.busy.empty()) {
         ImGui::TextUnformatted(ui.tr(s.last.busy.c_str()));
         ImGui::ProgressBar(static_cast<float>(s.last.fraction), ImVec2(-1, ui.px(16)), "");

@@ -49,8 +49,9 @@ void view_menu(Session& s) {
     if (s.ui.menu_item("Top", name_of(s.keys.chord(Act::top)).c_str())) o.look_from(StandardView::top);
     if (s.ui.menu_item("Bottom", name_of(s.keys.chord(Act::bottom)).c_str())) o.look_from(StandardView::bottom);
     ImGui::Separator();
-    if (s.ui.menu_item("Parallel projection", name_of(s.keys.chord(Act::parallel)).c_str(), o.parallel)) o.parallel = !o.parallel;
+    if (s.ui.menu_item("Parallel projection", name_of(s.keys.chord(Act::parallel)).c_str(), o.parallel)) o.set_parallel(!o.parallel);
     if (s.ui.menu_item("Atlas beside the model", name_of(s.keys.chord(Act::atlas)).c_str(), s.view.atlas)) s.view.atlas = !s.view.atlas;
+    if (!s.journal_fits && s.ui.menu_item("Journal and layers", nullptr, s.show_journal, s.painter != nullptr)) s.show_journal = !s.show_journal;
     if (s.ui.menu_item("Palette", name_of(s.keys.chord(Act::palette)).c_str(), s.palette.shown, s.painter != nullptr)) show_palette(s, !s.palette.shown);
     if (s.ui.menu_item("See through the brush", name_of(s.keys.chord(Act::see_through)).c_str(), s.view.see_through)) s.view.see_through = !s.view.see_through;
     if (s.ui.menu_item("Side view of the tuft", nullptr, s.view.inset)) s.view.inset = !s.view.inset;

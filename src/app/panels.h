@@ -29,7 +29,7 @@ void keys_dialog(Session& s);
 void palette_panel(Session& s);
 /// The tuft from the side with the surface under it, and what the hand feels.
 void tuft_inset(Session& s);
-/// Marks on the model: where the tuft touches, planes of symmetry, the line being drawn.
+/// Marks on the model: where the tuft touches, where symmetric copies would, the line being drawn.
 void view_marks(const Session& s, const render::GlCamera& camera);
 
 /// The export as the dialog says it.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <sstream>
 
 #include "app/panels.h"
 #include "app/studio.h"
@@ -50,6 +51,7 @@ void Script::fail(const ScriptCommand& command, const std::string& why) const { 
 void Script::add(Event event, double after) {
     clock_ += after;
     event.time = clock_;
+    if (event.kind != Event::Kind::text) event.modifiers |= held_;
     if (event.kind != Event::Kind::key_down && event.kind != Event::Kind::key_up && event.kind != Event::Kind::text) cursor_ = event;
     pending_.push_back(std::move(event));
 }
@@ -72,6 +74,23 @@ void Script::press_key(const std::string& chord, int line) {
     if (code < 0) throw Error(path_.string(), line, "unknown key '" + chord + "'");
     add({.kind = Event::Kind::key_down, .key = code, .modifiers = modifiers}, 0.03);
     add({.kind = Event::Kind::key_up, .key = code}, 0.03);
+}
+
+void Script::hold(const std::string& chord, int line) {
+    static constexpr std::pair<unsigned, int> keys[] = {{kShift, GLFW_KEY_LEFT_SHIFT}, {kControl, GLFW_KEY_LEFT_CONTROL}, {kAlt, GLFW_KEY_LEFT_ALT}};
+    unsigned wanted = 0;
+    std::istringstream names(chord == "none" ? "" : chord);
+    for (std::string name; std::getline(names, name, '+');) {
+        const unsigned m = modifier_of(name);
+        if (!m) throw Error(path_.string(), line, "'" + name + "' cannot be held; ctrl, shift, alt or none");
+        wanted |= m;
+    }
+    const unsigned before = held_;
+    for (const auto& [bit, key] : keys) {
+        if ((before & bit) == (wanted & bit)) continue;
+        held_ ^= bit;
+        add({.kind = held_ & bit ? Event::Kind::key_down : Event::Kind::key_up, .key = key}, 0.03);
+    }
 }
 
 void Script::stroke(Studio& studio, const ScriptCommand& command) {
@@ -103,11 +122,14 @@ void Script::report(Studio& studio, double now) {
     const double cpu = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
     std::printf("{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, \"delay_ms_p95\": %.1f, "
                 "\"samples\": %zu, \"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, \"peak_mb\": %.0f, "
-                "\"quits\": %zu, \"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f}\n",
+                "\"quits\": %zu, \"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f, "
+                "\"roll_deg\": %.3f, \"target_mm\": [%.3f, %.3f, %.3f]}\n",
                 report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95), studio.samples(),
                 studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now, cpu - report_cpu_,
                 static_cast<double>(usage.ru_maxrss) / 1024, quits_, studio.session().view.orbit.azimuth / kDegree,
-                studio.session().view.orbit.elevation / kDegree, studio.session().view.orbit.distance / kMillimetre);
+                studio.session().view.orbit.elevation / kDegree, studio.session().view.orbit.distance / kMillimetre,
+                studio.session().view.orbit.roll / kDegree, studio.session().view.orbit.target.x / kMillimetre,
+                studio.session().view.orbit.target.y / kMillimetre, studio.session().view.orbit.target.z / kMillimetre);
     report_cpu_ = cpu;
     std::fflush(stdout);
     report_frames_ = 0;
@@ -152,15 +174,18 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
              .y = p.relative_y ? s.area.y + p.y * s.area.height : p.y, .pressure = p.pressure}, sample_);
     } else if (c.name == "press" || c.name == "release") {
         Event e = cursor_;
+        e.modifiers = 0;
         e.kind = c.name == "press" ? Event::Kind::press : Event::Kind::release;
         e.button = button_of(c);
         add(e, 0.02);
     } else if (c.name == "stroke") stroke(studio, c);
     else if (c.name == "rate") sample_ = 1.0 / std::clamp(std::atof(word.c_str()), 10.0, 10000.0);
     else if (c.name == "key") press_key(word, c.line);
+    else if (c.name == "hold") hold(word, c.line);
     else if (c.name == "type") add({.kind = Event::Kind::text, .text = word}, 0.02);
     else if (c.name == "scroll") {
         Event e = cursor_;
+        e.modifiers = 0;
         e.kind = Event::Kind::scroll;
         e.steps = std::atof(word.c_str());
         add(e, 0.02);

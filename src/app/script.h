@@ -55,6 +55,7 @@ class Script {
     void expect(Studio& studio, const ScriptCommand& command) const;
     void stroke(Studio& studio, const ScriptCommand& command);
     void press_key(const std::string& chord, int line);
+    void hold(const std::string& chord, int line);
     void click(double x, double y, int button = 0);
     void add(Event event, double after);
     void report(Studio& studio, double now);
@@ -70,6 +71,7 @@ class Script {
     double pace_start_ = 0, pace_from_ = 0;
     double waiting_since_ = -1;
     Event cursor_;
+    unsigned held_ = 0;                ///< modifiers
     ScriptPoint last_place_;           ///< of the label a click waits for
     std::string picture_;
     bool lose_ = false;

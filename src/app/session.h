@@ -81,6 +81,7 @@ struct Area {
 struct ExportChoice {
     std::string preset = "Blender";
     bool relief = true, roughness = true;
+    bool pigments = false;        ///< their amounts, with EXR maps
     std::uint32_t size = 0;       ///< texels per side; 0: as painted
     int picture = 0;              ///< 0: none, 1: a still, else that many pictures all round
     int picture_width = 1280;     ///< pixels
@@ -134,6 +135,7 @@ struct Session {
     std::vector<ink::Ink> own_inks;        ///< of this work
     Looks looks;
     bool show_colours = false;
+    bool journal_fits = true, show_journal = false;  ///< beside the model; else in place of the tools, when asked for
     std::string recipe_of;                 ///< ink whose recipe is open there
     ink::Ink recipe;                       ///< as its sliders stand
     bool hand_down = false;

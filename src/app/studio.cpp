@@ -88,8 +88,8 @@ void Studio::layout(int width, int height) {
     const float top = ImGui::GetFrameHeight() + s.ui.px(4);
     // Where there is no room for both, the model is worth more than the list.
     const int tools = static_cast<int>(s.ui.px(kToolWidth)), whole = static_cast<int>(s.ui.px(kJournalWidth));
-    journal_fits_ = static_cast<float>(width - tools - whole) >= s.ui.px(kLeastView);
-    const int journal = journal_fits_ ? whole : 0;
+    s.journal_fits = static_cast<float>(width - tools - whole) >= s.ui.px(kLeastView);
+    const int journal = s.journal_fits ? whole : 0;
     const int left = s.wanted.left_handed ? journal : tools;
     s.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
               std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
@@ -112,8 +112,9 @@ void Studio::panels(int height) {
     if (s.painter) {
         const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
         const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
-        (s.show_colours ? colours_panel : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : 0);
-        if (journal_fits_) journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
+        const bool swapped = !s.journal_fits && s.show_journal && !s.show_colours;
+        (s.show_colours ? colours_panel : swapped ? journal_panel : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : 0);
+        if (s.journal_fits) journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
         status_bar(s, bottom);
         tuft_inset(s);
         update_palette_picture();
@@ -164,6 +165,7 @@ void Studio::take_model() {
             s.view.orbit.azimuth = fresh.azimuth;
             s.view.orbit.elevation = fresh.elevation;
             s.view.orbit.roll = 0;
+            if (s.view.orbit.parallel_until_turned) s.view.orbit.set_parallel(false);
             s.view.orbit.frame(m.mesh->bounds);
         }
         s.model_is_new = false;

@@ -57,6 +57,7 @@ class Studio {
     void release(const Event& event);
     void key(const Event& event);
     void perform(Act act);
+    BeginStroke stroke_to_begin() const;
     void post(std::vector<HandStep> steps, double time);
     void await_ink(double since_last);
     int curve_point_at(const Event& event) const;
@@ -101,7 +102,6 @@ class Studio {
     std::unique_ptr<render::GlScene> scene_;
     std::unique_ptr<render::GlView> view_;
     std::optional<stroke::Model> plate_;      ///< of the palette, once it was shown
-    bool journal_fits_ = true;
     bool on_plate_ = false;                   ///< the hand is over it
     std::optional<Hand> hand_;
     std::optional<Event> line_start_;         ///< where a new control point was set

@@ -80,6 +80,7 @@ void Studio::look_at_uv(const Vec2& uv) {
     if (!on) return;
     s.view.orbit.target = on->position;
     s.view.orbit.roll = 0;
+    if (s.view.orbit.parallel_until_turned) s.view.orbit.set_parallel(false);
     s.view.orbit.elevation = std::asin(std::clamp(on->normal.z, -1.0, 1.0));
     if (std::hypot(on->normal.x, on->normal.y) > 1e-3) s.view.orbit.azimuth = std::atan2(on->normal.x, -on->normal.y);
 }
@@ -99,9 +100,9 @@ void atlas_marks(const Session& s, const std::optional<Vec2>& cursor) {
     const stroke::Model& m = s.painter->model();
     char text[160];
     int n = std::snprintf(text, sizeof text, s.ui.tr("%u charts"), m.atlas.n_charts);
-    if (m.atlas_report.l2_stretch > 0)
-        n += std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "    %s %.3f    %s %.0f %%", s.ui.tr("stretch"), m.atlas_report.l2_stretch,
-                           s.ui.tr("used"), 100 * m.atlas_report.utilisation);
+    if (const atlas::AtlasReport* report = s.painter->atlas_report())
+        n += std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "    %s %.3f    %s %.0f %%", s.ui.tr("stretch"), report->l2_stretch,
+                           s.ui.tr("used"), 100 * report->utilisation);
     const ImVec2 size = ImGui::CalcTextSize(text);
     draw->AddRectFilled(ImVec2(a.x + s.ui.px(8), a.y + s.ui.px(8)), ImVec2(a.x + s.ui.px(24) + size.x, a.y + s.ui.px(16) + size.y), IM_COL32(24, 24, 26, 190), s.ui.px(5));
     draw->AddText(ImVec2(a.x + s.ui.px(16), a.y + s.ui.px(12)), IM_COL32(240, 240, 240, 255), text);

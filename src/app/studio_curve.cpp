@@ -138,7 +138,9 @@ void Studio::paint_curve() {
     if (strokes.empty()) return say(s, "The line does not lie on the model.");
     if (curve_editable()) s.painter->post(UndoStroke{});
     for (std::size_t i = 0; i < strokes.size(); ++i) {
-        s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .layer = s.layer, .joined = i > 0});
+        BeginStroke begin = stroke_to_begin();
+        begin.joined = i > 0;
+        s.painter->post(std::move(begin));
         s.painter->post(ExtendStroke{strokes[i], now_});
         s.painter->post(EndStroke{});
     }

@@ -32,13 +32,20 @@ Aim Studio::aim_of(const Event& e) const {
     return aim;
 }
 
+// What a stroke is painted with, by hand or along a line.
+BeginStroke Studio::stroke_to_begin() const {
+    const Session& s = session_;
+    return {.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .as_it_is = s.carry && s.palette.shown,
+            .layer = s.layer, .mask = s.mask, .erases = s.erasing, .wet = s.wet,
+            .tip_ink = s.two_inks ? s.tip_ink : "", .tip_depth = s.tip_depth};
+}
+
 void Studio::post(std::vector<HandStep> steps, double time) {
     Session& s = session_;
     for (HandStep& step : steps) {
         if (step.kind == HandStep::Kind::begin && on_plate_)
             s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .carry = true, .as_it_is = true, .layer = stroke::kPaletteLayer, .wet = true});
-        else if (step.kind == HandStep::Kind::begin) s.painter->post(BeginStroke{.brush = s.brush, .ink = s.ink, .symmetry = s.symmetry, .carry = s.carry, .as_it_is = s.carry && s.palette.shown, .layer = s.layer, .mask = s.mask, .erases = s.erasing, .wet = s.wet,
-                                                                                     .tip_ink = s.two_inks ? s.tip_ink : "", .tip_depth = s.tip_depth});
+        else if (step.kind == HandStep::Kind::begin) s.painter->post(stroke_to_begin());
         else if (step.kind == HandStep::Kind::end) s.painter->post(EndStroke{});
         else {
             ++samples_;
@@ -224,7 +231,7 @@ void Studio::perform(Act act) {
         case Act::left: o.look_from(StandardView::left); break;
         case Act::top: o.look_from(StandardView::top); break;
         case Act::bottom: o.look_from(StandardView::bottom); break;
-        case Act::parallel: o.parallel = !o.parallel; break;
+        case Act::parallel: o.set_parallel(!o.parallel); break;
         case Act::lighter: s.hand.pressure = std::max(0.02, s.hand.pressure - 0.05); break;
         case Act::heavier: s.hand.pressure = std::min(1.0, s.hand.pressure + 0.05); break;
         case Act::smaller: size_brush(s, brush::sized_name(s.brush).factor / 1.1); break;

@@ -37,7 +37,8 @@ void Studio::mask_press(const Event& e) {
         mask.points = {hit->position};
     } else {
         if (model.mesh->triangle_groups.empty()) return;
-        mask.groups = {model.mesh->group_names[model.mesh->triangle_groups[hit->triangle]]};
+        s.mask_choice.group = model.mesh->group_names[model.mesh->triangle_groups[hit->triangle]];
+        mask.groups = {s.mask_choice.group};
     }
     make_mask(s, std::move(mask));
 }

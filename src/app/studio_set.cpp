@@ -28,7 +28,10 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "shading")
         s.view.shown = static_cast<ModelView>(one_of({"glaze", "clay", "flat", "height", "wetness", "texels", "charts", "stretch"}));
     else if (name == "light") s.view.rig = static_cast<render::LightRig>(one_of({"studio", "window", "raking"}));
-    else if (name == "parallel") s.view.orbit.parallel = on;
+    else if (name == "keymap") s.keymap = one_of({"blender", "maya"}) ? Keymap::maya : Keymap::blender;
+    else if (name == "left-handed") s.wanted.left_handed = on, s.restyle = true;
+    else if (name == "section-axis") s.view.section_axis = one_of({"x", "y", "z"});
+    else if (name == "parallel") s.view.orbit.set_parallel(on);
     else if (name == "azimuth") s.view.orbit.azimuth = number * kDegree;
     else if (name == "elevation") s.view.orbit.elevation = number * kDegree;
     else if (name == "zoom") s.view.orbit.zoom(number, s.view.orbit.target);

@@ -51,6 +51,24 @@ void hover_ring(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(30, 30, 30, 220), ImDrawFlags_Closed, s.ui.px(1.3f));
 }
 
+// Where the symmetric copies of the brush would touch: a dot on the surface, faint where it is not seen.
+void copy_dots(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    const std::vector<stroke::PoseMap> copies = stroke::symmetry_copies(s.symmetry);
+    if (copies.empty()) return;
+    const brush::Section &tip = s.tuft.branches.front().sections.front(), &root = s.tuft.branches.front().sections.back();
+    const mesh::SurfaceQuery& query = *s.painter->model().query;
+    for (const stroke::PoseMap& map : copies) {
+        const Vec3 from = map.point(root.centre), to = map.point(tip.centre), way = glm::normalize(to - from);
+        const auto ahead = query.ray(from, way, 0, 2 * glm::distance(from, to));
+        const auto on = ahead ? ahead : query.closest_point(to, glm::distance(from, to));
+        if (!on) continue;  // the model has nothing there
+        const Vec3 eye = c.parallel_height > 0 ? -c.forward : glm::normalize(c.eye - on->position);
+        const bool seen = !query.ray(on->position + 1e-4 * eye, eye, 0);
+        draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(4), IM_COL32(255, 255, 255, seen ? 220 : 60), 16);
+        draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(2.6f), IM_COL32(255, 150, 30, seen ? 255 : 70), 16);
+    }
+}
+
 void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const float size = s.ui.px(26);
     const ImVec2 origin(static_cast<float>(s.area.x + s.area.width) - s.ui.px(44), static_cast<float>(s.area.y) + s.ui.px(44));
@@ -203,6 +221,7 @@ void view_marks(const Session& s, const render::GlCamera& c) {
     draw->PushClipRect(ImVec2(static_cast<float>(s.area.x), static_cast<float>(s.area.y)),
                        ImVec2(static_cast<float>(s.area.x + s.area.width), static_cast<float>(s.area.y + s.area.height)), true);
     if (!s.tuft.branches.empty()) s.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
+    if (!s.tuft.branches.empty()) copy_dots(s, c, draw);
     curve_marks(s, c, draw);
     ghost_marks(s, c, draw);
     shift_marks(s, c, draw);

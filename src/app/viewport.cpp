@@ -32,12 +32,20 @@ void Orbit::frame(const Box& box) {
 
 void Orbit::look_from(StandardView view) {
     roll = 0;
+    parallel_until_turned = parallel_until_turned || !parallel;
+    parallel = true;
     elevation = view == StandardView::top ? kQuarter : view == StandardView::bottom ? -kQuarter : 0;
     azimuth = view == StandardView::back ? 2 * kQuarter : view == StandardView::right ? kQuarter
               : view == StandardView::left ? -kQuarter : 0;
 }
 
+void Orbit::set_parallel(bool on) {
+    parallel = on;
+    parallel_until_turned = false;
+}
+
 void Orbit::turn(double dx, double dy) {
+    if (parallel_until_turned && (dx != 0 || dy != 0)) set_parallel(false);
     const double c = std::cos(roll), s = std::sin(roll);
     azimuth -= 0.007 * (c * dx + s * dy);
     elevation = std::clamp(elevation + 0.007 * (c * dy - s * dx), -kQuarter, kQuarter);
@@ -51,6 +59,7 @@ void Orbit::pan(double dx, double dy, int side) {
 
 void Orbit::fly(const Vec3& push, const Vec3& twist, bool level) {
     constexpr double kTurn = 2, kNearer = 1.5;  // radians, and powers of e in distance, per second at full deflection
+    if (parallel_until_turned && (twist.x != 0 || twist.y != 0)) set_parallel(false);
     const Axes a = axes_of(*this);
     target -= 2 * distance * std::tan(0.5 * field_of_view) * (push.x * a.right + push.y * a.up);
     distance = std::clamp(distance * std::exp(-kNearer * push.z), kNearest, kFurthest);

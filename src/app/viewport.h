@@ -16,10 +16,14 @@ struct Orbit {
     double roll = 0;          ///< radians, of the head to the right
     double field_of_view = 0.55;  ///< radians over the shorter side of the picture
     bool parallel = false;    ///< orthographic
+    bool parallel_until_turned = false;  ///< only for one of the standard views
 
     /// Places the camera so that the whole box is seen.
     void frame(const Box& box);
+    /// Straight along an axis, in parallel projection until it is turned, as in Blender.
     void look_from(StandardView view);
+    /// Until it is set otherwise.
+    void set_parallel(bool on);
     void turn(double dx_pixels, double dy_pixels);
     /// Moves the target in the picture plane, so that what is under the cursor stays there.
     void pan(double dx_pixels, double dy_pixels, int shorter_side);

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "io/export_maps.h"
 #include "stroke/trace.h"
 
 namespace tuft::cli {
@@ -282,7 +283,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     e->add_option("--map", exported.map,
                   "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr) or palette (.png); "
                   "default: the file's name if it is one of these, else base-colour")
-        ->check(CLI::IsMember({"base-colour", "normal", "height", "roughness", "pigments", "palette"}));
+        ->check(CLI::IsMember(io::map_names()));
+    e->add_option("--bits", exported.bits, "8 or 16 bits a channel of base-colour.png")->check(CLI::IsMember({8, 16}));
     add_look(e, exported.look);
     add_layers(e, exported.layers);
     add_common(e, exported.common);

@@ -104,6 +104,7 @@ struct Replay {
 struct Export {
     std::filesystem::path project, output;
     std::vector<std::string> layers;  ///< as in `View`
+    int bits = 8;                   ///< a channel of base-colour.png
     std::string map;                ///< of a picture; empty: by the file's name, else base-colour
     Look look;
     Common common;

@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
-#include "io/export.h"
+#include "io/export_maps.h"
 #include "io/image.h"
 #include "io/inkml.h"
 #include "io/read_model.h"
@@ -60,55 +60,13 @@ std::string map_name(const Export& a) {
     if (!a.map.empty() && !picture)
         throw UsageError("--map: a map is written as .png or .exr, not as '" + extension + "'");
     std::string name = a.map;
-    for (const char* known : {"base-colour", "normal", "height", "roughness", "pigments", "palette"})
+    for (const std::string& known : io::map_names())
         if (name.empty() && stem == known) name = known;
     if (name == "pigments" && extension == ".png")
         throw UsageError(a.output.string() + ": pigment amounts need an .exr file");
     if (name == "palette" && extension != ".png")
         throw UsageError(a.output.string() + ": a picture of the palette is a .png file");
     return name.empty() ? "base-colour" : name;
-}
-
-void write_map(const std::filesystem::path& path, const std::string& name, const stroke::Painting& painting,
-               const ink::ComposeOptions& compose) {
-    const ink::Stack stack = painting.stack();
-    const stroke::Model& model = painting.model();
-    const bool png = path.extension() == ".png";
-    io::ImageOptions data;
-    data.srgb = false;
-    const auto write = [&](const io::PixelView& whole, const io::ImageOptions& options = {}) {
-        for (std::uint32_t page = 0; page < model.atlas.pages; ++page)
-            io::write_image(io::page_path(path, model.atlas, page), io::page_view(whole, model.atlas, page), options);
-    };
-    if (name == "palette") {
-        if (!painting.palette()) throw Error("there is nothing on the palette");
-        stroke::PalettePicture picture;
-        stroke::refresh(picture, painting);
-        return io::write_image(path, io::view_of(picture.width, picture.height, 3, picture.rgb.data()));
-    }
-    if (name == "base-colour" && png) {
-        write(io::view_of(ink::compose_srgb8(stack, model.texels, painting.substrate(), compose)));
-    } else if (name == "base-colour") {
-        data.half = true;
-        write(io::view_of(ink::compose_linear(stack, model.texels, painting.substrate(), compose)), data);
-    } else if (name == "roughness") {
-        data.half = true;
-        write(io::view_of(ink::compose_roughness(stack, model.texels, painting.substrate(), compose)), data);
-    } else if (name == "pigments") {
-        const std::vector<ink::Pigment>& pigments = painting.canvas().pigments();
-        if (pigments.empty() || stack.layers.empty())
-            throw Error(path.string(), "nothing is painted: there are no pigments to write");
-        const ink::AtlasMap<float> amounts = ink::compose_amounts(stack, model.texels, compose);
-        for (int p = 0; p < amounts.channels; ++p)
-            data.channel_names.push_back(io::channel_name(pigments[static_cast<std::size_t>(p)].name));
-        write(io::view_of(amounts), data);
-    } else {
-        const ink::AtlasMap<float> height = ink::compose_height(stack, model.texels, compose);
-        if (name == "normal" && png) write(io::view_of(io::normal_map16(height, model.atlas.texel_size)), data);
-        else if (name == "normal") write(io::view_of(io::normal_map_float(height, model.atlas.texel_size)), data);
-        else if (png) write(io::view_of(io::height16(height)), data);
-        else write(io::view_of(height), data);
-    }
 }
 
 int write_strokes(const Export& a, Console& console) {
@@ -187,6 +145,8 @@ int run(const Export& a) {
     check_extension(a.output, {".glb", ".gltf", ".obj", ".png", ".exr", ".inkml"});
     check_output(a.output);
     const std::string map = map_name(a);
+    if (a.bits == 16 && (map != "base-colour" || a.output.extension() != ".png"))
+        throw UsageError("--bits: only a base-colour.png has a choice; other maps have 16 bits in PNG and floats in EXR");
     Console console(a.common.quiet);
     if (a.output.extension() == ".inkml") return write_strokes(a, console);
     const auto project = open_project(a.project, console);
@@ -196,7 +156,7 @@ int run(const Export& a) {
     show_looks(project->file, painting, a.look, console);
     const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
-    if (extension == ".png" || extension == ".exr") write_map(a.output, map, painting, compose);
+    if (extension == ".png" || extension == ".exr") io::write_map(a.output, map, painting, compose, a.bits);
     else write_outputs({.exported = a.output, .frame = project->frame}, painting, console);
     console.clear();
     if (a.common.json)

@@ -3,7 +3,11 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <bit>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 
@@ -34,10 +38,31 @@ CREATE TABLE pigments(plane INTEGER PRIMARY KEY, name TEXT NOT NULL, toml TEXT N
 CREATE TABLE tiles(slot INTEGER PRIMARY KEY, planes INTEGER NOT NULL, amounts BLOB NOT NULL);
 )";
 
+/// Whether the project was moved away under our hands, which SQLite calls many names; "" when it is there.
+std::string why_gone(const std::filesystem::path& path) {
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    if (::access(folder.c_str(), F_OK) != 0) return "its folder is not there any more; was it moved?";
+    return ::access(path.c_str(), F_OK) != 0 ? "is not there any more; was it moved?" : "";
+}
+
+/// Where SQLite only says that a file could not be opened; it writes beside the project too.
+std::string why_not_opened(const std::filesystem::path& path) {
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    if (::access(path.c_str(), R_OK) != 0) return "may not be read; change its permissions";
+    if (::access(folder.c_str(), W_OK) != 0) return "cannot be changed: nothing may be written into its folder";
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return std::string("cannot be opened: ") + std::strerror(errno);
+    ::close(file);
+    return "cannot be opened together with its '" + path.filename().string() + "-journal' file; is that a folder, or somebody else's?";
+}
+
 /// What SQLite says, in words for people.
 [[noreturn]] void rethrow(const SQLite::Exception& e, const std::filesystem::path& path) {
     const std::string name = path.string();
-    switch (e.getErrorCode()) {
+    const int code = e.getErrorCode();
+    if (const std::string gone = why_gone(path); !gone.empty() && (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN))
+        throw Error(name, gone);
+    switch (code) {
         case SQLITE_FULL:
             throw Error(name, "cannot be written: the disk is full");
         case SQLITE_READONLY:
@@ -48,7 +73,7 @@ CREATE TABLE tiles(slot INTEGER PRIMARY KEY, planes INTEGER NOT NULL, amounts BL
         case SQLITE_IOERR:
             throw Error(name, std::string("cannot be read or written: ") + e.what());
         case SQLITE_CANTOPEN:
-            throw Error(name, std::string("cannot be opened: ") + e.what());
+            throw Error(name, why_not_opened(path));
         case SQLITE_NOMEM:
             throw Error(name, "does not fit into memory");
         case SQLITE_CONSTRAINT:
@@ -202,6 +227,8 @@ Project Project::create(const fs::path& path, const ProjectModel& model, const s
 Project Project::open(const fs::path& path) {
     std::error_code ec;
     if (!fs::exists(path, ec)) throw Error(path.string(), "no such file");
+    if (fs::is_directory(path, ec)) throw Error(path.string(), "is a folder, not a project");
+    if (::access(path.c_str(), R_OK) != 0) throw Error(path.string(), "may not be read; change its permissions");
     const Header header = header_of(path);
     if (!header.sqlite) throw Error(path.string(), "is not a tuft project");
     if (header.application != kApplicationId)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "app/viewport.h"
@@ -131,6 +132,102 @@ TEST_F(HandOnSheet, LeavingTheModelLiftsAndComingBackBegins) {
     EXPECT_TRUE(hand.lift().empty());
 }
 
+// Two slabs 10 mm thick, that far apart; `floor`: metres down to what lies below, 0: nothing.
+struct Slabs {
+    mesh::TriangleMesh mesh;
+    mesh::SurfaceQuery query;
+    static mesh::TriangleMesh make(double gap, double floor) {
+        mesh::PolygonSoup soup;
+        soup.polygon_start = {0};
+        const auto box = [&](const Vec3& lo, const Vec3& hi) {
+            const auto first = static_cast<std::uint32_t>(soup.points.size());
+            for (int i = 0; i < 8; ++i) soup.points.emplace_back(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
+            static constexpr std::array<std::array<std::uint32_t, 4>, 6> quads{{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+            for (const auto& quad : quads) {
+                for (const std::uint32_t corner : quad) soup.corners.push_back(first + corner);
+                soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+            }
+        };
+        box({-0.2, -0.1, -0.01}, {-0.5 * gap, 0.1, 0});
+        box({0.5 * gap, -0.1, -0.01}, {0.2, 0.1, 0});
+        if (floor > 0) box({-0.2, -0.1, -0.03}, {0.2, 0.1, -floor});
+        mesh::RepairOptions metres;
+        metres.metres_per_unit = 1;
+        return mesh::build_surface(soup, metres).mesh;
+    }
+    Slabs(double gap, double floor) : mesh(make(gap, floor)), query(mesh) {}
+};
+
+struct Crossing {
+    int strokes = 0;
+    double least = 1e9, most = -1e9;  ///< heights of the tip when it is down, metres
+    double lean = 0;                  ///< radians, most
+    double step = 0;                  ///< metres, longest between poses of one stroke
+};
+Crossing cross(const Slabs& slabs, const brush::Preset& preset, double slant) {
+    HandSettings s;
+    s.speed_effect = s.dwell_effect = 0;
+    Hand hand(slabs.query, preset, s);
+    Crossing out;
+    const Vec3 down = glm::normalize(Vec3(0, std::sin(slant), -std::cos(slant))), up = glm::normalize(Vec3(0, std::cos(slant), std::sin(slant)));
+    std::vector<brush::Pose> poses;
+    const auto take = [&](const std::vector<HandStep>& steps, bool look) {
+        for (const HandStep& step : steps) {
+            if (step.kind == HandStep::Kind::begin) ++out.strokes, poses.clear();
+            for (const brush::Pose& pose : step.poses) {
+                if (!poses.empty()) out.step = std::max(out.step, std::abs(pose.position.x - poses.back().position.x));
+                poses.push_back(pose);
+                const double tip = pose.position.z - preset.length;
+                if (look && pose.time > 0.4) out.least = std::min(out.least, tip), out.most = std::max(out.most, tip);
+                out.lean = std::max(out.lean, std::acos(std::min(1.0, -pose.axis().z)));
+            }
+        }
+    };
+    for (int i = 0; i <= 800; ++i) {
+        const Vec3 at(-0.04 + 1e-4 * i, 0, 0);
+        take(hand.move({.ray = {at - 0.5 * down, down}, .view_right = {1, 0, 0}, .view_up = up, .metres_per_pixel = 1e-4, .time = 0.001 * i}), true);
+    }
+    take(hand.lift(), false);
+    return out;
+}
+
+TEST(HandOverAGap, AGapNarrowerThanTheTuftIsCrossedInOneLevelStroke) {
+    for (const char* name : {"wolf-medium", "goat-large"}) {
+        const brush::Preset preset = brush::load_preset(name);
+        for (const double floor : {0.0, 0.012})
+            for (const double slant : {0.0, 0.7}) {
+                const double gap = std::min(0.007, 1.8 * preset.radius);
+                const Slabs slabs(gap, floor);
+                const Crossing c = cross(slabs, preset, slant);
+                EXPECT_EQ(c.strokes, 1) << name << " floor " << floor << " slant " << slant;
+                // 20 µm: a five hundredth of its depth; the pressure still rises by e^-8 after 0.4 s.
+                EXPECT_LT(c.most - c.least, 2e-5) << name << " floor " << floor << " slant " << slant;
+                EXPECT_LT(c.lean, 0.02);
+                // 0.1 m/s: 0.1 mm in each of the samples' milliseconds; at an edge no more than the reach of the snap back.
+                EXPECT_LT(c.step, 6e-4);
+            }
+    }
+}
+
+TEST(HandOverAGap, AGapWiderThanTheTuftEndsTheStroke) {
+    const brush::Preset preset = brush::load_preset("wolf-small");
+    for (const double slant : {0.0, 0.7}) EXPECT_EQ(cross(Slabs(0.02, 0), preset, slant).strokes, 2);
+}
+
+// A rim with something far behind it is none.
+TEST(HandOverAGap, AnEdgeIsNoGap) {
+    const Slabs slabs(0.03, 0.013);
+    const Hand hand(slabs.query, brush::load_preset("goat-large"), {});
+    for (const double x : {-0.0155, -0.0145, -0.012, 0.0}) {
+        const Aim aim{.ray = {{x, 0, 0.5}, {0, 0, -1}}, .view_up = {0, 1, 0}};
+        const auto ground = hand.ground(aim);
+        const auto hit = aim_at(slabs.query, aim);
+        ASSERT_TRUE(ground && hit);
+        EXPECT_FALSE(ground->bridged) << x;
+        EXPECT_EQ(ground->position, hit->position) << x;
+    }
+}
+
 TEST_F(HandOnSheet, LeanTurnsTheHolderAboutTheTip) {
     HandSettings s;
     s.tilt = {0.4, 0};
@@ -170,6 +267,27 @@ TEST(Orbit, ZoomingKeepsThePlaceUnderTheCursor) {
         const Vec3 now = render::picture_point(o.camera(800, 600, scene), p);
         EXPECT_NEAR(at.x, now.x, 1e-6);
         EXPECT_NEAR(at.y, now.y, 1e-6);
+    }
+}
+
+TEST(Orbit, AStandardViewIsParallelUntilItIsTurned) {
+    for (const bool parallel : {false, true}) {
+        Orbit o;
+        o.set_parallel(parallel);
+        o.look_from(StandardView::left);
+        o.look_from(StandardView::top);
+        o.pan(20, 10, 500);
+        o.zoom(2, Vec3(0));
+        EXPECT_TRUE(o.parallel);
+        const Vec3 forward = o.camera(400, 300, Box{{-1, -1, -1}, {1, 1, 1}}).forward;
+        EXPECT_NEAR(forward.z, -1, 1e-12);
+        o.turn(0, -3);
+        EXPECT_EQ(o.parallel, parallel);
+        // Asked for by name it stays.
+        o.look_from(StandardView::front);
+        o.set_parallel(true);
+        o.turn(5, 0);
+        EXPECT_TRUE(o.parallel);
     }
 }
 

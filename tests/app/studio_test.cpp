@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <thread>
 
+#include "ink/composite.h"
 #include "ink/pigments.h"
 #include "io/image.h"
 #include "io/project.h"
@@ -150,6 +152,51 @@ TEST_F(StudioProgram, ALineFollowsItsControlPointsAndIsUndoneAsOne) {
               test::stored_hash(path("after.tuft")));
 }
 
+TEST_F(StudioProgram, LinesAndCurvesArePaintedWithAllThatIsChosenForTheHand) {
+    const std::string half = "set elevation 10\nset zoom 4\nset tool mask\nset mask-kind angle\nset mask-within 90\nmove 50%,58%\npress\nrelease\nwait-ready\nwait 0.1\n";
+    const Ran ran = studio(kBowl + half + "set wet on\nset two-inks on\nset tip-ink cinnabar\nset tool brush\nstroke 42%,40% 50%,43%\nwait-ready\n"
+                                          "key l\nstroke 42%,50% 52%,52%\nwait-ready\nwait 0.1\n"
+                                          "key c\nmove 43%,60%\npress\nrelease\nmove 52%,62%\npress\nrelease\nkey enter\nwait-ready\nwait 0.1\n"
+                                          "save all.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = io::Project::open(path("all.tuft")).strokes();
+    // The mask, then the brush dipped, wiped and dipped before each of the three.
+    ASSERT_EQ(strokes.size(), 13u);
+    for (std::size_t i = 5; i < strokes.size(); ++i) {
+        const stroke::Stroke &by_hand = strokes[1 + (i - 1) % 4], &other = strokes[i];
+        EXPECT_EQ(other.action, by_hand.action) << i;
+        EXPECT_EQ(other.trace.ink, by_hand.trace.ink) << i;
+        EXPECT_EQ(other.trace.brush, by_hand.trace.brush) << i;
+        EXPECT_EQ(other.mask, by_hand.mask) << i;
+        EXPECT_EQ(other.layer, by_hand.layer) << i;
+        EXPECT_EQ(stroke::to_json(other.settings), stroke::to_json(by_hand.settings)) << i;
+    }
+    EXPECT_EQ(strokes.back().mask, strokes.front().mask_edit.mask.id);
+    EXPECT_EQ(strokes.back().settings.film, "wet");
+}
+
+// What is held on the keyboard turns the wheel and the buttons to other uses, in either keymap.
+TEST_F(StudioProgram, HeldKeysRollPanAndZoom) {
+    const std::string drag = "move 55%,55%\npress middle\nmove 60%,50%\nrelease middle\nwait-ready\nreport\n";
+    const Ran ran = studio(kBowl + "report\n" + "hold shift\n" + drag + "hold ctrl\n" + drag + "hold none\n" + drag +
+                           "set keymap maya\nmove 55%,55%\nhold alt\npress\nmove 60%,50%\nrelease\nhold none\nwait-ready\nreport\nexpect strokes 0\n" +
+                           "hold ctrl\nscroll 3\nhold none\nwait-ready\nreport\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    std::istringstream lines(ran.out);
+    std::vector<nlohmann::json> views;
+    for (std::string line; std::getline(lines, line);) views.push_back(nlohmann::json::parse(line));
+    ASSERT_EQ(views.size(), 6u);
+    const auto changed = [&](std::size_t i, const char* key) { return views[i][key] != views[i - 1][key]; };
+    // Of moved, nearer, turned, turned as in Maya, rolled.
+    const bool wanted[5][4] = {{false, false, false, true}, {false, true, false, false}, {true, false, false, false}, {true, false, false, false}, {false, false, true, false}};
+    for (std::size_t i = 1; i < 6; ++i) {
+        EXPECT_EQ(changed(i, "azimuth_deg"), wanted[i - 1][0]) << i;
+        EXPECT_EQ(changed(i, "distance_mm"), wanted[i - 1][1]) << i;
+        EXPECT_EQ(changed(i, "roll_deg"), wanted[i - 1][2]) << i;
+        EXPECT_EQ(changed(i, "target_mm"), wanted[i - 1][3]) << i;
+    }
+}
+
 TEST_F(StudioProgram, AStrokeMovedInTheMiddleReplaysToTheSameTexels) {
     const Ran ran = studio(kBowl + kTwoStrokes + "click \"stroke 1\"\nwait 0.1\nclick Move\nmove 50%,59%\npress\nmove 52%,57%\nmove 54%,56%\nrelease\nwait-ready\n"
                                                  "expect strokes 2\nexpect kept\nsave work.tuft\nwait-ready\n");
@@ -187,7 +234,8 @@ TEST_F(StudioProgram, LostGraphicsAreMadeAnewWithAllTheirInk) {
 
 TEST_F(StudioProgram, AnExportIsWhatItsPresetSays) {
     std::string script = kBowl + kTwoStrokes;
-    const std::pair<const char*, const char*> presets[] = {{"Blender", "a.glb"}, {"Unreal", "b.glb"}, {"Unity", "c.gltf"}, {"Web", "d.glb"}, {"Print proof", "e.obj"}, {"Strokes", "f.inkml"}};
+    const std::pair<const char*, const char*> presets[] = {{"Blender", "a.glb"}, {"Unreal", "b.glb"}, {"Unity", "c.gltf"}, {"Web", "d.glb"}, {"Print proof", "e.obj"}, {"Strokes", "f.inkml"},
+                                                            {"16-bit maps", "g.png"}, {"EXR maps", "h.exr"}};
     for (const auto& [preset, file] : presets)
         script += "key ctrl+e\nclick Preset\nwait 0.1\nclick \"" + std::string(preset) + "\"\nwait 0.1\nclick \"Choose a file...\"\nwait 0.1\nkey ctrl+a\ntype " +
                   path(fs::path(file).stem()) + "\nkey enter\nwait-ready\nexpect message " + path(file) + "\n";
@@ -196,6 +244,20 @@ TEST_F(StudioProgram, AnExportIsWhatItsPresetSays) {
     for (const auto& [preset, file] : presets) EXPECT_TRUE(fs::exists(path(file))) << preset;
     EXPECT_EQ(io::read_model(path("c.gltf")).n_polygons(), io::read_model(path("e.obj")).n_polygons());
     EXPECT_LT(fs::file_size(path("d.glb")), fs::file_size(path("a.glb")));
+    // Of single maps the names say what they hold; both formats hold the same colours.
+    for (const char* file : {"g_roughness.png", "g_normal.png", "g_height.png", "h_roughness.exr", "h_normal.exr", "h_height.exr"}) EXPECT_TRUE(fs::exists(path(file))) << file;
+    const io::Image16 encoded = io::read_image16(path("g.png"));
+    const io::ImageF linear = io::read_image_float(path("h.exr"));
+    ASSERT_EQ(encoded.pixels.size(), linear.pixels.size());
+    double most = 0;
+    std::set<std::uint16_t> values;
+    for (std::size_t i = 0; i < linear.pixels.size(); ++i) {
+        // EXR has half floats: 2^-11 of the value, of which the curve's slope leaves 0.45 · 65535 · 2^-11 steps, and half a step.
+        most = std::max(most, std::abs(65535.0 * static_cast<double>(ink::srgb_encode(linear.pixels[i])) - encoded.pixels[i]));
+        values.insert(encoded.pixels[i]);
+    }
+    EXPECT_LT(most, 15);
+    EXPECT_GT(values.size(), 256u) << "no more than eight bits";
 }
 
 TEST_F(StudioProgram, AnExportAtAnotherSizeIsPaintedAnew) {

@@ -4,6 +4,11 @@
 #include <imgui.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
 
 namespace tuft::app {
 namespace {
@@ -48,6 +53,24 @@ INSTANTIATE_TEST_SUITE_P(, Themes, testing::Values(Theme::dark, Theme::light));
 
 TEST(UiText, AllChineseTextsAreThereForWhatTheKeysAreCalled) {
     for (const char* text : {"Undo", "Redo", "Curve", "Hold it upright", "Dry"}) EXPECT_NE(chinese_text(text), nullptr) << text;
+}
+
+// What the panels' sources give to the functions that show it, but for keys and names that are the same in both.
+TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
+    const std::regex shown(R"re((?:button|choice|toggle|slider|heading|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
+    const std::regex words("[a-z]{3}");
+    std::size_t seen = 0;
+    for (const auto& file : std::filesystem::directory_iterator(TUFT_SOURCE "/src/app")) {
+        std::ifstream in(file.path());
+        const std::string text{std::istreambuf_iterator<char>(in), {}};
+        for (std::sregex_iterator it(text.begin(), text.end(), shown), end; it != end; ++it) {
+            const std::string label = (*it)[1];
+            if (!std::regex_search(label, words) || label.find('\\') != std::string::npos || label == "SpaceMouse" || label == "%g mm") continue;
+            ++seen;
+            EXPECT_NE(chinese_text(label.c_str()), nullptr) << file.path().filename() << ": " << label;
+        }
+    }
+    EXPECT_GT(seen, 150u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <functional>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -15,6 +16,8 @@
 
 namespace tuft::io {
 namespace {
+
+namespace fs = std::filesystem;
 
 using namespace testing;
 
@@ -477,6 +480,34 @@ TEST(Project, ForeignFilesAreNamedAsSuch) {
     EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to " + std::to_string(kProjectFormat) + ")"),
               std::string::npos);
     EXPECT_THROW(Project::create(folder / "no/where/a.tuft", sample_model()), Error);
+}
+
+TEST(Project, WhatCannotBeOpenedSaysWhyInWordsOfPeople) {
+    const Folder folder("project_unopened");
+    const auto says = [](const std::function<void()>& act) {
+        try {
+            act();
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    fs::create_directories(folder / "folder.tuft");
+    EXPECT_NE(fault(folder / "folder.tuft").find("is a folder"), std::string::npos);
+    fs::create_directories(folder / "work");
+    Project project = Project::create(folder / "work/a.tuft", sample_model());
+    project.append(sample_stroke(1));
+    // Its rollback journal cannot be made.
+    fs::create_directories(folder / "work/a.tuft-journal");
+    const std::string blocked = says([&] { project.append(sample_stroke(2)); });
+    EXPECT_NE(blocked.find("a.tuft: cannot be"), std::string::npos) << blocked;
+    fs::remove(folder / "work/a.tuft-journal");
+    fs::rename(folder / "work", folder / "elsewhere");
+    const std::string moved = says([&] { project.append(sample_stroke(2)); });
+    EXPECT_NE(moved.find("is not there any more"), std::string::npos) << moved;
+    for (const std::string& text : {blocked, moved}) EXPECT_EQ(text.find("database"), std::string::npos) << text;
+    fs::rename(folder / "elsewhere", folder / "work");
+    EXPECT_EQ(says([&] { project.append(sample_stroke(2)); }), "");
 }
 
 TEST(Project, DamagedFilesAreErrorsNeverCrashes) {
