@@ -47,6 +47,12 @@ oiiotool "$out/backrun.png" "$out/wet-vase.png" "$out/wet-bowl.png" "$sheet" --c
   --paste +0+0 --paste +460+0 --paste +920+0 --paste +0+460 --paste +460+460 --paste +0+920 --paste +740+920 \
   -d uint8 -o "$out/wet.png"
 
+# On paper: the same corners, and writing.
+ATLAS=1400 paint paper-sheet sheet wet-sheet "--film wet --dry 0 --substrate rice-paper" --view 0,89 --size 740x740 --zoom 1.75
+ATLAS=1400 paint paper-writing sheet qi-shang-ba-xia "--place 0,0,0 --place-width 150 --film wet --dry 0 --substrate rice-paper" \
+  --view 0,89 --size 740x740 --zoom 1.75
+oiiotool "$out/paper-writing.png" "$out/paper-sheet.png" --create 1480x740 3 --paste +740+0 --paste +0+0 -d uint8 -o "$out/paper.png"
+
 paint impasto sheet impasto "--substrate bisque" --raking --view 0,89 --size 1400x1000 --zoom 2.6
 
 say "colour chart"
