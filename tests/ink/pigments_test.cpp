@@ -50,8 +50,8 @@ TEST(Presets, EverySubstrateLoadsAndWritesItselfBack) {
 TEST(Presets, SubstratesDifferAsTheirMaterialsDo) {
     const Substrate glaze = load_substrate("porcelain"), bisque = load_substrate("bisque"),
                     paper = load_substrate("rice-paper");
-    // Relief and diffusion measured or estimated for glaze, bisque and xuan paper; of paper the least estimate
-    // (they go to 1e-7), which texels of 0.05 mm can follow.
+    // Relief and diffusion measured or estimated for glaze, bisque and xuan paper; of paper a tenth of
+    // the estimate, 1e-7, which texels of 0.05 mm cannot follow.
     EXPECT_FLOAT_EQ(glaze.relief, 1e-6f);
     EXPECT_FLOAT_EQ(bisque.relief, 8e-6f);
     EXPECT_FLOAT_EQ(paper.relief, 15e-6f);
