@@ -265,8 +265,14 @@ void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
         while (i + 2 < end && place(i + 1) < at) ++i;
         const double run = place(i + 1) - place(i), f = run > 0 ? std::clamp((at - place(i)) / run, 0.0, 1.0) : 0;
         float& width = track.width[static_cast<std::size_t>(k - track.first)];
-        if (width < 0 || at >= place(widest)) width = static_cast<float>(std::lerp(trail.cuts[i].a, trail.cuts[i + 1].a, f));
+        if (track.passing >= 0 && at >= track.passed && at < place(widest)) {
+            const double g = (at - track.passed) / (place(widest) - track.passed);
+            width = static_cast<float>(std::lerp(track.passing, trail.cuts[widest].a, g));
+        } else if (width < 0 || at >= place(widest))
+            width = static_cast<float>(std::lerp(trail.cuts[i].a, trail.cuts[i + 1].a, f));
     }
+    track.passed = place(widest);
+    track.passing = trail.cuts[widest].a;
     for (std::size_t k = begin; k < widest; ++k) {
         Cut& cut = trail.cuts[k];
         const double grow = std::max(1 + amount * (width_at(track, place(k), cut.a) / std::max(cut.a, 1e-9) - 1), kNarrowest);

@@ -45,6 +45,8 @@ struct HairTracks {
     struct Track {
         long long first = 0;       ///< number of the place of width[0]
         std::vector<float> width;  ///< metres; negative: no hair has lain there yet
+        double passed = 0;         ///< the place up to which the widest section has come, metres
+        double passing = -1;       ///< its half width there; negative: nowhere yet
     };
     std::vector<Track> tracks;     ///< of each branch two: its sub-spine, the trunk
 };

@@ -14,9 +14,9 @@ namespace {
 // Bending moment of a firm press over B0/L: what a hand reaches at the working depth.
 constexpr double kFirmPress = 0.1;
 constexpr double kSpeedLength = 2e-3;   // metres of travel over which the hand's speed is taken
-// Metres of ink under hair that brings just what closes its gaps: twice the grain of rough
-// paper, three times that of bisque.
-constexpr double kGrainFilm = 30e-6;
+// Metres of ink under hair that holds half of what closes its gaps, over twice that; what holds more fills the grain
+// of bisque, then that of paper.
+constexpr double kGrainFilm = 7.5e-6;
 constexpr double kRests = 1;            // rms heights over the mean of the grain that dry hair is held up by its hills
 constexpr double kLieLength = 1e-3;     // metres of hair on the surface that turn the grid of its ink
 constexpr double kSplays = 0.4;         // lack of wetness at which no water holds the tip together
@@ -176,7 +176,8 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
                                                            {wetness, travel, heading}, contact.frame, contact.triangle, cell);
         stamp.footprint = std::move(marks.footprint);
         stamp.by_hair = true;
-        stamp.grain_film = kGrainFilm * mean - kRests * static_cast<double>(substrate->relief) * std::max(0.0, 1 - mean);
+        const double dry = std::max(1e-3, 1 - mean);
+        stamp.grain_film = kGrainFilm * 2 * mean / (dry * dry) - kRests * static_cast<double>(substrate->relief) * dry;
         closed_area = marks.closed_area;
     }
     if (wet || mixed || paste) place_nodes(stamp, trails, outlines);

@@ -243,6 +243,25 @@ TEST(Hair, FollowsInItsTrack) {
     }
 }
 
+TEST(Hair, ATrackIsAsWideWhateverTheSteps) {
+    // Places of a track and steps of the hand used to beat: the tip of a steady drag went in and out every few dozen stamps.
+    const Pressed& p = pressed();
+    const double length = p.tuft.preset.length, drawn = length + 5e-3;
+    double least = 1, most = 0;
+    for (const double step : {1.9e-5, 4.9e-5, 1.3e-4}) {
+        HairTracks tracks;
+        for (double slid = 0; slid <= drawn; slid += step) {
+            std::vector<Trail> now = p.trails;
+            splay(now, tracks, slid, length, 1);
+            if (slid < length) continue;
+            least = std::min(least, now[0].cuts[12].a);
+            most = std::max(most, now[0].cuts[12].a);
+        }
+    }
+    EXPECT_GT(least, 0);
+    EXPECT_LT(most - least, 1e-9) << "of " << most;
+}
+
 TEST(Hair, EndsOfBristlesFollowTheirLengths) {
     // They used to end at the next of a dozen sections, many on one line across the tuft.
     brush::Bundles one = pressed().tuft.bundles;
