@@ -40,8 +40,8 @@ double radius_of(double amount, double angle) {
 
 }  // namespace
 
-Drips::Drips(const atlas::TexelMap& map, const atlas::SeamLinks& seams)
-    : map_(map), seams_(seams), seen_of_slot_(map.n_slots(), kNone) {}
+Drips::Drips(const atlas::TexelMap& map, const atlas::SeamLinks& seams, const WetFilm::FreeFn& free)
+    : map_(map), seams_(seams), free_(free), seen_of_slot_(map.n_slots(), kNone) {}
 
 double Drips::least(const FilmParams& p) {
     // A bead on a dry wall, or what is above hold of a film, over the bead's disc and the ring round it.
@@ -84,17 +84,22 @@ void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radi
         const Near here = disc_[i];
         const int column = here.ref.texel % atlas::kTile, row = here.ref.texel / atlas::kTile;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
-            if (const atlas::TexelRef next = beside(here.ref, column + dx, row + dy); next.valid())
+            if (const atlas::TexelRef next = beside(here.ref, column + dx, row + dy); next.valid() && !apart(here.ref, next))
                 visit(next, &here.at, static_cast<double>(std::max(map_.reach[here.ref.slot], map_.reach[next.slot])));
         const auto links = std::span(seams_.links).subspan(seams_.start[here.ref.slot], seams_.start[here.ref.slot + 1] - seams_.start[here.ref.slot]);
         if (links.empty()) continue;
         const auto first = std::lower_bound(links.begin(), links.end(), here.ref.texel,
                                             [](const atlas::SeamLink& l, std::uint8_t t) { return l.texel < t; });
         for (auto l = first; l != links.end() && l->texel == here.ref.texel; ++l)
-            visit({l->other_slot, l->other_texel}, &here.at, 0);
+            if (const atlas::TexelRef next{l->other_slot, l->other_texel}; !apart(here.ref, next)) visit(next, &here.at, 0);
     }
     for (const std::uint32_t slot : seen_slots_) seen_of_slot_[slot] = kNone;
     seen_slots_.clear();
+}
+
+/// By the edge of a tape.
+bool Drips::apart(const atlas::TexelRef& a, const atlas::TexelRef& b) const {
+    return free_ && (free_(a.slot, a.texel) == 0) != (free_(b.slot, b.texel) == 0);
 }
 
 /// The texel in this column and row of a tile, or of one of those round it.

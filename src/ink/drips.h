@@ -27,8 +27,8 @@ class Drips {
   public:
     using BeforeFn = WetFilm::BeforeFn;
 
-    /// Both must outlive it.
-    Drips(const atlas::TexelMap& map, const atlas::SeamLinks& seams);
+    /// All must outlive it. Beads stop at what is not `free`.
+    Drips(const atlas::TexelMap& map, const atlas::SeamLinks& seams, const WetFilm::FreeFn& free);
 
     /// Film units on a steep wall below which nothing can run: a mean over a bead's disc.
     static double least(const FilmParams& params);
@@ -52,10 +52,12 @@ class Drips {
     class Run;
 
     void gather(const atlas::TexelRef& start, const Vec3& centre, double radius);
+    bool apart(const atlas::TexelRef& a, const atlas::TexelRef& b) const;
     atlas::TexelRef beside(const atlas::TexelRef& ref, int column, int row) const;
 
     const atlas::TexelMap& map_;
     const atlas::SeamLinks& seams_;
+    const WetFilm::FreeFn& free_;
     std::vector<std::uint32_t> seen_of_slot_;                           ///< [n_slots] scratch
     std::vector<std::array<std::uint64_t, atlas::kTileTexels / 64>> seen_;
     std::vector<std::uint32_t> seen_slots_;

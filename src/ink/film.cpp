@@ -142,7 +142,7 @@ struct WetFilm::State : TileList {
         if (!(glm::length(params.down) > 0)) return false;
         const std::vector<Drips::Seed> seeds = seeds_of_beads(canvas, params);
         if (seeds.empty()) return false;
-        if (!drips) drips = std::make_unique<Drips>(map, seams);
+        if (!drips) drips = std::make_unique<Drips>(map, seams, ground().free);
         const std::vector<std::uint32_t> written =
             drips->run(canvas, seeds, params, dt, [&](std::uint32_t slot) { tell(slot, before); });
         if (written.empty()) return false;
@@ -155,7 +155,7 @@ struct WetFilm::State : TileList {
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 auto& g = geometry[list[i].slot];
-                if (!g) g = std::make_unique<Geometry>(make_geometry(map, seams, list[i].slot, unevenness()));
+                if (!g) g = std::make_unique<Geometry>(make_geometry(map, seams, list[i].slot, ground()));
                 list[i].stiffness = g->stiffness;
                 find_planes(canvas, i);
             }
@@ -399,6 +399,8 @@ WetFilm::WetFilm(const atlas::TexelMap& map, atlas::SeamLinks seams)
     : state_(std::make_unique<State>(map, std::move(seams))) {}
 WetFilm::~WetFilm() = default;
 WetFilm::WetFilm(WetFilm&&) noexcept = default;
+
+void WetFilm::keep_within(FreeFn free) { state_->set_free(std::move(free)); }
 
 FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before,
                             const ProgressFn& progress) {

@@ -85,6 +85,12 @@ class WetFilm {
     /// Called for a slot before anything in it changes, in the order of slots within a step.
     using BeforeFn = std::function<void(std::uint32_t slot)>;
 
+    /// How much of a texel is free, 0–255, as a mask says.
+    using FreeFn = std::function<std::uint8_t(std::uint32_t slot, int texel)>;
+    /// Tape on what is not free at all: from now on nothing goes over its edge, neither on nor off it. Where less is
+    /// free, less flows. Empty: everything is free. Costs: the metric of wet tiles is looked at anew.
+    void keep_within(FreeFn free);
+
     /// Lets `seconds` pass. Does nothing on a dry canvas. `progress` is asked at every step; where it
     /// says stop, the canvas is left as far as it came, for the caller to take back.
     FilmReport advance(Canvas& canvas, double seconds, const FilmParams& params,

@@ -20,6 +20,7 @@ struct Spot {
     bool valid = false;
     Vec3 position{0};
     double area = 0, reach = 0;
+    std::uint8_t free = 255;
     double grain = 1, ease = 1;        // of the pin; of the flow, its root
     double m11 = 1, m12 = 0, m22 = 1;  // √g times the inverse metric
     Vec3 lacking{0};                   // of that (m11, m12, m22), beside a seam
@@ -127,7 +128,7 @@ void take_balance(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t
     }
 }
 
-Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, double unevenness) {
+Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const Ground& ground) {
     Neighbourhood n;
     const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
     const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
@@ -139,7 +140,8 @@ Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, 
             n.at(column, row) = {.valid = area > 0,
                                  .position = Vec3(map.position(ref.slot, ref.texel)),
                                  .area = static_cast<double>(area),
-                                 .reach = static_cast<double>(map.reach[ref.slot])};
+                                 .reach = static_cast<double>(map.reach[ref.slot]),
+                                 .free = ground.free ? ground.free(ref.slot, ref.texel) : std::uint8_t{255}};
         }
     for (int row = -1; row < kSide + 1; ++row)
         for (int column = -1; column < kSide + 1; ++column) {
@@ -147,7 +149,7 @@ Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, 
             Spot& s = n.at(column, row);
             if (!s.valid) continue;
             s.grain = 1 + kGrainDepth * noise(s.position, kGrainLength);
-            if (unevenness > 0) s.ease = exponential(0.5 * unevenness * flocs(s.position));
+            if (ground.unevenness > 0) s.ease = exponential(0.5 * ground.unevenness * flocs(s.position));
         }
     const auto tiles = static_cast<std::int64_t>(map.tiles_per_side);
     for (std::int64_t y = std::max<std::int64_t>(y0 / kSide - 1, 0); y < std::min(y0 / kSide + 2, tiles); ++y)
@@ -164,7 +166,7 @@ double along(double a, double b, double lacking) {
 }
 
 double conductance(double g, const Spot& a, const Spot& b, double mean_area) {
-    return std::clamp(g * (a.ease * b.ease), 0.0, kMostConductance * std::min(a.area, b.area) / mean_area);
+    return std::clamp(g * (a.ease * b.ease) * passing(a.free, b.free), 0.0, kMostConductance * std::min(a.area, b.area) / mean_area);
 }
 
 std::uint16_t packed(double g) {
@@ -188,8 +190,16 @@ float sum_at(const Geometry& g, int t) {
 
 double ease_of_flow(const Vec3& position, double unevenness) { return exponential(unevenness * flocs(position)); }
 
-Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, double unevenness) {
-    const Neighbourhood n = gather(map, seams, slot, unevenness);
+double passing(std::uint8_t free_a, std::uint8_t free_b) {
+    if (free_a == 0 || free_b == 0) return free_a == free_b;
+    // A sliver along a hard edge would suck ink in through a crack and dry to a dark speck.
+    constexpr int kSliver = 64;
+    const int low = std::min(free_a, free_b), high = std::max(free_a, free_b);
+    return low < kSliver && high - low > kSliver ? 0 : low / 255.0;
+}
+
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const Ground& ground) {
+    const Neighbourhood n = gather(map, seams, slot, ground);
     const double mean = map.texel_size * map.texel_size;
     Geometry g;
     Geometry::Diagonals diagonals{};

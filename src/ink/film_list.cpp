@@ -26,16 +26,29 @@ TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
 }
 
 void TileList::set_unevenness(double unevenness) {
-    if (unevenness == unevenness_) return;
-    unevenness_ = unevenness;
+    if (unevenness == ground_.unevenness) return;
+    ground_.unevenness = unevenness;
+    look_anew();
+}
+
+void TileList::set_free(WetFilm::FreeFn free) {
+    if (!free && !ground_.free) return;
+    ground_.free = std::move(free);
+    look_anew();
+}
+
+void TileList::look_anew() {
     for (auto& g : geometry) g.reset();
     const auto root = [&](std::uint32_t slot, int texel) {
-        return std::sqrt(ease_of_flow(Vec3(map.position(slot, texel)), unevenness_));
+        return std::sqrt(ease_of_flow(Vec3(map.position(slot, texel)), ground_.unevenness));
     };
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
             atlas::SeamLink& l = seams.links[i];
-            l.weight = static_cast<float>(static_cast<double>(weights_[i]) * (root(slot, l.texel) * root(l.other_slot, l.other_texel)));
+            double weight = static_cast<double>(weights_[i]);
+            if (ground_.unevenness > 0) weight *= root(slot, l.texel) * root(l.other_slot, l.other_texel);
+            if (ground_.free) weight *= passing(ground_.free(slot, l.texel), ground_.free(l.other_slot, l.other_texel));
+            l.weight = static_cast<float>(weight);
         }
     limit_links();
 }

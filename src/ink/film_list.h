@@ -55,7 +55,9 @@ struct TileList {
 
     /// For surfaces that let liquid flow more easily here than there (`ease_of_flow`). Costs when it changes.
     void set_unevenness(double unevenness);
-    double unevenness() const { return unevenness_; }
+    /// The same for what is free of tape.
+    void set_free(WetFilm::FreeFn free);
+    const Ground& ground() const { return ground_; }
     /// The list becomes the canvas' wet tiles and those round them.
     void begin(const Canvas& canvas);
     /// The list becomes the wet tiles and those that liquid may reach in the next step.
@@ -79,10 +81,11 @@ struct TileList {
 
   private:
     std::vector<float> weights_;        ///< of the links as they came
-    double unevenness_ = 0;
+    Ground ground_;
     std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch
     std::vector<std::uint32_t> place_;  ///< [n_slots] scratch
 
+    void look_anew();
     void limit_links();
     std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const;
     std::array<std::uint32_t, 9> around(std::uint32_t slot) const;

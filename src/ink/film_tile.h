@@ -43,7 +43,14 @@ struct alignas(64) Geometry {
 
     static constexpr int right_of(int column, int row) { return row * kRow + 8 + column; }
 };
-Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, double unevenness);
+/// What lets liquid flow less or more easily, from place to place.
+struct Ground {
+    double unevenness = 0;
+    WetFilm::FreeFn free;  ///< empty: all
+};
+/// Of what flows between two texels that are all free: so much; 0 over the edge of a tape.
+double passing(std::uint8_t free_a, std::uint8_t free_b);
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const Ground& ground);
 /// How easily liquid flows at a place, over the mean: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to
 /// 2.4 mm, −2 to 1.5. On a plane the flow in the large is that of the geometric mean, 1 (Dykhne 1971).
 double ease_of_flow(const Vec3& position, double unevenness);

@@ -216,7 +216,7 @@ void Painting::begin_hand(Stroke stroke) {
     if (paste) hand_->cell = std::max(hand_->cell, kPasteCell);
     const Settings& settings = hand_->stroke.settings;
     if (settings.film != "wet" || hand_->stroke.trace.erases) return;
-    if (&model == model_) hand_->wet.emplace(film(), canvas, ink::film_params(substrate, settings.down));
+    if (&model == model_) hand_->wet.emplace(film(hand_->stroke.mask), canvas, ink::film_params(substrate, settings.down));
     else hand_->wet.emplace(*plate().film, canvas, plate().params);
 }
 
@@ -395,6 +395,7 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
 }
 
 StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
+    stroke.id = 0;  // none yet, whatever journal it comes from
     check_layer(stroke);
     settle(stroke);
     StrokeReport report;

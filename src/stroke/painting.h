@@ -187,7 +187,9 @@ class Painting {
     /// Shows these layers alone, whatever the table says; empty: as it says. Not kept.
     void show_only(std::vector<std::uint32_t> layers);
     /// The masks now; entries with `Action::mask` change them. A stroke or fill that names one in
-    /// `Stroke::mask` leaves everything outside it as it is.
+    /// `Stroke::mask` leaves everything outside it as it is. What it leaves wet does not flow over the
+    /// mask's edge either: the mask stays on the layer, as tape does, until something is painted there
+    /// with another one or none.
     const MaskTable& masks() const { return masks_; }
     /// The mask on this model's texels; made at the first call and kept. Throws `Error` when there
     /// is none of this id, or when it cannot be on this mesh.
@@ -252,7 +254,8 @@ class Painting {
     void act(const Stroke& entry, const ProgressFn& progress);
     void dry(const Stroke& entry, const ProgressFn& progress);
     void take_back(const std::vector<LayerTiles>& before);
-    ink::WetFilm& film();
+    ink::WetFilm& film(std::uint32_t mask);
+    std::uint32_t tape_on(std::uint32_t layer, std::uint64_t before_id) const;
     const atlas::SeamLinks& seams();
     Palette& plate();
     void wash(const Stroke& entry);
@@ -302,6 +305,7 @@ class Painting {
     std::size_t known_pigments_ = 0;                  ///< by the entries of the journal
     std::unique_ptr<Hand> hand_;
     std::unique_ptr<ink::WetFilm> film_;              ///< made when something is wet
+    std::uint32_t film_mask_ = 0;                     ///< the mask that it keeps within
     std::unique_ptr<atlas::SeamLinks> seams_;         ///< made for it, or for paste
     mutable std::unique_ptr<ink::GutterPlan> gutter_;
 };

@@ -15,9 +15,25 @@ const atlas::SeamLinks& Painting::seams() {
     return *seams_;
 }
 
-ink::WetFilm& Painting::film() {
+ink::WetFilm& Painting::film(std::uint32_t mask) {
     if (!film_) film_ = std::make_unique<ink::WetFilm>(model_->texels, seams());
+    if (mask == film_mask_) return *film_;
+    ink::WetFilm::FreeFn free;
+    if (mask) free = [texels = &this->mask(mask)](std::uint32_t slot, int texel) { return texels->coverage(slot, texel); };
+    film_->keep_within(std::move(free));
+    film_mask_ = mask;
     return *film_;
+}
+
+/// The mask that was last painted through on a layer, of entries before this one.
+std::uint32_t Painting::tape_on(std::uint32_t layer, std::uint64_t before_id) const {
+    std::uint32_t mask = 0;
+    for (const Stroke& s : journal_.strokes()) {
+        if (before_id && s.id == before_id) break;
+        const bool paints = s.action == Action::stroke || s.action == Action::fill;
+        if (paints && !s.hidden && s.layer == layer) mask = s.mask;
+    }
+    return masks_.find(mask) ? mask : 0;
 }
 
 void Painting::take_back(const std::vector<LayerTiles>& before) {
@@ -39,8 +55,9 @@ void Painting::dry(const Stroke& entry, const ProgressFn& progress) {
             before.tiles.push_back(canvas.snapshot(slot));
         };
         try {
-            if (entry.seconds > 0) film().advance(canvas, entry.seconds, params, keep, progress);
-            else film().dry(canvas, params, keep, kDryLimit, progress);
+            ink::WetFilm& film = this->film(tape_on(layer.id, entry.id));
+            if (entry.seconds > 0) film.advance(canvas, entry.seconds, params, keep, progress);
+            else film.dry(canvas, params, keep, kDryLimit, progress);
         } catch (...) {
             take_back(undo.before);
             throw;

@@ -34,6 +34,7 @@ void Painting::edit_masks(const Stroke& entry) {
     apply(table, entry.mask_edit);
     // An id may come back with another mask after an undo.
     const std::uint32_t id = entry.mask_edit.mask.id;
+    if (id == film_mask_ && film_) film(0);
     mask_texels_.erase(id);
     keep_undo({.stroke_id = entry.id, .masks = std::move(masks_)});
     masks_ = std::move(table);

@@ -200,6 +200,19 @@ TEST(Drips, ABeadDriesRoundWhereItStopped) {
     }
 }
 
+TEST(Drips, BeadsStopAtTape) {
+    for (const bool cut : {false, true}) {
+        Wall w(0, cut);
+        w.film.keep_within([&](std::uint32_t slot, int t) { return w.map.position(slot, t).z > 5e-3f ? 255 : 0; });
+        drop(w);
+        const double ink = w.canvas.total(w.map, 0);
+        w.film.advance(w.canvas, 6, porcelain());
+        EXPECT_GE(w.lowest(), 5e-3);
+        EXPECT_LT(w.lowest(), 5.2e-3) << "it ran as far as that";
+        EXPECT_NEAR(w.canvas.total(w.map, 0) / ink, 1, 1e-5);
+    }
+}
+
 TEST(Drips, GentlerSlopesTakeMoreLiquid) {
     for (const double steepness : {1.0, 0.15}) {
         Wall w;

@@ -170,6 +170,53 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
     EXPECT_TRUE(all.canvas().same_contents(free.canvas()));
 }
 
+TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
+    // Half of the sheet is masked; a stroke with much water runs over its edge.
+    const Mask half{.name = "half", .kind = MaskKind::lasso, .view = {.right = {1, 0, 0}, .up = {0, 1, 0}},
+                    .polygon = {{0, -1}, {1, -1}, {1, 1}, {0, 1}}};
+    Stroke wet = quick();
+    wet.trace.ink = "carbon";
+    wet.settings.film = "wet";
+    Stroke wait;
+    wait.action = Action::dry;
+    wait.trace.flat = false;
+    wait.seconds = 5;
+    const auto outside = [](Painting& painting) {
+        const MaskTexels& mask = painting.mask(1);
+        double sum = 0;
+        for (std::uint32_t slot = 0; slot < model().texels.n_slots(); ++slot)
+            for (int p = 0; p < static_cast<int>(painting.canvas().pigments().size()); ++p)
+                for (int t = 0; t < atlas::kTileTexels; ++t)
+                    if (mask.coverage(slot, t) == 0)
+                        for (int film = 0; film < ink::kFilms; ++film)
+                            if (const ink::Plane* w = painting.canvas().film_plane(slot, film, p)) sum += static_cast<double>((*w)[t]);
+        return sum;
+    };
+    Painting painting(model(), {.substrate = "rice-paper"});
+    painting.paint(entry({.mask = half}));
+    wet.mask = 1;
+    painting.paint(wet);
+    painting.paint(wait);
+    EXPECT_EQ(outside(painting), 0);
+    EXPECT_TRUE(painting.canvas().wet());
+    const std::uint64_t hash = painting.hash();
+    painting.undo();
+    painting.undo();
+    painting.redo();
+    painting.redo();
+    EXPECT_EQ(painting.hash(), hash);
+    Painting again(model(), {.substrate = "rice-paper"});
+    again.replay(painting.journal().strokes());
+    EXPECT_EQ(again.hash(), hash);
+    // The tape comes off with the next stroke, which lies elsewhere.
+    Stroke beside = wet;
+    beside.mask = 0;
+    for (TraceSample& s : beside.trace.samples) s.position += Vec3{0.012, 0, 0};
+    painting.paint(beside);
+    painting.paint(wait);
+    EXPECT_GT(outside(painting), 0.1);
+}
+
 TEST(Mask, UndoReplayAndTextKeepIt) {
     std::uint64_t hash = 0;
     for (const int threads : {1, 3}) {
