@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -128,6 +130,46 @@ int inspect_project(const Inspect& a) {
     return 0;
 }
 
+// What the UVs of a file cannot do well on pages of `page` texels, even where they are kept.
+std::vector<std::string> uv_notes(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, int gap, std::uint32_t page) {
+    constexpr double kSmallChart = 9, kUneven = 3;  // texels; between the sizes of texels
+    std::vector<std::string> notes;
+    if (gap == 1)
+        notes.push_back(fmt::format("charts lie 1 texel apart, and what lies between can have the colour of one only: where ink "
+                                    "ends at a seam, a line may show; at {} x {} texels they are 2 apart", 2 * page, 2 * page));
+    if (gap > 1 && gap < 4)
+        notes.push_back(fmt::format("charts lie {} texels apart: clean up close, but from afar, in mip-maps, their colours mix", gap));
+    std::vector<double> chart_texels(atlas.n_charts, 0);
+    std::vector<std::pair<double, double>> texels;  // metres, m² of surface
+    double area = 0;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
+        const Vec3 a = mesh.position(t, 0);
+        const double here = 0.5 * glm::length(glm::cross(mesh.position(t, 1) - a, mesh.position(t, 2) - a));
+        const Vec2 p(atlas.corner_uvs[3 * t]);
+        const Vec2 u = Vec2(atlas.corner_uvs[3 * t + 1]) - p, v = Vec2(atlas.corner_uvs[3 * t + 2]) - p;
+        const double n = 0.5 * std::abs(u.x * v.y - u.y * v.x) * atlas.size * atlas.size;
+        if (!(n > 0 && std::isfinite(n))) continue;
+        chart_texels[atlas.triangle_chart[t]] += n;
+        texels.emplace_back(std::sqrt(here / n), here);
+        area += here;
+    }
+    const auto small = std::count_if(chart_texels.begin(), chart_texels.end(), [](double n) { return n < kSmallChart; });
+    if (small > 0)
+        notes.push_back(fmt::format("{} of the charts have less than 3 x 3 texels: a stroke over them is as coarse", small));
+    std::sort(texels.begin(), texels.end());
+    const auto quantile = [&](double part) {
+        double sum = 0;
+        for (const auto& [size, here] : texels)
+            if ((sum += here) >= part * area) return size;
+        return texels.empty() ? 0 : texels.back().first;
+    };
+    const double finest = quantile(0.01), coarsest = quantile(0.99);
+    if (coarsest > kUneven * finest)
+        notes.push_back(fmt::format("texels are {:.3g} to {:.3g} mm wide, from place to place: ink is as much coarser there",
+                                    finest / kMillimetre, coarsest / kMillimetre));
+    return notes;
+}
+
 }  // namespace
 
 int run(const Inspect& a) {
@@ -158,6 +200,8 @@ int run(const Inspect& a) {
         uvs = atlas::check_file_uvs(surface.mesh, kPage);
         quality = atlas::measure(surface.mesh, uvs.atlas);
     }
+    std::vector<std::string> notes;
+    if (s.has_uvs && uvs.fault.empty()) notes = uv_notes(surface.mesh, uvs.atlas, quality.smallest_gap, kPage);
     if (a.common.json) {
         nlohmann::json j{{"file", a.file.string()},
                          {"triangles", s.n_triangles},
@@ -174,6 +218,7 @@ int run(const Inspect& a) {
                          {"mesh", to_json(s.report)}};
         j["has_uvs"] = s.has_uvs;
         j["uv_fault"] = s.has_uvs && !uvs.fault.empty() ? nlohmann::json(uvs.fault) : nlohmann::json();
+        j["uv_notes"] = notes;
         j["atlas"] = s.has_uvs ? to_json(uvs.atlas, quality) : nlohmann::json();
         std::cout << j.dump(2) << '\n';
         return 0;
@@ -192,6 +237,7 @@ int run(const Inspect& a) {
                quality.roomless_triangles, kPage, kPage, quality.overlapping_texels, quality.smallest_gap);
     if (uvs.fault.empty()) fmt::print("     --keep-uv keeps them\n");
     else fmt::print("     they cannot be kept: {}\n", uvs.fault);
+    for (const std::string& note : notes) fmt::print("     {}\n", note);
     return 0;
 }
 

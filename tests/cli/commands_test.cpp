@@ -319,6 +319,35 @@ TEST_F(Commands, InspectMeasuresUvsOfAModelAsUnwrapDoes) {
     EXPECT_TRUE(json::parse(far.out)["uv_fault"].is_string()) << far.out;
 }
 
+TEST_F(Commands, InspectSaysWhatSoundUvsCannotDoWell) {
+    // Three squares of 10 mm: the second has a quarter of the first one's texels along a side and lies
+    // 1.5 texels of 2048 beside it, the third, of 0.01 mm, has two texels.
+    const auto square = [](double x, double side, double u, double v, double width, int first) {
+        std::string text;
+        for (int k = 0; k < 4; ++k) {
+            const double i = k == 1 || k == 2, j = k > 1;
+            text += "v " + std::to_string(x + side * i) + " " + std::to_string(side * j) + " 0\n";
+            text += "vt " + std::to_string(u + width * i) + " " + std::to_string(v + width * j) + "\n";
+        }
+        text += "f";
+        for (int k = 0; k < 4; ++k) text += " " + std::to_string(first + k) + "/" + std::to_string(first + k);
+        return text + "\n";
+    };
+    const double gap = 1.5 / 2048;
+    write("s.obj", square(0, 10, 0.1, 0.1, 0.2, 1) + square(20, 10, 0.3 + gap, 0.1, 0.05, 5) +
+                       square(40, 0.01, 0.5, 0.5, 0.0007, 9));
+    const json found = json::parse(tuft("inspect " + path("s.obj") + " --json").out);
+    EXPECT_TRUE(found["uv_fault"].is_null()) << found["uv_fault"];
+    ASSERT_EQ(found["uv_notes"].size(), 3u) << found["uv_notes"];
+    EXPECT_NE(found["uv_notes"][0].get<std::string>().find("1 texel apart"), std::string::npos);
+    EXPECT_EQ(found["uv_notes"][1].get<std::string>().find("1 of the charts"), 0u);
+    // 10 mm over 0.2 and 0.05 of 2048 texels.
+    EXPECT_NE(found["uv_notes"][2].get<std::string>().find("0.0244 to 0.0977 mm"), std::string::npos) << found["uv_notes"];
+
+    write("far.obj", square(0, 10, 0.1, 0.1, 0.2, 1) + square(20, 10, 0.4, 0.1, 0.2, 5));
+    EXPECT_EQ(json::parse(tuft("inspect " + path("far.obj") + " --json").out)["uv_notes"], json::array());
+}
+
 TEST_F(Commands, UvsOnSeveralPagesAreKept) {
     const Ran made = tuft("unwrap " + model("bowl.ply") + " -o " + path("b.obj") +
                           " --atlas-size 256 --pages 3 --json");
