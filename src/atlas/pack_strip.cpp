@@ -24,6 +24,14 @@ Strip::Spot Strip::find(const Mask& mask, std::uint32_t from_row, std::uint32_t 
     Spot spot;
     if (mask.width > width_) return spot;
     const std::uint32_t places = width_ - mask.width + 1;
+    // Pages of the coarse search: all places of a row in four words at most.
+    switch ((places + 63) / 64) {
+        case 1: return find_in<1>(mask, from_row, limit, places);
+        case 2: return find_in<2>(mask, from_row, limit, places);
+        case 3: return find_in<3>(mask, from_row, limit, places);
+        case 4: return find_in<4>(mask, from_row, limit, places);
+        default: break;
+    }
     std::vector<std::uint64_t>& valid = valid_;
     valid.resize((places + 63) / 64);
     std::size_t killer = 0;
@@ -85,7 +93,7 @@ void Strip::take(std::uint32_t y, std::int64_t first, std::int64_t last) {
     }
 }
 
-const std::uint64_t* Strip::built_level(std::uint32_t y, int k) {
+void Strip::build_level(std::uint32_t y, int k) {
     for (; built_[y] <= k; ++built_[y]) {
         const std::uint64_t* from = level(y, built_[y] - 1);
         std::uint64_t* to = level(y, built_[y]);
@@ -96,7 +104,45 @@ const std::uint64_t* Strip::built_level(std::uint32_t y, int k) {
             to[w] = from[w] | moved[w] >> i | moved[w + 1] << 1 << (63 - i);
         for (std::size_t w = words_; w < stride_; ++w) to[w] = ~std::uint64_t{0};
     }
-    return level(y, k);
+}
+
+/// The same where the places of a row are n words.
+template <std::size_t n>
+Strip::Spot Strip::find_in(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, std::uint32_t places) {
+    std::array<std::uint64_t, n> all;
+    all.fill(~std::uint64_t{0});
+    if (places % 64 != 0) all.back() >>= 64 - places % 64;
+    std::size_t killer = 0;
+    for (std::uint32_t y = from_row; y + mask.height <= limit; ++y) {
+        std::array<std::uint64_t, n> valid = all;
+        bool any = block_in<n>(mask.runs[killer], y, valid);
+        for (std::size_t r = 0; any && r < mask.runs.size(); ++r) {
+            any = block_in<n>(mask.runs[r], y, valid);
+            if (!any) killer = r;
+        }
+        if (!any) continue;
+        for (std::size_t w = 0; w < n; ++w)
+            if (valid[w] != 0) return {static_cast<std::uint32_t>(64 * w + std::countr_zero(valid[w])), y};
+    }
+    return {};
+}
+
+template <std::size_t n>
+bool Strip::block_in(const Run& run, std::uint32_t y, std::array<std::uint64_t, n>& valid) {
+    const std::uint32_t row = y + run.row;
+    if (row >= n_rows_) return true;
+    const int k = std::bit_width(run.last - run.first + 1) - 1;
+    const std::uint64_t* taken = built_level(row, k);
+    const std::size_t a = run.first, b = run.last + 1 - (std::size_t{1} << k);
+    const std::uint64_t* first = taken + a / 64;
+    const std::uint64_t* second = taken + b / 64;
+    const int i = static_cast<int>(a % 64), j = static_cast<int>(b % 64);
+    std::uint64_t any = 0;
+    for (std::size_t w = 0; w < n; ++w) {
+        valid[w] &= ~(first[w] >> i | first[w + 1] << 1 << (63 - i) | second[w] >> j | second[w + 1] << 1 << (63 - j));
+        any |= valid[w];
+    }
+    return any != 0;
 }
 
 /// Clears the places where the run hits something; false when none is left.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -34,8 +35,16 @@ class Strip {
     }
     void grow(std::uint32_t rows);
     void take(std::uint32_t y, std::int64_t first, std::int64_t last);
-    const std::uint64_t* built_level(std::uint32_t y, int k);
+    const std::uint64_t* built_level(std::uint32_t y, int k) {
+        if (built_[y] <= k) build_level(y, k);
+        return level(y, k);
+    }
+    void build_level(std::uint32_t y, int k);
     bool block(const Run& run, std::uint32_t y, std::vector<std::uint64_t>& valid);
+    template <std::size_t n>
+    Spot find_in(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, std::uint32_t places);
+    template <std::size_t n>
+    bool block_in(const Run& run, std::uint32_t y, std::array<std::uint64_t, n>& valid);
 
     std::uint32_t width_;
     std::size_t words_, stride_;  // that hold cells; in all
