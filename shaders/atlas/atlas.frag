@@ -17,7 +17,7 @@ void main() {
     }
     vec4 texel = texture(u_texture, v_uv);
     if (u_shading == 3) {
-        f_colour = vec4(height_colour(texel.a * 25.5, u_height_range), 1.0);
+        f_colour = vec4(height_colour(ink_height(texel.a), u_height_range), 1.0);
         return;
     }
     float pattern = u_shading == 4 ? texel_pattern(v_uv, u_atlas_size) : 1.0;

@@ -1,3 +1,6 @@
+// Micrometres of ink for the texture's fourth channel, as `height_of_code` in gl_scene.h.
+float ink_height(float channel) { return 4.8 * (exp(channel * (255.0 / 48.0)) - 1.0); }
+
 // Five-step ramp from dark blue to pale yellow, even in lightness. Linear values in, t in [0, 1].
 vec3 ramp(float t) {
     vec3 c0 = vec3(0.13, 0.12, 0.30), c1 = vec3(0.18, 0.37, 0.55), c2 = vec3(0.16, 0.60, 0.55), c3 = vec3(0.55, 0.79, 0.32),

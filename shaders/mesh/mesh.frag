@@ -7,12 +7,12 @@
 in vec3 v_position;
 in vec3 v_normal;
 in vec2 v_uv;
-uniform sampler2D u_texture;         // sRGB colour (the GPU decodes), alpha: height / 25.5 micrometres
+uniform sampler2D u_texture;         // sRGB colour (the GPU decodes), alpha: code of the height
 uniform samplerBuffer u_triangle_colours;  // sRGB-encoded, one per triangle
 uniform float u_roughness;           // of the coat
 uniform int u_shading;               // 0 glaze, 1 clay, 2 flat colour, 3 height, 4 texel grid, 5 triangle colours
 uniform float u_atlas_size;          // texels per side
-uniform float u_relief;              // exaggeration of the ink's height
+uniform float u_relief;              // times that thin ink is shown as high as it is
 uniform float u_height_range;        // micrometres at the ramp's end
 out vec4 f_colour;
 
@@ -23,6 +23,9 @@ vec3 relief_normal(vec3 n, float height) {
     vec3 slope = sign(det) * (dFdx(height) * r1 + dFdy(height) * r2);
     return normalize(abs(det) * n - slope);
 }
+
+// Metres: thin ink is shown higher than it is, thick paint as it is.
+float shown_height(float micrometres) { return 1e-6 * (micrometres + (u_relief - 1.0) * 20.0 * (1.0 - exp(-micrometres / 20.0))); }
 
 void main() {
     vec3 n = normalize(v_normal);
@@ -39,12 +42,12 @@ void main() {
         return;
     }
     if (u_shading == 3) {
-        f_colour = vec4(height_colour(texel.a * 25.5, u_height_range) * facing, 1.0);
+        f_colour = vec4(height_colour(ink_height(texel.a), u_height_range) * facing, 1.0);
         return;
     }
     vec3 base = texel.rgb;
     if (u_shading == 4) base *= texel_pattern(v_uv, u_atlas_size);
-    if (u_relief > 0.0) n = relief_normal(n, texel.a * 25.5e-6 * u_relief);
+    if (u_relief > 0.0) n = relief_normal(n, shown_height(ink_height(texel.a)));
     float fresnel = u_shading == 1 ? 0.0 : mix(coat_fresnel(dot(n, to_eye)), 0.02, smoothstep(0.4, 0.8, u_roughness));
     vec3 light = (1.0 - fresnel) * base * irradiance(n);
     if (fresnel > 0.0) light += fresnel * surroundings(reflect(-to_eye, n), u_roughness);

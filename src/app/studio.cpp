@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "app/imgui_feed.h"
 #include "app/model_colours.h"
@@ -23,6 +24,13 @@ constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015; 
 constexpr double kInkWait = 0.02, kInkPart = 0.2;  // seconds, and part of a frame's time, that the newest ink is waited for
 constexpr float kLeastView = 240;      // pixels at scale 1, of the model's view beside both panels
 constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
+
+// Micrometres.
+double highest_of(std::span<const std::array<std::uint8_t, 4>> texels) {
+    std::uint8_t most = 0;
+    for (const auto& texel : texels) most = std::max(most, texel[3]);
+    return render::height_of_code(most);
+}
 
 }  // namespace
 
@@ -156,8 +164,7 @@ void Studio::take_model() {
         scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
         const render::MapPixels pixels = s.painter->take_pixels();
         scene_->set_texture(pixels);
-        s.highest = 0;
-        for (const auto& texel : pixels.levels[0]) s.highest = std::max(s.highest, 0.1 * texel[3]);
+        s.highest = highest_of(pixels.levels[0]);
         view_->scene_changed();
         colours_shown_ = ModelView::glaze;
         if (!std::exchange(s.keeps_view, false)) {
@@ -173,14 +180,13 @@ void Studio::take_model() {
     }
     if (s.last.pixels) {
         scene_->set_texture(*s.last.pixels);
-        s.highest = 0;
-        for (const auto& texel : s.last.pixels->levels[0]) s.highest = std::max(s.highest, 0.1 * texel[3]);
+        s.highest = highest_of(s.last.pixels->levels[0]);
         s.last.pixels.reset();
         view_->scene_changed();
     }
     scene_->update_tiles(s.last.tiles);
     for (const render::TilePixels& tile : s.last.tiles)
-        for (std::size_t k = 0; k < 256; ++k) s.highest = std::max(s.highest, 0.1 * tile.rgba[k][3]);
+        s.highest = std::max(s.highest, highest_of(std::span(tile.rgba).first(256)));
     for (const render::TilePixels& tile : s.last.tiles) view_->texture_changed(tile.boxes);
     s.last.tiles.clear();
     if (s.strokes.size() != strokes_seen_ || (s.last.project != pictured_ && !s.strokes.empty())) {

@@ -49,6 +49,10 @@ void halve(const Rgba* from, Rgba* to, std::size_t side, std::size_t first_row, 
         }
 }
 
+std::uint8_t code_of(float micrometres) {
+    return static_cast<std::uint8_t>(std::lround(std::min(255.0, render::code_of_height(std::max(0.0, static_cast<double>(micrometres))))));
+}
+
 // Micrometres of liquid on and in the surface, of all layers.
 std::array<float, atlas::kTileTexels> liquid_of(const stroke::Painting& painting, std::uint32_t slot) {
     std::array<float, atlas::kTileTexels> wet{};
@@ -92,7 +96,7 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
         for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
             const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
             if (x < size && y < size && map.tiles[slot].piece[t] != atlas::kNoPiece)
-                height_[y * size + x] = static_cast<std::uint8_t>(std::clamp(10.0f * (wetness_ ? wet[t] : look.height[t]), 0.0f, 255.0f));
+                height_[y * size + x] = code_of(wetness_ ? wet[t] : look.height[t]);
         }
     }
     for (const std::uint32_t slot : slots) continue_over_seams(height_, slot, painting);

@@ -11,8 +11,8 @@
 
 namespace tuft::app {
 
-/// What the canvas looks like, kept up to date tile by tile: sRGB colour and the film's
-/// height in units of 0.1 µm (cut at 25.5 µm). Gutters are continued over the seams.
+/// What the canvas looks like, kept up to date tile by tile: sRGB colour and the
+/// code of the height of its ink (`render::code_of_height`). Gutters are continued over the seams.
 class Texture {
   public:
     Texture(const stroke::Painting& painting, const ProgressFn& progress = {});

@@ -15,6 +15,7 @@ GlLight make_light(LightRig rig, const GlCamera& c) {
         l.fill_light = {0.05f, 0.05f, 0.055f};
         l.ground = {0.17f, 0.16f, 0.15f};
         l.sky = {0.40f, 0.42f, 0.46f};
+        l.relief = 1;
     } else if (rig == LightRig::raking) {
         l.key = beside(-0.97, 0.22, -0.05);
         l.key_light = {0.85f, 0.83f, 0.78f};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -33,7 +34,13 @@ struct GlBox {
     Vec3f lo{0}, hi{0};
 };
 
-/// One tile of the atlas at all levels, RGBA: sRGB colour and height in units of 0.1 µm.
+/// The texture's fourth channel, of thin ink and thick paint alike: code 0–255 for a height in micrometres,
+/// a step of 0.1 µm on bare ground and of 1/48 of the height where it is high; 255 is 969 µm.
+inline constexpr double kCodeHeight = 4.8, kCodeSteps = 48;
+inline double height_of_code(double code) { return kCodeHeight * std::expm1(code / kCodeSteps); }
+inline double code_of_height(double micrometres) { return kCodeSteps * std::log1p(micrometres / kCodeHeight); }
+
+/// One tile of the atlas at all levels, RGBA: sRGB colour and the code of the height.
 struct TilePixels {
     static constexpr std::array<int, kTextureLevels + 1> kStart{0, 256, 320, 336, 340, 341};
     std::uint32_t tile = 0;  ///< row · per side + column

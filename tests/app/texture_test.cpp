@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "models.h"
 
 namespace tuft::app {
@@ -37,6 +39,16 @@ TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
     ASSERT_FALSE(painting.canvas().touched_slots().empty());
     const render::MapPixels whole = Texture(painting).pixels();
     for (std::size_t level = 0; level < render::kTextureLevels; ++level) EXPECT_EQ(map.levels[level], whole.levels[level]) << level;
+}
+
+TEST(HeightCode, IsFineForThinInkAndReachesThickPaint) {
+    EXPECT_EQ(render::code_of_height(0), 0);
+    EXPECT_GT(render::height_of_code(255), 900);
+    for (double height = 0.01; height < 950; height *= 1.07) {
+        const double back = render::height_of_code(std::round(render::code_of_height(height)));
+        // Half a step of code: half of dh/dcode = (4.8 + h) / 48, and the next order of it.
+        EXPECT_NEAR(back, height, 0.5 * (4.8 + height) / 48 * 1.02) << height;
+    }
 }
 
 }  // namespace
