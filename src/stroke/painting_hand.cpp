@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/simd.h"
 #include "footprint/hair.h"
 #include "ink/stir.h"
 #include "stroke/line_width.h"
@@ -29,9 +30,16 @@ footprint::StampOptions stamp_options(const Settings& settings) {
 
 }  // namespace
 
+TUFT_CLONES static std::uint32_t sum_of(const std::uint8_t* coverage, int n) {
+    std::uint32_t sum = 0;
+    for (int i = 0; i < n; ++i) sum += coverage[i];
+    return sum;
+}
+
 double footprint_area(const footprint::Footprint& f) {
     std::size_t sum = 0;
-    for (const std::uint8_t c : f.coverage) sum += c;
+    for (std::size_t row = 0; row < f.coverage.size(); row += static_cast<std::size_t>(f.width))
+        sum += sum_of(f.coverage.data() + row, f.width);
     return static_cast<double>(sum) / 255.0 * f.cell * f.cell;
 }
 
