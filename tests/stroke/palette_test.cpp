@@ -132,6 +132,50 @@ TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
     for (const int p : {red, yellow}) EXPECT_NEAR(all_of(painting, p) / before[p], 1, 1e-5);
 }
 
+// 0: every texel is of one of two pigments; 1: all have them in the same parts.
+double mixedness(Painting& painting) {
+    const atlas::TexelMap& map = painting.palette_model().texels;
+    const double whole[] = {painting.palette()->total(map, 0), painting.palette()->total(map, 1)};
+    double sum = 0, parts = 0, square = 0;
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            double of[2] = {};
+            for (int k = 0; k < 2; ++k)
+                if (const ink::Plane* plane = painting.palette()->plane(slot, k))
+                    of[k] = static_cast<double>((*plane)[t] * map.tiles[slot].area[t]) / whole[k];
+            const double both = of[0] + of[1];
+            if (!(both > 0)) continue;
+            sum += both;
+            parts += of[0];
+            square += of[0] * of[0] / both;
+        }
+    const double mean = parts / sum;
+    return 1 - (square / sum - mean * mean) / (mean * (1 - mean));
+}
+
+TEST(Palette, FiveCirclesThroughTwoPoolsMixThem) {
+    const Model model = sheet();
+    Painting painting(model);
+    painting.paint(pool("gamboge", {-0.007, 0, 0}));
+    painting.paint(pool("indigo", {0.007, 0, 0}));
+    painting.paint(rinse("gamboge"));
+    EXPECT_LT(mixedness(painting), 0.02);
+    Stroke circles = through({0, 0, 0}, kPaletteLayer, "gamboge");
+    const TraceSample upright = circles.trace.samples.front();
+    circles.trace.samples.clear();
+    const double length = brush::load_preset(kBrush).length, turn = 0.8, seconds = 5 * turn;
+    for (int i = 0; i <= 800; ++i) {
+        const double t = seconds * i / 800, angle = 2 * 3.14159265 * t / turn, press = std::min({1.0, t / 0.15, (seconds - t) / 0.15});
+        TraceSample s = upright;
+        s.time = t;
+        s.position = {0.014 * std::cos(angle), 0.014 * std::sin(angle), length + 1e-3 - 0.013 * press};
+        circles.trace.samples.push_back(s);
+    }
+    painting.paint(circles);
+    // The tip goes round in a ring of half the pools' area: what lies there is green, a third of all.
+    EXPECT_GT(mixedness(painting), 0.2);
+}
+
 TEST(Palette, ReplaysAndIsTakenBackToTheBit) {
     const Model model = sheet();
     Painting painting(model);
