@@ -342,21 +342,25 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
     std::vector<Lower> lower;
     const auto draw = [&](const Trail& trail, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
-        // The one nearest to the root of those as wide: splayed tips are as wide, but without height.
-        std::size_t widest = end - 1;
-        for (std::size_t i = end - 1; i-- > begin;)
-            if (trail.cuts[i].a > (1 + 1e-6) * trail.cuts[widest].a) widest = i;
+        Laid laid{.lies = {trail.along[end - 1], trail.along[begin]}};
+        double widest = 0;
+        // Heights over the middle, of all sections together: one of them would be another at every stamp, and hair that
+        // sticks together lies on the same side.
+        Vec2 height{0};
+        for (std::size_t i = begin; i < end; ++i) {
+            const Cut& cut = trail.cuts[i];
+            widest = std::max(widest, cut.a);
+            if (i + 1 == end) break;
+            const Vec2 run = trail.cuts[i + 1].centre - cut.centre;
+            laid.across += std::abs(run.x * ink.way.y - run.y * ink.way.x);
+            height += std::abs(trail.along[i + 1] - trail.along[i]) * Vec2{cut.a * cut.e.z, cut.b * cut.m.z};
+        }
         lower.clear();
         for (std::size_t k = 0; k < places.size(); ++k) {
-            const Vec2* at = places[k].at(trail, widest);
-            if (at && rise(trail.cuts[widest], *at) <= 0) lower.push_back({at->x, &bundles.bristles[k]});
+            const Vec2* at = places[k].at(trail, begin);
+            if (at && glm::dot(height, *at) <= 0) lower.push_back({at->x, &bundles.bristles[k]});
         }
-        Laid laid{.lies = {trail.along[end - 1], trail.along[begin]}};
-        for (std::size_t i = begin; i + 1 < end; ++i) {
-            const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
-            laid.across += std::abs(run.x * ink.way.y - run.y * ink.way.x);
-        }
-        draw_strands(trail, begin, end, strands_of(lower, bundles, ink, trail.cuts[widest].a, laid), f.lo, cell, bands);
+        draw_strands(trail, begin, end, strands_of(lower, bundles, ink, widest, laid), f.lo, cell, bands);
     };
     for (const Trail& trail : trails) {
         // The bands of both parts meet between two cuts.
