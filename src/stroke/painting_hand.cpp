@@ -19,6 +19,7 @@ constexpr double kSpeedLength = 2e-3;   // metres of travel over which the hand'
 // of bisque, then that of paper.
 constexpr double kGrainFilm = 7.5e-6;
 constexpr double kRests = 1;            // rms heights over the mean of the grain that dry hair is held up by its hills
+constexpr double kSoakLength = 0.2e-3;    // metres of travel over which ink comes to the parts of the hair that touch
 constexpr double kLieLength = 1e-3;     // metres of hair on the surface that turn the grid of its ink
 constexpr double kSplays = 0.4;         // lack of wetness at which no water holds the tip together
 
@@ -157,12 +158,16 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
     std::vector<double> saturation(n, 0), wetness(n), depth(cells, 0);
     for (std::size_t i = 0; i < touched.size(); ++i) depth[i % cells] += static_cast<double>(touched[i]);
     double least = 1e9, mean = 0;
+    // Which hair touches with which part of it flickers from stamp to stamp: threads of ink would break in dashes.
+    const double soaks = -std::expm1(-(travel - parted) / kSoakLength);
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t c = 0; c < cells; ++c) saturation[k] += depth[c] * reservoir.saturation(k * cells + c);
         wetness[k] = footprint::wetness_of_bundle(saturation[k], tuft.bundles.holds[k], speed);
+        if (soaked.size() == n) wetness[k] = std::lerp(soaked[k], wetness[k], soaks);
         mean += wetness[k] / static_cast<double>(n);
         least = std::min(least, wetness[k]);
     }
+    soaked = wetness;
     brush::part_bundles(tuft.bundles, tuft.preset, stress(contact), saturation, travel - parted, dt);
     parted = travel;
 

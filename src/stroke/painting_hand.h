@@ -37,6 +37,7 @@ struct Painting::Hand {
     brush::TuftState state;
     double last_time = 0;
     double speed = 0, travel = 0;  // m/s; metres drawn so far
+    std::vector<double> soaked;    // wetness of each bundle where it touched last
     double slid = 0;               // metres drawn over the surface since it was touched
     Vec2 heading{0};               // unit, of the last motion over it; zero before the first
     footprint::HairTracks tracks;  // of the hair that lies there
