@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 namespace tuft::atlas {
 namespace {
@@ -21,36 +22,18 @@ Strip::Strip(std::uint32_t width, std::vector<int> reach)
 }
 
 Strip::Spot Strip::find(const Mask& mask, std::uint32_t from_row, std::uint32_t limit) {
-    Spot spot;
-    if (mask.width > width_) return spot;
+    if (mask.width > width_) return {};
     const std::uint32_t places = width_ - mask.width + 1;
-    // Pages of the coarse search: all places of a row in four words at most.
+    // On pages of the coarse search all places of a row are four words at most, and stay in registers.
     switch ((places + 63) / 64) {
-        case 1: return find_in<1>(mask, from_row, limit, places);
-        case 2: return find_in<2>(mask, from_row, limit, places);
-        case 3: return find_in<3>(mask, from_row, limit, places);
-        case 4: return find_in<4>(mask, from_row, limit, places);
+        case 1: return find_among(mask, from_row, limit, places, std::array<std::uint64_t, 1>{});
+        case 2: return find_among(mask, from_row, limit, places, std::array<std::uint64_t, 2>{});
+        case 3: return find_among(mask, from_row, limit, places, std::array<std::uint64_t, 3>{});
+        case 4: return find_among(mask, from_row, limit, places, std::array<std::uint64_t, 4>{});
         default: break;
     }
-    std::vector<std::uint64_t>& valid = valid_;
-    valid.resize((places + 63) / 64);
-    std::size_t killer = 0;
-    for (std::uint32_t y = from_row; y + mask.height <= limit; ++y) {
-        std::fill(valid.begin(), valid.end(), ~std::uint64_t{0});
-        if (places % 64 != 0) valid.back() = ~std::uint64_t{0} >> (64 - places % 64);
-        bool any = block(mask.runs[killer], y, valid);
-        for (std::size_t r = 0; any && r < mask.runs.size(); ++r) {
-            any = block(mask.runs[r], y, valid);
-            if (!any) killer = r;
-        }
-        if (!any) continue;
-        for (std::size_t w = 0; w < valid.size(); ++w)
-            if (valid[w] != 0) {
-                spot = {static_cast<std::uint32_t>(64 * w + std::countr_zero(valid[w])), y};
-                return spot;
-            }
-    }
-    return spot;
+    valid_.resize((places + 63) / 64);
+    return find_among(mask, from_row, limit, places, std::span(valid_));
 }
 
 void Strip::place(const Mask& mask, const Spot& spot) {
@@ -106,61 +89,38 @@ void Strip::build_level(std::uint32_t y, int k) {
     }
 }
 
-/// The same where the places of a row are n words.
-template <std::size_t n>
-Strip::Spot Strip::find_in(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, std::uint32_t places) {
-    std::array<std::uint64_t, n> all;
-    all.fill(~std::uint64_t{0});
-    if (places % 64 != 0) all.back() >>= 64 - places % 64;
+template <class Words>
+Strip::Spot Strip::find_among(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, std::uint32_t places, Words valid) {
     std::size_t killer = 0;
     for (std::uint32_t y = from_row; y + mask.height <= limit; ++y) {
-        std::array<std::uint64_t, n> valid = all;
-        bool any = block_in<n>(mask.runs[killer], y, valid);
+        std::fill(valid.begin(), valid.end(), ~std::uint64_t{0});
+        if (places % 64 != 0) valid.back() >>= 64 - places % 64;
+        bool any = block(mask.runs[killer], y, valid);
         for (std::size_t r = 0; any && r < mask.runs.size(); ++r) {
-            any = block_in<n>(mask.runs[r], y, valid);
+            any = block(mask.runs[r], y, valid);
             if (!any) killer = r;
         }
         if (!any) continue;
-        for (std::size_t w = 0; w < n; ++w)
+        for (std::size_t w = 0; w < valid.size(); ++w)
             if (valid[w] != 0) return {static_cast<std::uint32_t>(64 * w + std::countr_zero(valid[w])), y};
     }
     return {};
 }
 
-template <std::size_t n>
-bool Strip::block_in(const Run& run, std::uint32_t y, std::array<std::uint64_t, n>& valid) {
+template <class Words>
+bool Strip::block(const Run& run, std::uint32_t y, Words& valid) {
     const std::uint32_t row = y + run.row;
     if (row >= n_rows_) return true;
     const int k = std::bit_width(run.last - run.first + 1) - 1;
     const std::uint64_t* taken = built_level(row, k);
-    const std::size_t a = run.first, b = run.last + 1 - (std::size_t{1} << k);
-    const std::uint64_t* first = taken + a / 64;
-    const std::uint64_t* second = taken + b / 64;
-    const int i = static_cast<int>(a % 64), j = static_cast<int>(b % 64);
-    std::uint64_t any = 0;
-    for (std::size_t w = 0; w < n; ++w) {
-        valid[w] &= ~(first[w] >> i | first[w + 1] << 1 << (63 - i) | second[w] >> j | second[w + 1] << 1 << (63 - j));
-        any |= valid[w];
-    }
-    return any != 0;
-}
-
-/// Clears the places where the run hits something; false when none is left.
-bool Strip::block(const Run& run, std::uint32_t y, std::vector<std::uint64_t>& valid) {
-    const std::uint32_t row = y + run.row;
-    if (row >= n_rows_) return true;
-    const std::uint32_t length = run.last - run.first + 1;
-    const int k = std::bit_width(length) - 1;
-    const std::uint64_t* taken = built_level(row, k);
-    const std::size_t a = run.first, b = run.last + 1 - (std::size_t{1} << k);
     // Both ends of the run, each of 2^k cells.
+    const std::size_t a = run.first, b = run.last + 1 - (std::size_t{1} << k);
     const std::uint64_t* first = taken + a / 64;
     const std::uint64_t* second = taken + b / 64;
     const int i = static_cast<int>(a % 64), j = static_cast<int>(b % 64);
     std::uint64_t any = 0;
     for (std::size_t w = 0; w < valid.size(); ++w) {
-        valid[w] &= ~(first[w] >> i | first[w + 1] << 1 << (63 - i) | second[w] >> j |
-                      second[w + 1] << 1 << (63 - j));
+        valid[w] &= ~(first[w] >> i | first[w + 1] << 1 << (63 - i) | second[w] >> j | second[w + 1] << 1 << (63 - j));
         any |= valid[w];
     }
     return any != 0;

@@ -40,11 +40,12 @@ class Strip {
         return level(y, k);
     }
     void build_level(std::uint32_t y, int k);
-    bool block(const Run& run, std::uint32_t y, std::vector<std::uint64_t>& valid);
-    template <std::size_t n>
-    Spot find_in(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, std::uint32_t places);
-    template <std::size_t n>
-    bool block_in(const Run& run, std::uint32_t y, std::array<std::uint64_t, n>& valid);
+    /// `valid`: a row's places, an array or a span.
+    template <class Words>
+    Spot find_among(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, std::uint32_t places, Words valid);
+    /// Clears the places where the run hits something; false when none is left.
+    template <class Words>
+    bool block(const Run& run, std::uint32_t y, Words& valid);
 
     std::uint32_t width_;
     std::size_t words_, stride_;  // that hold cells; in all

@@ -42,6 +42,14 @@ class Place : public Program {
         return ink.str() + "</ink>";
     }
 
+    /// What `paint --preview` shows of lines.inkml put there.
+    std::string picture_of(const std::string& model, const std::string& place, const std::string& view) {
+        const Ran ran = tuft("paint " + path(model) + " --brush wolf-small --atlas-size 256 --place " + place +
+                             " --size 64x64 --strokes " + path("lines.inkml") + " --preview " + path("v.png") + view);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return read(path("v.png"));
+    }
+
     struct Reach {
         std::array<double, 3> low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
         double size(int axis) const { return high[axis] - low[axis]; }
@@ -182,14 +190,7 @@ TEST_F(Place, WhatHasNoPlaceIsDraped) {
 TEST_F(Place, APictureIsTakenFromTheSideThatIsPaintedOn) {
     write("box.obj", box(false));
     write("lines.inkml", lines(0, 0, 30));
-    const auto picture = [&](const std::string& view) {
-        const Ran ran =
-            tuft("paint " + path("box.obj") +
-                 " --brush wolf-small --atlas-size 256 --place 0,30,0 --size 64x64 --strokes " +
-                 path("lines.inkml") + " --preview " + path("v.png") + view);
-        EXPECT_EQ(ran.status, 0) << ran.err;
-        return read(path("v.png"));
-    };
+    const auto picture = [&](const std::string& view) { return picture_of("box.obj", "0,30,0", view); };
     const std::string by_itself = picture("");
     EXPECT_EQ(by_itself, picture(" --view 180,10"));
     EXPECT_NE(by_itself, picture(" --view 0,10"));
@@ -204,13 +205,7 @@ TEST_F(Place, AWallThatLeansOutIsLookedAtFromAboveTheGround) {
                 obj << "v " << x << ' ' << y * (z < 0 ? 20 : 50) << ' ' << z << '\n';
     write("trough.obj", obj.str() + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
     write("lines.inkml", lines(0, 0, 30));
-    const auto picture = [&](const std::string& view) {
-        const Ran ran =
-            tuft("paint " + path("trough.obj") + " --brush wolf-small --atlas-size 256 --place 0,-35,0 --size 64x64 --strokes " +
-                 path("lines.inkml") + " --preview " + path("v.png") + view);
-        EXPECT_EQ(ran.status, 0) << ran.err;
-        return read(path("v.png"));
-    };
+    const auto picture = [&](const std::string& view) { return picture_of("trough.obj", "0,-35,0", view); };
     const std::string by_itself = picture("");
     EXPECT_EQ(by_itself, picture(" --view 0,5"));
     EXPECT_NE(by_itself, picture(" --view 0,-27"));
