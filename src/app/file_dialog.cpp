@@ -163,9 +163,9 @@ std::optional<fs::path> FileDialog::draw(Ui& ui) {
     ui.mark("file name");
     ImGui::SameLine();
     const char* action = ask_replace_ ? "Replace" : reads() ? "Open" : purpose_ == Purpose::export_model ? "Export" : "Save";
-    if ((ui.primary_button(action, 100, name_[0] != 0) || entered) && name_[0]) chosen = accept(ui);
-    ImGui::SameLine();
     if (ui.button("Cancel", nullptr, 100)) shown_ = false;
+    ImGui::SameLine();
+    if ((ui.primary_button(action, 100, name_[0] != 0) || entered) && name_[0]) chosen = accept(ui);
     ImGui::End();
     return chosen;
 }

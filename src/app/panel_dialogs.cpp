@@ -114,12 +114,11 @@ void open_dialog(Session& s) {
     const bool fits = memory < stroke::available_memory();
     if (!fits) ui.wrapped(ui.tr("This many texels need more memory than is free."));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    const float right = ImGui::GetContentRegionAvail().x - ui.button_width("Cancel", 120) - ui.button_width("Unwrap and paint", 120) -
-                        ImGui::GetStyle().ItemSpacing.x;
-    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, right));
+    const char* action = s.revises.empty() ? "Unwrap and paint" : "Unwrap and repaint";
+    ui.buttons_at_right({{"Cancel", 120}, {action, 120}});
     const bool cancelled = ui.button("Cancel", nullptr, 120);
     ImGui::SameLine();
-    const bool accepted = ui.primary_button(s.revises.empty() ? "Unwrap and paint" : "Unwrap and repaint", 120, fits);
+    const bool accepted = ui.primary_button(action, 120, fits);
     end_dialog(s);
     if (accepted) accept_inspected(s);
     else if (cancelled) s.inspected.reset();
@@ -130,6 +129,7 @@ void opening_progress(Session& s) {
     std::string phase = s.opening.phase();
     ImGui::TextUnformatted(s.ui.tr(phase.c_str()));
     ImGui::ProgressBar(static_cast<float>(s.opening.fraction()), ImVec2(-1, s.ui.px(18)), "");
+    s.ui.buttons_at_right({{"Cancel", 110}});
     const bool stop = s.ui.button("Cancel", nullptr, 110);
     end_dialog(s);
     if (stop) s.opening.cancel();
@@ -149,11 +149,12 @@ void recovery_dialog(Session& s) {
     fact(s, "Model", fs::path(work.source).filename().string());
     fact(s, "Project", is_unnamed(work.project) ? ui.tr("not named yet") : work.project.string());
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    const bool go_on = ui.primary_button("Go on with it", 140);
+    ui.buttons_at_right({{"Discard", 100}, {"Later", 100}, {"Go on with it", 140}});
+    const bool drop = ui.button("Discard", "Removes this work for good, unless it lies in a project of its own", 100);
     ImGui::SameLine();
     const bool later = ui.button("Later", "It is offered again at the next start", 100);
     ImGui::SameLine();
-    const bool drop = ui.button("Discard", "Removes this work for good, unless it lies in a project of its own", 100);
+    const bool go_on = ui.primary_button("Go on with it", 140);
     end_dialog(s);
     if (go_on) {
         forget_lost_work(work, false);
@@ -173,8 +174,8 @@ void settings_dialog(Session& s) {
     ui.heading("Language");
     if (ui.choice("English", w.language == Language::english, nullptr, 120)) w.language = Language::english, changed = true;
     ImGui::SameLine();
-    // Shown in its own script where the font has it.
-    if (ui.choice("Chinese", w.language == Language::chinese, nullptr, 120)) w.language = Language::chinese, changed = true;
+    // In its own script, for those who read no other.
+    if (ui.choice(ui.has_chinese ? "中文" : "Chinese", w.language == Language::chinese, nullptr, 120)) w.language = Language::chinese, changed = true;
     ui.heading("Colours");
     if (ui.choice("Dark", w.theme == Theme::dark, nullptr, 120)) w.theme = Theme::dark, changed = true;
     ImGui::SameLine();
@@ -204,6 +205,7 @@ void settings_dialog(Session& s) {
     if (cap) store_settings(s);
     if (ui.button("Keys...", "Look up and change what the keys do", 150)) s.show_keys = true;
     ImGui::Dummy(ImVec2(0, ui.px(4)));
+    ui.buttons_at_right({{"Close", 110}});
     const bool close = ui.button("Close", nullptr, 110);
     end_dialog(s);
     if (changed) {

@@ -103,9 +103,10 @@ void export_dialog(Session& s) {
     }
     ImGui::EndDisabled();
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    const bool go = ui.primary_button("Choose a file...", 160);
-    ImGui::SameLine();
+    ui.buttons_at_right({{"Cancel", 110}, {"Choose a file...", 160}});
     const bool cancel = ui.button("Cancel", nullptr, 110);
+    ImGui::SameLine();
+    const bool go = ui.primary_button("Choose a file...", 160);
     end_dialog(s);
     if (go) s.files.show(FileDialog::Purpose::export_model, project_name(s) + preset_of(c.preset).extension);
     if (go || cancel) s.show_export = false;

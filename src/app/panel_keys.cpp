@@ -58,12 +58,13 @@ void keys_dialog(Session& s) {
     key_rows(s);
     ImGui::EndChild();
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    const bool close = ui.button("Close", nullptr, 110);
-    ImGui::SameLine();
+    ui.buttons_at_right({{"As shipped", 130}, {"Close", 110}});
     if (ui.button("As shipped", nullptr, 130, !s.keys.shipped())) {
         s.keys = {};
         store_settings(s);
     }
+    ImGui::SameLine();
+    const bool close = ui.button("Close", nullptr, 110);
     end_dialog(s);
     if (close) s.show_keys = false, s.key_asked.reset();
 }

@@ -27,11 +27,12 @@ void misfit_dialog(Session& s) {
         ImGui::TextDisabled("%s", why.c_str());
     }
     ImGui::EndChild();
+    ui.buttons_at_right({{"Back to the former model", 120}, {"Hide them", 120}, {"Keep them", 120}});
+    const bool back = ui.button("Back to the former model", "The revised one is among the recent projects then", 120);
+    ImGui::SameLine();
     const bool hide = ui.button("Hide them", nullptr, 120);
     ImGui::SameLine();
     const bool keep = ui.primary_button("Keep them", 120);
-    ImGui::SameLine();
-    const bool back = ui.button("Back to the former model", "The revised one is among the recent projects then", 120);
     end_dialog(s);
     if (back) return open_former(s);
     if (hide)

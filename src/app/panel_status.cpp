@@ -32,7 +32,7 @@ void status_bar(Session& s, float top) {
     if (s.painter) {
         char text[160];
         const stroke::Model& m = s.painter->model();
-        std::snprintf(text, sizeof text, "%u \xc3\x97 %u   %.2f mm/texel", m.atlas.size, m.atlas.size, m.atlas.texel_size * 1e3);
+        std::snprintf(text, sizeof text, s.ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size, m.atlas.texel_size * 1e3);
         const float x = screen.x - ImGui::CalcTextSize(text).x - s.ui.px(14);
         if (ImGui::GetItemRectMax().x + s.ui.px(24) < x) {
             ImGui::SameLine(x);
@@ -104,7 +104,7 @@ void tuft_inset(Session& s) {
     if (!s.view.inset || !s.painter || s.tuft.branches.empty()) return;
     Ui& ui = s.ui;
     const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
-    if (static_cast<float>(s.area.width) < 2 * width || static_cast<float>(s.area.height) < 2 * height) return;  // the model needs the room
+    if (static_cast<float>(s.area.width) < 2.5f * width || static_cast<float>(s.area.height) < 2 * height) return;  // the model needs the room
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y + s.area.height) - height - pad));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     ImGui::SetNextWindowBgAlpha(0.82f);

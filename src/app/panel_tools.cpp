@@ -252,10 +252,12 @@ void writing_section(Session& s) {
         {stroke::Laying::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
         {stroke::Laying::project, "Straight", "Straight through the picture plane"}};
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
     for (const auto& [laying, name, hint] : layings) {
         if (laying != stroke::Laying::drape) ImGui::SameLine();
         if (ui.choice(name, w.laying == laying, hint, third)) w.laying = laying;
     }
+    ImGui::PopStyleVar();
     const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (names) ui.toggle("Brush and ink of the file", w.own_ink);
     if (has_widths(w)) ui.toggle("Line widths of the drawing", w.own_width);

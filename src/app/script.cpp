@@ -20,7 +20,7 @@ namespace tuft::app {
 namespace {
 
 constexpr double kStrokeSpeed = 260;   // pixels per second
-constexpr double kLongestWait = 120;   // seconds until a wait is given up
+constexpr double kLongestWait = 120;   // seconds until a wait is given up, where the script names no other
 constexpr double kLabelWait = 5;       // seconds until a label is given up
 
 int key_code(const std::string& name) {
@@ -165,7 +165,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     if (c.name == "revise") revise_with(s, word);
     else if (c.name == "open") add({.kind = Event::Kind::drop, .text = word}, 0);
     else if (c.name == "wait-ready") {
-        if (waited > kLongestWait) fail(c, "waited too long");
+        if (waited > (word.empty() ? kLongestWait : std::atof(word.c_str()))) fail(c, "waited too long");
         return settled(s) && !s.model_is_new && waited > 0 && frames_ > 1;
     } else if (c.name == "wait") return waited >= std::atof(word.c_str());
     else if (c.name == "move") {

@@ -12,7 +12,7 @@
 ///
 ///   open FILE               as if it was dropped on the window
 ///   revise FILE             as if it was chosen as the revised model
-///   wait-ready              until nothing runs in the background
+///   wait-ready [SECONDS]    until nothing runs in the background, that long at most (120)
 ///   wait SECONDS
 ///   move PLACE              cursor
 ///   press [left|right|middle]     release [left|right|middle]
@@ -45,7 +45,7 @@ namespace {
 
 // Least and most words after the command.
 const std::map<std::string, std::pair<int, int>> kCommands{
-    {"open", {1, 1}}, {"revise", {1, 1}}, {"wait-ready", {0, 0}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
+    {"open", {1, 1}}, {"revise", {1, 1}}, {"wait-ready", {0, 1}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
     {"stroke", {2, 10000}}, {"rate", {1, 1}}, {"key", {1, 1}}, {"hold", {1, 1}}, {"type", {1, 1}}, {"scroll", {1, 1}}, {"click", {1, 1}}, {"set", {2, 2}},
     {"undo", {0, 0}}, {"redo", {0, 0}}, {"save", {1, 1}}, {"export", {1, 1}}, {"close", {0, 0}}, {"screenshot", {1, 1}},
     {"expect", {1, 2}}, {"await", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"resize", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};

@@ -114,9 +114,11 @@ bool Studio::dialog_open() const {
     return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_misfits || s.files.shown();
 }
 
-void Studio::panels(int height) {
+void Studio::panels() {
     Session& s = session_;
     menu_bar(s);
+    s.ui.modal = dialog_open();
+    ImGui::BeginDisabled(s.ui.modal);
     if (s.painter) {
         const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
         const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
@@ -130,11 +132,9 @@ void Studio::panels(int height) {
         view_marks(s, camera());
         atlas_marks(s, atlas_cursor());
     } else {
-        ImGui::BeginDisabled(dialog_open());
         welcome(s);
-        ImGui::EndDisabled();
     }
-    (void)height;
+    ImGui::EndDisabled();
     if (s.opening.running()) opening_progress(s);
     else if (s.inspected) open_dialog(s);
     else if (!s.lost.empty() && !s.painter) recovery_dialog(s);
@@ -315,7 +315,7 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
         watch_writing();
         update_tuft(now);
     }
-    panels(height);
+    panels();
     s.ui.enter = false;
     if (++frames_ % draw_every_ != 0) return ImGui::EndFrame();
     draw_scene(framebuffer, height);

@@ -47,7 +47,7 @@ class Studio {
     enum class Drag { none, turn, pan, zoom, atlas };
 
     void layout(int width, int height);
-    void panels(int height);
+    void panels();
     bool dialog_open() const;
     void take_model();
     void handle(const Event& event);

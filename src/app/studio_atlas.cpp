@@ -98,14 +98,19 @@ void atlas_marks(const Session& s, const std::optional<Vec2>& cursor) {
         draw->AddCircle(at(*cursor), s.ui.px(7), IM_COL32(255, 196, 64, 255), 24, s.ui.px(1.8f));
     }
     const stroke::Model& m = s.painter->model();
-    char text[160];
-    int n = std::snprintf(text, sizeof text, s.ui.tr("%u charts"), m.atlas.n_charts);
-    if (const atlas::AtlasReport* report = s.painter->atlas_report())
-        n += std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "    %s %.3f    %s %.0f %%", s.ui.tr("stretch"), report->l2_stretch,
-                           s.ui.tr("used"), 100 * report->utilisation);
-    const ImVec2 size = ImGui::CalcTextSize(text);
+    const auto print = [&](const char* between) {
+        char text[160];
+        const int n = std::snprintf(text, sizeof text, s.ui.tr("%u charts"), m.atlas.n_charts);
+        if (const atlas::AtlasReport* report = s.painter->atlas_report())
+            std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "%s%s %.3f%s%s %.0f %%", between, s.ui.tr("stretch"), report->l2_stretch,
+                          between, s.ui.tr("used"), 100 * report->utilisation);
+        return std::string(text);
+    };
+    std::string text = print("    ");
+    if (ImGui::CalcTextSize(text.c_str()).x + s.ui.px(32) > b.x - a.x) text = print("\n");
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     draw->AddRectFilled(ImVec2(a.x + s.ui.px(8), a.y + s.ui.px(8)), ImVec2(a.x + s.ui.px(24) + size.x, a.y + s.ui.px(16) + size.y), IM_COL32(24, 24, 26, 190), s.ui.px(5));
-    draw->AddText(ImVec2(a.x + s.ui.px(16), a.y + s.ui.px(12)), IM_COL32(240, 240, 240, 255), text);
+    draw->AddText(ImVec2(a.x + s.ui.px(16), a.y + s.ui.px(12)), IM_COL32(240, 240, 240, 255), text.c_str());
     draw->PopClipRect();
     draw->AddLine(ImVec2(a.x - 1, a.y), ImVec2(a.x - 1, b.y), ImGui::GetColorU32(ImGuiCol_Border));
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -42,6 +43,7 @@ std::string Ui::prepare(const UiSettings& settings) {
     ImGuiIO& io = ImGui::GetIO();
     io.Fonts->Clear();
     std::string missing;
+    has_chinese = false;
     const std::string latin = find_font({"NotoSans-Regular.ttf", "Inter-Regular.ttf", "Ubuntu-R.ttf", "Cantarell-Regular.otf",
                                          "DejaVuSans.ttf", "LiberationSans-Regular.ttf", "FreeSans.ttf"});
     static const ImWchar latin_range[] = {0x20, 0x17f, 0x2010, 0x2027, 0x2190, 0x2193, 0x00b0, 0x00b7, 0x03bc, 0x03bc, 0};
@@ -70,6 +72,7 @@ std::string Ui::prepare(const UiSettings& settings) {
         config.GlyphOffset.y = std::round(0.4f * (square - size));
         config.FontNo = chinese.ends_with("NotoSansCJK-Regular.ttc") ? 2 : 0;  // the simplified face of the collection
         io.Fonts->AddFontFromFileTTF(chinese.c_str(), square, &config, ranges.Data);
+        has_chinese = true;
     } else if (settings.language == Language::chinese) {
         missing = "No Chinese font was found on this system; the interface stays in English.";
         settings_.language = Language::english;
@@ -124,14 +127,16 @@ void Ui::style() {
 }
 
 const char* Ui::tr(const char* english) const {
-    if (settings_.language == Language::english) return english;
-    const char* text = chinese_text(english);
+    const char* text = settings_.language == Language::english ? english_name(english) : chinese_text(english);
     return text ? text : english;
 }
 
 std::string Ui::title(const std::string& name) const {
     const std::size_t star = name.find('*');
-    return star == std::string::npos ? tr(name.c_str()) : tr(name.substr(0, star).c_str()) + (" \xc3\x97 " + name.substr(star + 1));
+    if (star == std::string::npos) return tr(name.c_str());
+    char factor[32];
+    std::snprintf(factor, sizeof factor, " \xc3\x97 %.2g", std::atof(name.c_str() + star + 1));
+    return tr(name.substr(0, star).c_str()) + std::string(factor);
 }
 
 std::string Ui::fitted(const std::string& text, float width) const {
@@ -193,7 +198,7 @@ std::vector<std::string> Ui::names() const {
 }
 
 void Ui::hint(const char* text) {
-    if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    if (!text || (modal && !in_dialog) || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(px(300));
     ImGui::TextUnformatted(tr(text));
@@ -203,6 +208,12 @@ void Ui::hint(const char* text) {
 
 float Ui::button_width(const char* label, float least) const {
     return std::max(px(least), ImGui::CalcTextSize(tr(label)).x + 2 * ImGui::GetStyle().FramePadding.x);
+}
+
+void Ui::buttons_at_right(std::initializer_list<std::pair<const char*, float>> buttons) const {
+    float width = -ImGui::GetStyle().ItemSpacing.x;
+    for (const auto& [label, least] : buttons) width += button_width(label, least) + ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, ImGui::GetContentRegionAvail().x - width));
 }
 
 bool Ui::button(const char* label, const char* text, float width, bool enabled) {
@@ -244,6 +255,25 @@ bool Ui::choice(const char* label, bool chosen, const char* text, float width) {
     return pressed;
 }
 
+namespace {
+
+// What lies behind a slider: filled from zero, or from its lower end, to the value, so that the number on it can be
+// read wherever the value stands. ImGui draws the number and, as narrow as it is here, the grab.
+void draw_slider_ground(float lo, float hi, float value, float grab) {
+    constexpr float pad = 2;  // pixels that ImGui leaves beside the grab
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 end(at.x + ImGui::GetContentRegionAvail().x, at.y + ImGui::GetFrameHeight());
+    const float round = ImGui::GetStyle().FrameRounding;
+    const auto place = [&](float v) { return at.x + pad + 0.5f * grab + std::clamp((v - lo) / (hi - lo), 0.0f, 1.0f) * (end.x - at.x - 2 * pad - grab); };
+    const bool over = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) && ImGui::IsMouseHoveringRect(at, end);
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(at, end, ImGui::GetColorU32(over ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), round);
+    const float zero = lo < 0 ? place(0) : at.x, now = place(value);
+    draw->AddRectFilled({std::min(zero, now), at.y}, {std::max(zero, now), end.y}, ImGui::GetColorU32(ImGuiCol_Header), lo < 0 ? 0 : round);
+}
+
+}  // namespace
+
 bool Ui::slider(const char* label, double& value, double lo, double hi, const char* format, const char* text, double unit) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(tr(label));
@@ -252,8 +282,13 @@ bool Ui::slider(const char* label, double& value, double lo, double hi, const ch
     auto v = static_cast<float>(value / unit);
     ImGui::SetNextItemWidth(-1);
     const std::string name = std::string("##") + label;
-    const bool changed = ImGui::SliderFloat(name.c_str(), &v, static_cast<float>(lo / unit), static_cast<float>(hi / unit), format,
-                                            ImGuiSliderFlags_AlwaysClamp);
+    const auto least = static_cast<float>(lo / unit), most = static_cast<float>(hi / unit);
+    draw_slider_ground(least, most, v, px(4));
+    ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, px(4));
+    for (const int ground : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive}) ImGui::PushStyleColor(ground, IM_COL32_BLACK_TRANS);
+    const bool changed = ImGui::SliderFloat(name.c_str(), &v, least, most, format, ImGuiSliderFlags_AlwaysClamp);
+    ImGui::PopStyleColor(3);
+    ImGui::PopStyleVar();
     mark(label);
     hint(text);
     if (changed) value = v * unit;

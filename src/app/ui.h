@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/types.h"
@@ -31,7 +33,7 @@ class Ui {
 
     /// The text in the chosen language.
     const char* tr(const char* english) const;
-    /// Name of a brush or an ink for people: "mixed-medium*1.8" as "mixed-medium × 1.8".
+    /// Name of a brush or an ink for people: "mixed-medium*1.8" as "Mixed, medium × 1.8", the factor with two digits.
     std::string title(const std::string& name) const;
     /// The text, with "..." for its end where it is wider than so many pixels.
     std::string fitted(const std::string& text, float width) const;
@@ -43,6 +45,7 @@ class Ui {
     void begin_frame();
     bool enter = false;           ///< Enter was pressed: the primary button of the dialog takes it
     bool in_dialog = false;
+    bool modal = false;           ///< a dialog is open: what lies behind it says nothing
     bool button(const char* label, const char* hint = nullptr, float width = 0, bool enabled = true);
     /// Pixels of a button's width: at least `least` at a scale of 1, and as much as the text needs.
     float button_width(const char* label, float least) const;
@@ -69,7 +72,11 @@ class Ui {
     const Place* find(const std::string& name) const;
     std::vector<std::string> names() const;
 
+    /// Starts a row of buttons that ends at the right edge: labels, and least widths as for `button`.
+    void buttons_at_right(std::initializer_list<std::pair<const char*, float>> buttons) const;
+
     ImFont* large = nullptr;
+    bool has_chinese = false;     ///< a font of the system has Chinese characters
     unsigned accent = 0, faint = 0, strong = 0;  ///< ImU32 colours of the theme
 
   private:
@@ -83,6 +90,8 @@ class Ui {
 /// sRGB of the primary button, at rest and under the cursor; its text is white.
 inline constexpr float kPrimary[3] = {0.16f, 0.40f, 0.78f}, kPrimaryHovered[3] = {0.17f, 0.43f, 0.82f};
 
+/// English for the name of a shipped brush, ink, pigment or material, nullptr when it is none.
+const char* english_name(const char* name);
 /// Chinese for an English text of the interface, nullptr when there is none.
 const char* chinese_text(const char* english);
 /// All Chinese texts in a row, for the font.

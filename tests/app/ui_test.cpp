@@ -3,12 +3,17 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <string>
+#include <vector>
+
+#include "brush/preset.h"
+#include "ink/pigments.h"
 
 namespace tuft::app {
 namespace {
@@ -71,6 +76,25 @@ TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
         }
     }
     EXPECT_GT(seen, 150u);
+}
+
+// Names in files, such as "iron-red", are not what a person reads.
+TEST(UiText, AllThatIsShippedHasANameInBothLanguages) {
+    std::vector<std::string> names;
+    for (const auto& list : {brush::list_presets(), ink::list_inks(), ink::list_pigments(), ink::list_substrates()}) names.insert(names.end(), list.begin(), list.end());
+    EXPECT_GT(names.size(), 25u);
+    for (const std::string& name : names) {
+        ASSERT_NE(english_name(name.c_str()), nullptr) << name;
+        EXPECT_TRUE(std::isupper(static_cast<unsigned char>(english_name(name.c_str())[0]))) << name;
+        EXPECT_NE(chinese_text(name.c_str()), nullptr) << name;
+    }
+}
+
+TEST(UiText, ABrushOfAnotherSizeIsNamedByTwoDigitsOfItsFactor) {
+    const Ui ui;
+    EXPECT_EQ(ui.title("goat-large*0.10743"), "Goat, large \xc3\x97 0.11");
+    EXPECT_EQ(ui.title("mixed-medium*1.8"), "Mixed, medium \xc3\x97 1.8");
+    EXPECT_EQ(ui.title("my own"), "my own");
 }
 
 }  // namespace
