@@ -80,7 +80,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
         sample.down = along(hand.down);
         samples.push_back(sample);
     }
-    return stroke::hold(samples, hand.hold);
+    return stroke::hold(query, samples, hand.hold);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, cons
 }
 
 Hand::Hand(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const HandSettings& settings)
-    : surface_(surface), hold_(stroke::hold_options(preset)), settings_(settings),
+    : surface_(surface), hold_(stroke::hold_options(preset, surface.mesh())), settings_(settings),
       reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {}
 
 std::optional<Ground> Hand::ground(const Aim& aim) const {

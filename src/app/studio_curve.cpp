@@ -130,7 +130,7 @@ void Studio::paint_curve() {
         lead_brush_ = s.brush;
     }
     const render::GlCamera c = camera();
-    CurveHand hand{.hold = stroke::hold_options(preset), .settings = s.curve_settings, .pressure = s.hand.pressure,
+    CurveHand hand{.hold = stroke::hold_options(preset, s.painter->model().query->mesh()), .settings = s.curve_settings, .pressure = s.hand.pressure,
                    .tilt = {s.hand.tilt.x, -s.hand.tilt.y}, .right = c.right, .down = -c.up};
     hand.hold.lead = lead_;
     hand.hold.leaned = [this](double depth, const Vec2& lean) { return leaned_lead_->at(depth, lean); };

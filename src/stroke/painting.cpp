@@ -358,7 +358,8 @@ void Painting::cancel() {
 std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
     if (!stroke.trace.flat) return spatial_poses(stroke.trace);
     const brush::Preset& preset = brush(stroke.trace.brush);
-    HoldOptions options = hold_options(preset);
+    const mesh::SurfaceQuery& query = *ground_of(stroke).query;
+    HoldOptions options = hold_options(preset, query.mesh());
     if (stroke.settings.lead) {
         auto [lead, is_new] = leads_.try_emplace(preset.name);
         if (is_new) lead->second = drag_lead(preset);
@@ -366,7 +367,7 @@ std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
         LeanedLead& leaned = leaned_leads_.try_emplace(preset.name, preset).first->second;
         options.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
     }
-    return hand_path(*ground_of(stroke).query, steady(stroke.trace, stroke.settings), options).poses;
+    return hand_path(query, steady(stroke.trace, stroke.settings), options).poses;
 }
 
 StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {

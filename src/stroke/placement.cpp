@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stroke/ground.h"
 #include "stroke/laying.h"
 #include "stroke/lead.h"
 
@@ -10,29 +11,31 @@ namespace tuft::stroke {
 
 namespace {
 
-/// The surface as a steady hand takes it.
-struct Ground {
+/// The surface as a steady hand takes it, for each sample.
+struct Held {
     Vec3 normal;
     double height = 0;  ///< metres above the sample, along `normal`
 };
 
-std::vector<Ground> level_out(std::span<const LaidSample> samples, double steady) {
-    constexpr std::size_t kMost = 64;  // samples looked at to each side
-    constexpr double kNear = 0.5;      // radians: normals further off belong to a groove's wall
+std::vector<double> travelled(std::span<const LaidSample> samples) {
     std::vector<double> along(samples.size(), 0);
     for (std::size_t i = 1; i < samples.size(); ++i)
         along[i] = along[i - 1] + glm::length(samples[i].position - samples[i - 1].position);
+    return along;
+}
 
-    std::vector<Ground> grounds;
-    grounds.reserve(samples.size());
+/// The mean of the normals within `steady` of travel, as far to one side as to the other, so that ends do not pull.
+std::vector<Held> steady_normals(std::span<const LaidSample> samples, std::span<const double> along, double steady) {
+    constexpr std::size_t kMost = 64;  // samples looked at to each side
+    constexpr double kNear = 0.5;      // radians: normals further off belong to a groove's wall
+    std::vector<Held> held;
+    held.reserve(samples.size());
     std::vector<std::size_t> window;
-    std::vector<double> heights;
     std::size_t first = 0, last = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        Ground g{samples[i].normal, 0};
+        Held h{samples[i].normal, 0};
         while (along[i] - along[first] > steady) ++first;
         while (last + 1 < samples.size() && along[last + 1] - along[i] <= steady) ++last;
-        // As far to one side as to the other, so that ends do not pull.
         const double reach = std::min(along[i] - along[first], along[last] - along[i]);
         window.clear();
         const std::size_t stride = std::max<std::size_t>(1, (last - first) / (2 * kMost));
@@ -45,22 +48,46 @@ std::vector<Ground> level_out(std::span<const LaidSample> samples, double steady
                 const Vec3 axis = glm::normalize(mean);
                 mean = Vec3(0);
                 for (const std::size_t j : window) {
-                    const double off =
-                        std::acos(std::clamp(glm::dot(axis, samples[j].normal), -1.0, 1.0));
+                    const double off = std::acos(std::clamp(glm::dot(axis, samples[j].normal), -1.0, 1.0));
                     mean += std::max(0.0, 1 - off * off / (kNear * kNear)) * samples[j].normal;
                 }
             }
-            if (glm::length(mean) > 0) g.normal = glm::normalize(mean);
-            heights.clear();
-            for (const std::size_t j : window)
-                heights.push_back(glm::dot(samples[j].position - samples[i].position, g.normal));
-            std::nth_element(heights.begin(), heights.begin() + std::ptrdiff_t(heights.size() / 2),
-                             heights.end());
-            g.height = heights[heights.size() / 2];
+            if (glm::length(mean) > 0) h.normal = glm::normalize(mean);
         }
-        grounds.push_back(g);
+        held.push_back(h);
     }
-    return grounds;
+    return held;
+}
+
+/// The heights: the ground is felt at nodes along the way, and a straight line through those within `kSoft` of the
+/// radius, the nearest counting most, is what the hand does.
+void level_out(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples, std::span<const double> along,
+               double radius, std::vector<Held>& held) {
+    constexpr double kApart = 1.0 / 16, kSoft = 0.25;  // radii
+    if (radius <= 0) return;
+    struct Node {
+        double along;
+        Vec3 level;
+    };
+    std::vector<Node> nodes;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!nodes.empty() && i + 1 < samples.size() && along[i] - nodes.back().along < kApart * radius) continue;
+        const double up = level_at(query, samples[i].position, held[i].normal, radius);
+        nodes.push_back({along[i], samples[i].position + up * held[i].normal});
+    }
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        while (first + 1 < nodes.size() && nodes[first].along < along[i] - kSoft * radius) ++first;
+        double w = 0, x = 0, xx = 0, z = 0, xz = 0;
+        for (std::size_t k = first; k < nodes.size() && nodes[k].along <= along[i] + kSoft * radius; ++k) {
+            const double s = nodes[k].along - along[i], weight = 1 - std::abs(s) / (1.001 * kSoft * radius);
+            if (weight <= 0) continue;
+            const double up = glm::dot(nodes[k].level - samples[i].position, held[i].normal);
+            w += weight, x += weight * s, xx += weight * s * s, z += weight * up, xz += weight * s * up;
+        }
+        const double det = w * xx - x * x;
+        held[i].height = w <= 0 ? 0 : det > 1e-9 * w * xx ? (z * xx - x * xz) / det : z / w;
+    }
 }
 
 }  // namespace
@@ -69,20 +96,24 @@ double working_depth(const brush::Preset& preset) {
     return 0.5 * preset.length;
 }
 
-HoldOptions hold_options(const brush::Preset& preset) {
+HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {
     return {.tuft_length = preset.length,
             .working_depth = working_depth(preset),
             .hover = 0.1 * preset.length,
+            .steady = drape_radius(mesh),
             .lead = {}};
 }
 
-std::vector<brush::Pose> hold(std::span<const LaidSample> samples, const HoldOptions& options) {
+std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples,
+                              const HoldOptions& options) {
     std::vector<brush::Pose> poses;
     poses.reserve(samples.size());
-    const std::vector<Ground> grounds = level_out(samples, options.steady);
+    const std::vector<double> along = travelled(samples);
+    std::vector<Held> held = steady_normals(samples, along, options.steady);
+    level_out(query, samples, along, options.steady, held);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const LaidSample& s = samples[i];
-        const Ground& ground = grounds[i];
+        const Held& ground = held[i];
         const Axes axes = axes_across(ground.normal, s.right, s.down);
         const double lean = std::min(glm::length(s.tilt), options.max_tilt);
         const Vec2 tilt = lean > 0 ? s.tilt * (lean / glm::length(s.tilt)) : Vec2{0};
@@ -113,7 +144,7 @@ HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace,
     if (!trace.flat) return {{}, spatial_poses(trace)};
     HandPath path;
     path.laid = lay(query, lead_hand(trace, options));
-    path.poses = hold(path.laid.samples, options);
+    path.poses = hold(query, path.laid.samples, options);
     return path;
 }
 

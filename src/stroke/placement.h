@@ -84,8 +84,8 @@ struct HoldOptions {
     double working_depth = 0.010;  ///< metres of the unbent tip below the surface at pressure 1
     double hover = 0.002;          ///< metres of the tip above the surface when not pressed
     double max_tilt = 1.2;         ///< radians; more lean than this is cut
-    double steady = 0.008;         ///< metres of travel, to both sides, over which the hand levels
-                                   ///< out height and normal: it does not dip into narrow grooves
+    double steady = 0.008;         ///< metres to both sides over which the hand levels out height and normal: it
+                                   ///< does not dip into grooves; 0: it feels every dent
     std::vector<Lead> lead;     ///< rising in depth, linear between, constant outside; empty: none
     /// What a lean adds to the lead: metres ahead and to the path's left, for a depth (metres) and a
     /// lean along the path and to its left (radians); see LeanedLead. None: it adds nothing.
@@ -96,16 +96,18 @@ struct HoldOptions {
 /// Working depth of a brush: half of the free hair.
 double working_depth(const brush::Preset& preset);
 
-/// Options for a brush, without a lead.
-HoldOptions hold_options(const brush::Preset& preset);
+/// Options for a brush over a model (`steady` is its `drape_radius`), without a lead.
+HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh);
 
 /// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the
 /// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
 /// pressure · working depth below the sample (hover above it where the pressure is 0).
 /// Normal and height are those of a steady hand: the mean of the normals within `steady` of
-/// travel that lie near it, and the median height of those samples over the plane it spans.
-/// On a surface of curvature κ along the path that shifts the height by κ steady² / 8.
-std::vector<brush::Pose> hold(std::span<const LaidSample> samples, const HoldOptions& options);
+/// travel that lie near it, and the height of the ground felt within that radius (`level_at`), a line through a
+/// quarter of it. It follows ridges and valleys, and passes over grooves narrower than half of the radius.
+/// On a surface of curvature κ along the path the height is κ steady² / 200 off at most.
+std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples,
+                              const HoldOptions& options);
 
 /// Poses of a trace in space: its samples as they are, rotations of unit length.
 std::vector<brush::Pose> spatial_poses(const Trace& trace);

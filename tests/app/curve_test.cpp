@@ -59,7 +59,7 @@ TEST(Curve, BreaksWhereThereIsNoModel) {
         points.push_back({.position = hit->position});
     }
     const brush::Preset preset = brush::load_preset("wolf-small");
-    EXPECT_EQ(curve_poses(query, points, {.hold = stroke::hold_options(preset)}).size(), 2u);  // over the hole
+    EXPECT_EQ(curve_poses(query, points, {.hold = stroke::hold_options(preset, query.mesh())}).size(), 2u);  // over the hole
 }
 
 /// Under a holder that leans by so many radians to the right and down.
@@ -77,7 +77,7 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     }
     stroke::Painting painting(model);
     const brush::Preset preset = painting.brush("wolf-medium");
-    CurveHand hand{.hold = stroke::hold_options(preset), .pressure = 0.4, .tilt = GetParam()};
+    CurveHand hand{.hold = stroke::hold_options(preset, *model.mesh), .pressure = 0.4, .tilt = GetParam()};
     hand.hold.lead = stroke::drag_lead(preset);
     stroke::LeanedLead leaned(preset);
     hand.hold.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
