@@ -87,7 +87,7 @@ void draw_to_widths(std::vector<stroke::Trace>& traces) {
     for (stroke::Trace& trace : traces) {
         if (trace.line_width > 0) {
             trace.brush = stroke::brush_for_width(trace.brush, widths.of(trace.brush), trace.line_width);
-            stroke::press_to_width(trace, widths.of(trace.brush));
+            stroke::draw_to_width(trace, widths.of(trace.brush));
         }
         trace.line_width = 0;
     }

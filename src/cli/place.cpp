@@ -59,7 +59,7 @@ void press_to_widths(std::vector<stroke::Stroke>& strokes, stroke::WidthTables& 
     for (stroke::Stroke& s : strokes) {
         if (has_width(s)) {
             const stroke::LineWidths& widths = tables.of(s.trace.brush);
-            stroke::press_to_width(s.trace, widths);
+            stroke::draw_to_width(s.trace, widths);
             if (s.trace.line_width < widths.least() || s.trace.line_width > widths.most()) {
                 missed = &s;
                 least = std::min(least, s.trace.line_width), most = std::max(most, s.trace.line_width);

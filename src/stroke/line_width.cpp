@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "brush/sweep.h"
 #include "stroke/placement.h"
@@ -11,8 +12,8 @@ namespace tuft::stroke {
 namespace {
 
 constexpr int kSteps = 12;
-constexpr double kMiddle = 0.5;               // of made-up pressures
-constexpr double kLight = 0.1, kHeavy = 0.7; // between them a hand draws lines at ease
+constexpr double kEase = 0.36;                 // in that of a brush chosen for a width: corners come out best
+constexpr double kLight = 0.3, kHeavy = 0.7;  // a pressure between them draws lines with the brush that is there
 constexpr double kSizes = 1.25;              // from one size to the next: few brushes for many widths
 
 }  // namespace
@@ -46,14 +47,57 @@ const LineWidths& WidthTables::of(const std::string& brush) {
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width) {
     if (width >= widths.at(kLight) && width <= widths.at(kHeavy)) return name;
     const brush::SizedName sized = brush::sized_name(name);
-    const double hair = widths.at(kMiddle) - 2 * kSkinFilm;  // the ink round it is the same for all sizes
+    const double hair = widths.at(kEase) - 2 * kSkinFilm;  // the ink round it is the same for all sizes
     const double factor = std::clamp(sized.factor * (width - 2 * kSkinFilm) / hair, brush::kLeastSize, brush::kMostSize);
     return brush::name_of({sized.base, std::pow(kSizes, std::round(std::log(factor) / std::log(kSizes)))});
 }
 
-void press_to_width(Trace& trace, const LineWidths& widths) {
-    const double factor = widths.pressure(trace.line_width) / kMiddle;
-    for (TraceSample& s : trace.samples) s.pressure = std::min(1.0, factor * s.pressure);
+namespace {
+
+constexpr double kEnd = 1.5;    // line widths over which a hand sets down and lifts
+constexpr double kMost = 0.25;  // of the line at most
+constexpr double kPoint = 0.4;  // part of the width that the line has at its very ends
+
+double smooth(double x) {
+    x = std::clamp(x, 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+}
+
+std::vector<double> travelled(std::span<const TraceSample> samples) {
+    std::vector<double> along(samples.size(), 0);
+    for (std::size_t i = 1; i < samples.size(); ++i) along[i] = along[i - 1] + glm::length(samples[i].position - samples[i - 1].position);
+    return along;
+}
+
+/// A line that ends where it began goes on along itself for `more` metres, at the same pace.
+void overlap(Trace& trace, double more) {
+    std::vector<TraceSample>& s = trace.samples;
+    const std::vector<double> along = travelled(s);
+    const std::size_t n = s.size();
+    if (n < 4 || glm::length(s.back().position - s.front().position) > 1e-6 * along.back()) return;
+    const double ends = s.back().time, begins = s.front().time;
+    for (std::size_t i = 1; i < n; ++i) {
+        TraceSample next = s[i];
+        const double part = std::min(1.0, (more - along[i - 1]) / std::max(along[i] - along[i - 1], 1e-12));
+        next.position = glm::mix(s[i - 1].position, s[i].position, part);
+        next.time = ends + std::lerp(s[i - 1].time, s[i].time, part) - begins;
+        s.push_back(next);
+        if (part < 1 || along[i] >= more) break;
+    }
+}
+
+}  // namespace
+
+void draw_to_width(Trace& trace, const LineWidths& widths) {
+    if (trace.samples.empty()) return;
+    const double whole = travelled(trace.samples).back();
+    const double end = std::min(kEnd * trace.line_width, kMost * whole);
+    overlap(trace, 2 * end);
+    const std::vector<double> along = travelled(trace.samples);
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        const double near = std::min(along[i], along.back() - along[i]);
+        trace.samples[i].pressure = widths.pressure(trace.line_width * std::lerp(kPoint, 1.0, end > 0 ? smooth(near / end) : 1));
+    }
 }
 
 }  // namespace tuft::stroke

@@ -40,13 +40,15 @@ class WidthTables {
     std::map<std::string, LineWidths> known_;
 };
 
-/// The brush in the size that its name has if a pressure from 0.1 to 0.7 draws the width, else in the size
-/// (`brush::scaled`; powers of 1.25) that draws it at about 0.5. `widths` is of `name`. Sizes are held to
+/// The brush in the size that its name has if a pressure from 0.3 to 0.7 draws the width, else in the size
+/// (`brush::scaled`; powers of 1.25) that draws it at about 0.36, at which corners come out best: less, and the tuft
+/// is long for the line and swings out; more, and it lies and cuts them. `widths` is of `name`. Sizes are held to
 /// what brushes have.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
-/// Brings the middle of a trace's made-up pressures (0.5, see `io::InkmlOptions`) to the one that draws its
-/// `line_width`, and with it, in proportion, where they swell in and taper out.
-void press_to_width(Trace& trace, const LineWidths& widths);
+/// Lays out the pressures of a trace with made-up ones so that it draws its `line_width`: the hand sets down and
+/// lifts within one and a half widths each, or a quarter of the line if that is less. A line that ends where it began
+/// goes on along itself for as long as both take, so that no gap shows where its ends meet.
+void draw_to_width(Trace& trace, const LineWidths& widths);
 
 }  // namespace tuft::stroke
