@@ -40,6 +40,16 @@ std::unique_ptr<Painter> start_painter(Session& s, Painter::Work work) {
     return std::make_unique<Painter>(std::move(work));
 }
 
+// The work lies in a file that a person named.
+void take_name(Session& s, const fs::path& project) {
+    remember_project(project);
+    s.recent = recent_projects();
+    s.note.write(project, s.painter->source());
+    // The file that it had before it had a name is of no more use, but as what a revised model is made from.
+    std::error_code ec;
+    if (const fs::path& before = s.last.project; is_unnamed(before) && before != s.revises && before != s.former) fs::remove(before, ec);
+}
+
 }  // namespace
 
 void say(Session& s, std::string message) {
@@ -257,15 +267,9 @@ void poll_painter(Session& s) {
     }
     if (u.looks) s.looks = std::move(*u.looks);
     if (!u.picked.empty()) take_picked(s, u.picked);
-    for (std::string& message : u.messages) {
-        if (message.starts_with("Saved")) {
-            remember_project(u.project);
-            s.recent = recent_projects();
-            s.note.write(u.project, s.painter->source());
-        }
-        say(s, std::move(message));
-    }
+    for (std::string& message : u.messages) say(s, std::move(message));
     u.messages.clear();
+    if (!u.project.empty() && u.project != s.last.project && !is_unnamed(u.project)) take_name(s, u.project);
     // The scene takes the tiles.
     std::vector<render::TilePixels> tiles = std::move(s.last.tiles);
     tiles.insert(tiles.end(), u.tiles.begin(), u.tiles.end());

@@ -85,6 +85,7 @@ TEST_F(StudioProgram, PaintsToTheBitWhatAReplayPaints) {
     EXPECT_NE(replayed["canvas_hash"], "0000000000000000");
     EXPECT_EQ(io::read_model(path("work.glb")).n_polygons(), io::Project::open(path("work.tuft")).model().mesh.n_triangles());
     EXPECT_GT(fs::file_size(path("work.png")), 10'000u);
+    for (const auto& left : fs::directory_iterator(path("state") + "/tuft/sessions")) EXPECT_NE(left.path().extension(), ".tuft") << "the file of the work before it had a name";
 }
 
 TEST_F(StudioProgram, SymmetricCopiesAreStrokesOfTheirOwnAndUndoneTogether) {
