@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "io/area_lines.h"
 
 namespace tuft::io {
 namespace {
@@ -26,12 +27,14 @@ using Line = std::vector<Vec2>;
 // A line of the drawing; metres.
 struct Drawn {
     Line line;
-    double width = 0;  // of its stroke; 0: it has none
+    double width = 0;           // of its stroke; 0: it has none
+    double head = 0, tail = 0;  // lengths over which it runs out into a point
 };
 
 // What elements hand down to those within them.
 struct Style {
-    bool stroked = false;
+    bool stroked = false, filled = true, blank = false;  // blank: filled with white, which is the ground
+    FillRule rule = FillRule::nonzero;
     double width = 1;  // units of the drawing
 };
 
@@ -95,10 +98,17 @@ class Drawing {
         if (const std::string paint = property(node, "stroke"); !paint.empty() && paint != "inherit") style.stroked = paint != "none";
         if (const std::string width = property(node, "stroke-width"); !width.empty() && width != "inherit" && width.back() != '%')
             style.width = std::max(0.0, length(width) / kPixel);
+        if (const std::string paint = property(node, "fill"); !paint.empty() && paint != "inherit") {
+            style.blank = is_white(paint);
+            style.filled = !style.blank && paint != "none" && paint != "transparent";
+        }
+        if (const std::string rule = property(node, "fill-rule"); !rule.empty() && rule != "inherit")
+            style.rule = rule == "evenodd" ? FillRule::even_odd : FillRule::nonzero;
         if (const auto transform = node.attribute("transform")) matrix = matrix * transform_of(transform.value());
         matrix_ = matrix;
         width_ = style.stroked ? std::min(style.width * growth(), options_.ink.max_extent) : 0;
         if (!std::isfinite(width_)) width_ = 0;
+        const std::size_t before = lines_.size();
         if (name == "path") path(node.attribute("d").value());
         else if (name == "polyline" || name == "polygon") points(node.attribute("points").value(), name == "polygon");
         else if (name == "line") emit({{number(node, "x1"), number(node, "y1")}, {number(node, "x2"), number(node, "y2")}});
@@ -106,7 +116,30 @@ class Drawing {
         else if (name == "circle") ellipse(number(node, "cx"), number(node, "cy"), number(node, "r"), number(node, "r"));
         else if (name == "ellipse") ellipse(number(node, "cx"), number(node, "cy"), number(node, "rx"), number(node, "ry"));
         else if (name == "use") return use(node, matrix, style, depth);
+        if (style.blank && !style.stroked) lines_.resize(before);
+        if (style.filled && lines_.size() > before) fill(before, style);
         children(node, matrix, style, depth);
+    }
+
+    static bool is_white(const std::string& paint) {
+        static constexpr const char* names[] = {"white", "#fff", "#FFF", "#ffffff", "#FFFFFF", "rgb(255,255,255)", "rgb(255, 255, 255)"};
+        return std::find(std::begin(names), std::end(names), paint) != std::end(names);
+    }
+
+    // The lines from `before` on are outlines of one area: lines that fill it come before them where they are
+    // drawn themselves, else in their place.
+    void fill(std::size_t before, const Style& style) {
+        std::vector<Line> rings;
+        for (std::size_t i = before; i < lines_.size(); ++i) rings.push_back(lines_[i].line);
+        std::vector<Drawn> area;
+        for (AreaLine& line : area_lines(rings, style.rule)) {
+            n_points_ += line.line.size();
+            area.push_back({std::move(line.line), line.width, line.head, line.tail});
+        }
+        if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
+        if (area.empty()) return;
+        if (!style.stroked) lines_.resize(before);
+        lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(before), std::make_move_iterator(area.begin()), std::make_move_iterator(area.end()));
     }
 
     /// Elements by their `id`, for `use`.
@@ -409,6 +442,19 @@ class Drawing {
     std::map<std::string, pugi::xml_node> by_id_;
 };
 
+// Where a line has a width, pressures say which part of it is drawn.
+void give_width(stroke::Trace& trace, const Drawn& drawn, double full) {
+    trace.line_width = drawn.width;
+    if (drawn.width <= 0) return;
+    double whole = 0, along = 0;
+    for (std::size_t i = 1; i < drawn.line.size(); ++i) whole += glm::distance(drawn.line[i - 1], drawn.line[i]);
+    for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+        if (i > 0) along += glm::distance(trace.samples[i - 1].position, trace.samples[i].position);
+        const double in = drawn.head > 0 ? std::min(1.0, along / drawn.head) : 1, out = drawn.tail > 0 ? std::min(1.0, (whole - along) / drawn.tail) : 1;
+        trace.samples[i].pressure = full * std::clamp(std::min(in, out), 0.0, 1.0);
+    }
+}
+
 }  // namespace
 
 std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& source, const SvgOptions& options) {
@@ -425,14 +471,15 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     std::ostringstream ink;
     ink.precision(12);
     ink << "<ink xmlns='http://www.w3.org/2003/InkML'>";
-    for (const auto& [line, width] : drawing.lines()) {
+    for (const Drawn& drawn : drawing.lines()) {
+        const Line& line = drawn.line;
         ink << "<trace>";
         for (std::size_t i = 0; i < line.size(); ++i) ink << (i ? "," : "") << 1e3 * line[i].x << ' ' << 1e3 * line[i].y;
         ink << "</trace>";
     }
     ink << "</ink>";
     std::vector<stroke::Trace> traces = parse_inkml(ink.str(), source, options.ink);
-    for (std::size_t i = 0; i < traces.size(); ++i) traces[i].line_width = drawing.lines().at(i).width;
+    for (std::size_t i = 0; i < traces.size(); ++i) give_width(traces[i], drawing.lines().at(i), options.ink.flat_pressure);
     return traces;
 }
 

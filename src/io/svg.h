@@ -11,13 +11,15 @@
 /// Drawings: SVG 1.1 (W3C Recommendation, 16 August 2011).
 namespace tuft::io {
 
-/// The outlines of a drawing as flat traces, in the order of the file: `path` (all commands),
+/// A drawing as flat traces, in the order of the file: `path` (all commands),
 /// `line`, `polyline`, `polygon`, `rect`, `circle`, `ellipse`, under the `transform`s of their groups,
 /// and once more wherever a `use` names them.
 /// Curves become chords that stay within `tolerance` of them; elliptical arcs after appendix F.6.5. What
 /// is not displayed, and what lies in `defs`, is left out. `stroke-width` (as an attribute, in a style, by a class
-/// of a style sheet, inherited, grown by transforms) becomes `Trace::line_width` where there is a `stroke`;
-/// other styles are not looked at.
+/// of a style sheet, inherited, grown by transforms) becomes `Trace::line_width` where there is a `stroke`.
+/// What has a `fill` is filled by lines (`area_lines`, with `fill-rule`), under its stroke if it has one, whatever
+/// its colour; white is the ground and fills nothing. What has neither is drawn along its outlines; other styles
+/// are not looked at. Where a trace has a width, pressures say which part of it is drawn, 0.5 the whole.
 /// One user unit is what `width` and `viewBox` say, else 1/96 inch. Pace and pressure are those of
 /// `parse_inkml` for traces that have none.
 ///

@@ -12,6 +12,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr int kSteps = 12;
+constexpr double kMiddle = 0.5;              // made-up pressure of a line's whole width
 constexpr double kEase = 0.36;                 // in that of a brush chosen for a width: corners come out best
 constexpr double kLight = 0.3, kHeavy = 0.7;  // a pressure between them draws lines with the brush that is there
 constexpr double kSizes = 1.25;              // from one size to the next: few brushes for many widths
@@ -94,9 +95,14 @@ void draw_to_width(Trace& trace, const LineWidths& widths) {
     const double end = std::min(kEnd * trace.line_width, kMost * whole);
     overlap(trace, 2 * end);
     const std::vector<double> along = travelled(trace.samples);
+    const auto part = [&](const TraceSample& s) { return s.pressure / kMiddle; };
+    const bool head = part(trace.samples.front()) > kPoint, tail = part(trace.samples.back()) > kPoint;  // else it runs out by itself
     for (std::size_t i = 0; i < along.size(); ++i) {
-        const double near = std::min(along[i], along.back() - along[i]);
-        trace.samples[i].pressure = widths.pressure(trace.line_width * std::lerp(kPoint, 1.0, end > 0 ? smooth(near / end) : 1));
+        double near = 1e30;
+        if (head) near = along[i];
+        if (tail) near = std::min(near, along.back() - along[i]);
+        const double ends = end > 0 ? std::lerp(kPoint, 1.0, smooth(near / end)) : 1;
+        trace.samples[i].pressure = widths.pressure(trace.line_width * std::min(1.0, part(trace.samples[i])) * ends);
     }
 }
 

@@ -46,7 +46,8 @@ class WidthTables {
 /// what brushes have.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
-/// Lays out the pressures of a trace with made-up ones so that it draws its `line_width`: the hand sets down and
+/// Lays out the pressures of a trace with made-up ones so that it draws its `line_width`, or as much less of it as they
+/// are below 0.5: the hand sets down and
 /// lifts within one and a half widths each, or a quarter of the line if that is less. A line that ends where it began
 /// goes on along itself for as long as both take, so that no gap shows where its ends meet.
 void draw_to_width(Trace& trace, const LineWidths& widths);

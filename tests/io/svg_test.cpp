@@ -11,7 +11,7 @@ namespace tuft::io {
 namespace {
 
 std::vector<stroke::Trace> drawn(const std::string& inside, const std::string& size = "width='100mm' viewBox='0 0 100 100'") {
-    return parse_svg("<svg xmlns='http://www.w3.org/2000/svg' " + size + ">" + inside + "</svg>", "test.svg");
+    return parse_svg("<svg xmlns='http://www.w3.org/2000/svg' fill='none' " + size + ">" + inside + "</svg>", "test.svg");
 }
 Vec2 first(const stroke::Trace& t) { return Vec2(t.samples.front().position) * 1e3; }
 Vec2 last(const stroke::Trace& t) { return Vec2(t.samples.back().position) * 1e3; }
@@ -135,6 +135,27 @@ TEST(Svg, LinesHaveTheWidthOfTheirStroke) {
     EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='50%'/>"), 1, 1e-9) << "parts of the page are passed over";
     EXPECT_NO_THROW(drawn("<style>.a{stroke .b } } {{ .c,</style><line " + line + " class='a c' stroke='red'/>"));
     EXPECT_THROW(drawn("<line " + line + " stroke='red' stroke-width='wide'/>"), Error);
+}
+
+TEST(Svg, WhatIsFilledIsPaintedAllOver) {
+    const std::string square = "<rect x='10' y='10' width='20' height='20' ";
+    const auto lines = drawn(square + "fill='#102030'/>");
+    ASSERT_GT(lines.size(), 1u);
+    for (const auto& t : lines) {
+        EXPECT_GT(t.line_width, 0);
+        for (const auto& s : t.samples) {
+            EXPECT_GT(std::min(s.position.x, s.position.y), 0.0099);
+            EXPECT_LT(std::max(s.position.x, s.position.y), 0.0301);
+        }
+    }
+    EXPECT_EQ(drawn(square + "/>").size(), 1u) << "its outline";
+    EXPECT_EQ(drawn(square + "/>")[0].line_width, 0);
+    const auto both = drawn(square + "fill='red' stroke='blue' stroke-width='2'/>");
+    EXPECT_EQ(both.size(), lines.size() + 1);
+    EXPECT_NEAR(both.back().line_width, 0.002, 1e-12) << "the stroke lies over the fill";
+    EXPECT_EQ(drawn("<g style='fill:black'>" + square + "class='x'/></g><style>.x{fill:none}</style>").size(), 1u);
+    EXPECT_EQ(drawn("<rect width='99' height='99' fill='white'/><line x1='0' y1='0' x2='9' y2='9' stroke='red'/>").size(), 1u) << "the ground";
+    EXPECT_EQ(drawn("<path d='M0 0 H9 V9' fill='none' stroke='red'/>").size(), 1u);
 }
 
 }  // namespace
