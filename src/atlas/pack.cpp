@@ -1,6 +1,7 @@
 #include "atlas/pack.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -32,6 +33,8 @@ constexpr int kStarts = 3;                   // searches, of which the best coun
 constexpr int kMostRounds = 4;         // of such searches, for as long as less than this part
 constexpr double kGoodEnough = 0.667;  // of the page is covered,
 constexpr double kWithinReach = 0.96;  // but not less than this part of that
+
+constexpr double kAllOrNothing = -1;   // excess with which the first chart that finds no place ends it
 
 struct Layout {
     double excess = 0;  // sum of area × rows beyond the page, all of the strip's without a place
@@ -211,7 +214,7 @@ class Packer {
         double step = 0.97;
         for (double scale = 0.85 * full; !best.complete(); scale *= step) {
             if (scale < least) scale = least;
-            Layout layout = fill(coarse, scale, 1, pages);
+            Layout layout = fill(coarse, scale, 1, pages, kAllOrNothing);
             if (layout.complete()) best = std::move(layout);
             if (scale == least) break;
             if (scale < 0.6 * full) step = 0.9;
@@ -269,7 +272,7 @@ class Packer {
     /// The same plan on finer masks, which leave less room between charts.
     void refine(const Page& page, std::uint32_t pages, Layout& best) {
         for (double scale = kFinerGain * best.scale; scale > best.scale; scale *= kFinerFall) {
-            Layout layout = fill(page, scale, 1, pages);
+            Layout layout = fill(page, scale, 1, pages, kAllOrNothing);
             if (!layout.complete()) continue;
             best = std::move(layout);
             return;
@@ -376,9 +379,14 @@ class Packer {
     std::uint32_t margin() const { return (gutter_ + 1) / 2; }
 
     const Masks& masks_of(std::uint32_t i, double scale, double cell) {
-        Masks& m = cache_[i];
+        const auto known = [&](const Masks& m) {
+            return m.scale == scale && m.cell == cell && m.turn == plan_.turn[i];
+        };
+        auto& [m, former] = cache_[i];
         const Shape& shape = shapes_[i];
-        if (m.scale == scale && m.cell == cell && m.turn == plan_.turn[i]) return m;
+        if (known(m)) return m;
+        std::swap(m, former);  // a turn that was tried is often taken back
+        if (known(m)) return m;
         m.scale = scale;
         m.cell = cell;
         m.turn = plan_.turn[i];
@@ -428,7 +436,7 @@ class Packer {
     std::uint32_t gutter_;
     ProgressFn progress_;
     std::vector<Shape> shapes_;
-    std::vector<Masks> cache_;
+    std::vector<std::array<Masks, 2>> cache_;  // by chart, the last two
     Filled last_;
     std::vector<Filling> filling_;  // kept from one filling to the next
     Plan plan_;

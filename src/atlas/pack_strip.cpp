@@ -4,11 +4,18 @@
 #include <bit>
 #include <span>
 
+#include "core/simd.h"
+
 namespace tuft::atlas {
 namespace {
 
 /// Words all of whose cells are taken, after each row: runs are tested beyond its end too.
 constexpr std::size_t kPadding = 2;
+constexpr std::size_t kRoundedUp = 4;  // words that are read beyond those, and count for nothing
+constexpr std::size_t kGapTests = 8;   // runs whose rows must have a gap as long, tested first
+
+template <std::size_t n>
+using Words = std::array<std::uint64_t, n>;
 
 }  // namespace
 
@@ -19,21 +26,6 @@ Strip::Strip(std::uint32_t width, std::vector<int> reach)
     beyond_.assign(stride_, 0);
     for (std::uint32_t x = width_; x < 64 * stride_; ++x)
         beyond_[x / 64] |= std::uint64_t{1} << (x % 64);
-}
-
-Strip::Spot Strip::find(const Mask& mask, std::uint32_t from_row, std::uint32_t limit) {
-    if (mask.width > width_) return {};
-    const std::uint32_t places = width_ - mask.width + 1;
-    // On pages of the coarse search all places of a row are four words at most, and stay in registers.
-    switch ((places + 63) / 64) {
-        case 1: return find_among(mask, from_row, limit, places, std::array<std::uint64_t, 1>{});
-        case 2: return find_among(mask, from_row, limit, places, std::array<std::uint64_t, 2>{});
-        case 3: return find_among(mask, from_row, limit, places, std::array<std::uint64_t, 3>{});
-        case 4: return find_among(mask, from_row, limit, places, std::array<std::uint64_t, 4>{});
-        default: break;
-    }
-    valid_.resize((places + 63) / 64);
-    return find_among(mask, from_row, limit, places, std::span(valid_));
 }
 
 void Strip::place(const Mask& mask, const Spot& spot) {
@@ -54,12 +46,14 @@ void Strip::grow(std::uint32_t rows) {
     if (rows <= n_rows_) return;
     if (rows > built_.size()) {
         const std::size_t room = std::max<std::size_t>({rows, 3 * built_.size() / 2, width_});
-        rows_.resize(room * static_cast<std::size_t>(levels_) * stride_);
+        rows_.resize(room * static_cast<std::size_t>(levels_) * stride_ + kRoundedUp);
         built_.resize(room);
+        gap_.resize(room);
     }
     for (; n_rows_ < rows; ++n_rows_) {
         std::copy(beyond_.begin(), beyond_.end(), level(n_rows_, 0));
         built_[n_rows_] = 1;
+        gap_[n_rows_] = width_;
     }
 }
 
@@ -67,6 +61,7 @@ void Strip::take(std::uint32_t y, std::int64_t first, std::int64_t last) {
     const auto a = static_cast<std::size_t>(std::max<std::int64_t>(first, 0));
     const auto b = static_cast<std::size_t>(std::min<std::int64_t>(last, width_ - 1));
     built_[y] = 1;
+    gap_[y] = kNone;
     std::uint64_t* row = level(y, 0);
     for (std::size_t w = a / 64; w <= b / 64; ++w) {
         std::uint64_t m = ~std::uint64_t{0};
@@ -89,26 +84,33 @@ void Strip::build_level(std::uint32_t y, int k) {
     }
 }
 
-template <class Words>
-Strip::Spot Strip::find_among(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, std::uint32_t places, Words valid) {
-    std::size_t killer = 0;
-    for (std::uint32_t y = from_row; y + mask.height <= limit; ++y) {
-        std::fill(valid.begin(), valid.end(), ~std::uint64_t{0});
-        if (places % 64 != 0) valid.back() >>= 64 - places % 64;
-        bool any = block(mask.runs[killer], y, valid);
-        for (std::size_t r = 0; any && r < mask.runs.size(); ++r) {
-            any = block(mask.runs[r], y, valid);
-            if (!any) killer = r;
+void Strip::measure_gap(std::uint32_t y) {
+    const std::uint64_t* row = level(y, 0);
+    std::uint32_t longest = 0, run = 0;
+    for (std::size_t w = 0; w < words_; ++w) {
+        std::uint64_t taken = row[w];
+        if (taken == 0) {
+            run += 64;
+            continue;
         }
-        if (!any) continue;
-        for (std::size_t w = 0; w < valid.size(); ++w)
-            if (valid[w] != 0) return {static_cast<std::uint32_t>(64 * w + std::countr_zero(valid[w])), y};
+        std::uint32_t left = 64;
+        while (taken != 0) {
+            const auto free = static_cast<std::uint32_t>(std::countr_zero(taken));
+            longest = std::max(longest, run + free);
+            run = 0;
+            left -= free;
+            taken >>= free;
+            const auto hit = static_cast<std::uint32_t>(std::countr_one(taken));
+            left -= hit;
+            taken = hit < 64 ? taken >> hit : 0;
+        }
+        run = left;
     }
-    return {};
+    gap_[y] = std::max(longest, run);
 }
 
 template <class Words>
-bool Strip::block(const Run& run, std::uint32_t y, Words& valid) {
+[[gnu::always_inline]] inline bool Strip::block(const Run& run, std::uint32_t y, Words& valid) {
     const std::uint32_t row = y + run.row;
     if (row >= n_rows_) return true;
     const int k = std::bit_width(run.last - run.first + 1) - 1;
@@ -124,6 +126,47 @@ bool Strip::block(const Run& run, std::uint32_t y, Words& valid) {
         any |= valid[w];
     }
     return any != 0;
+}
+
+template <class Words>
+[[gnu::always_inline]] inline Strip::Spot Strip::find_among(const Mask& mask, std::uint32_t from_row,
+                                                            std::uint32_t limit, Words valid) {
+    const std::uint32_t places = width_ - mask.width + 1, words = (places + 63) / 64;
+    const std::uint64_t last = places % 64 != 0 ? ~std::uint64_t{0} >> (64 - places % 64) : ~std::uint64_t{0};
+    const std::span tests(mask.runs.data(), std::min(mask.runs.size(), kGapTests));
+    std::size_t killer = 0;
+    for (std::uint32_t y = from_row; y + mask.height <= limit; ++y) {
+        if (!std::all_of(tests.begin(), tests.end(), [&](const Run& r) {
+                return has_gap(y + r.row, r.last - r.first + 1);
+            }))
+            continue;
+        std::fill(valid.begin(), valid.end(), ~std::uint64_t{0});
+        valid[words - 1] = last;
+        std::fill(valid.begin() + words, valid.end(), 0);
+        bool any = block(mask.runs[killer], y, valid);
+        for (std::size_t r = 0; any && r < mask.runs.size(); ++r) {
+            any = block(mask.runs[r], y, valid);
+            if (!any) killer = r;
+        }
+        if (!any) continue;
+        for (std::size_t w = 0; w < words; ++w)
+            if (valid[w] != 0) return {static_cast<std::uint32_t>(64 * w + std::countr_zero(valid[w])), y};
+    }
+    return {};
+}
+
+TUFT_CLONES Strip::Spot Strip::find(const Mask& mask, std::uint32_t from_row, std::uint32_t limit) {
+    if (mask.width > width_) return {};
+    const std::uint32_t words = (width_ - mask.width) / 64 + 1;
+    // Places of a row of up to 1024 cells stay in registers.
+    if (words <= 1) return find_among(mask, from_row, limit, Words<1>{});
+    if (words <= 2) return find_among(mask, from_row, limit, Words<2>{});
+    if (words <= 4) return find_among(mask, from_row, limit, Words<4>{});
+    if (words <= 8) return find_among(mask, from_row, limit, Words<8>{});
+    if (words <= 12) return find_among(mask, from_row, limit, Words<12>{});
+    if (words <= 16) return find_among(mask, from_row, limit, Words<16>{});
+    valid_.resize(words);
+    return find_among(mask, from_row, limit, std::span(valid_));
 }
 
 }  // namespace tuft::atlas

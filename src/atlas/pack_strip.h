@@ -40,9 +40,16 @@ class Strip {
         return level(y, k);
     }
     void build_level(std::uint32_t y, int k);
-    /// `valid`: a row's places, an array or a span.
+    /// Whether a row has as many free cells beside each other.
+    bool has_gap(std::uint32_t y, std::uint32_t cells) {
+        if (y >= n_rows_) return true;
+        if (gap_[y] == kNone) measure_gap(y);
+        return gap_[y] >= cells;
+    }
+    void measure_gap(std::uint32_t y);
+    /// `valid`: room for a row's places, an array or a span.
     template <class Words>
-    Spot find_among(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, std::uint32_t places, Words valid);
+    Spot find_among(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, Words valid);
     /// Clears the places where the run hits something; false when none is left.
     template <class Words>
     bool block(const Run& run, std::uint32_t y, Words& valid);
@@ -54,6 +61,7 @@ class Strip {
     std::uint32_t n_rows_ = 0, top_ = 0;
     std::vector<std::uint64_t> rows_;
     std::vector<std::uint8_t> built_;    // per row: levels that are as level 0 says
+    std::vector<std::uint32_t> gap_;     // per row: most free cells beside each other; kNone: not known
     std::vector<std::uint64_t> beyond_;  // the row's cells beyond the right edge
     std::vector<std::uint64_t> valid_;   // kept from `find` to `find`
 };
