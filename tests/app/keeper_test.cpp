@@ -33,108 +33,93 @@ class KeeperTest : public testing::Test {
         std::signal(SIGXFSZ, SIG_IGN);
         folder_ = std::filesystem::path(testing::TempDir()) / ("tuft_keeper_" + std::to_string(getpid()));
         std::filesystem::create_directories(folder_);
+        path_ = folder_ / "work.tuft";
+        ASSERT_EQ(keeper_.start(path_, "sheet.ply", {}, painting_), "");
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    void paint(stroke::Painting& painting, Keeper& keeper, double y) {
-        keeper.prepare(painting, "wolf-small", "carbon");
+    void paint(double y) {
+        keeper_.prepare(painting_, "wolf-small", "carbon");
         stroke::Stroke stroke;
         stroke.trace.flat = false;
         stroke.trace.brush = "wolf-small";
         stroke.trace.ink = "carbon";
-        painting.begin(std::move(stroke));
-        painting.extend(test::poses_above(painting.model(), painting.brush("wolf-small"), 0.02, y));
-        painting.end();
-        keeper.add(painting.journal().strokes().back());
+        painting_.begin(std::move(stroke));
+        painting_.extend(test::poses_above(model_, painting_.brush("wolf-small"), 0.02, y));
+        painting_.end();
+        keeper_.add(painting_.journal().strokes().back());
     }
-    std::filesystem::path folder_;
+    const stroke::Model model_ = test::shipped_model("sheet.ply", 256);
+    stroke::Painting painting_{model_};
+    Keeper keeper_;
+    std::filesystem::path folder_, path_;
 };
 
 TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
-    const stroke::Model model = test::shipped_model("sheet.ply", 256);
-    stroke::Painting painting(model);
-    Keeper keeper;
-    const auto path = folder_ / "work.tuft";
-    ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
-    paint(painting, keeper, 0);
-    EXPECT_EQ(keeper.trouble(), "");
+    paint(0);
+    EXPECT_EQ(keeper_.trouble(), "");
 
     {
-        const FullDisk disk(std::filesystem::file_size(path));
-        for (int i = 1; i <= 6; ++i) paint(painting, keeper, 0.002 * i);
+        const FullDisk disk(std::filesystem::file_size(path_));
+        for (int i = 1; i <= 6; ++i) paint(0.002 * i);
     }
-    EXPECT_NE(keeper.trouble(), "");
-    EXPECT_GE(keeper.waiting(), 1u);
+    EXPECT_NE(keeper_.trouble(), "");
+    EXPECT_GE(keeper_.waiting(), 1u);
 
-    paint(painting, keeper, 0.02);
-    EXPECT_EQ(keeper.trouble(), "");
-    EXPECT_EQ(keeper.waiting(), 0u);
-    EXPECT_EQ(io::Project::open(path).strokes().size(), painting.journal().strokes().size());
+    paint(0.02);
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(keeper_.waiting(), 0u);
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), painting_.journal().strokes().size());
 }
 
 TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
-    const stroke::Model model = test::shipped_model("sheet.ply", 256);
-    stroke::Painting painting(model);
-    Keeper keeper;
-    const auto path = folder_ / "work.tuft";
-    ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
-    EXPECT_NE(keeper.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting), "");
-    EXPECT_EQ(keeper.path(), path);
-    paint(painting, keeper, 0);
-    EXPECT_EQ(keeper.trouble(), "");
-    EXPECT_EQ(io::Project::open(path).strokes().size(), 1u);
+    EXPECT_NE(keeper_.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting_), "");
+    EXPECT_EQ(keeper_.path(), path_);
+    paint(0);
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), 1u);
 }
 
 // Texels are never stored beside a journal that they do not show.
 TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
-    const stroke::Model model = test::shipped_model("sheet.ply", 256);
-    stroke::Painting painting(model);
-    Keeper keeper;
-    const auto path = folder_ / "behind.tuft";
-    ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
-    for (int i = 0; i < 3; ++i) paint(painting, keeper, 0.002 * i);
-    const std::uint64_t gone = painting.journal().strokes().back().id;
-    painting.undo();
+    for (int i = 0; i < 3; ++i) paint(0.002 * i);
+    const std::uint64_t gone = painting_.journal().strokes().back().id;
+    painting_.undo();
     {
         const FullDisk disk(0);
-        keeper.remove(gone);
+        keeper_.remove(gone);
     }
-    EXPECT_TRUE(keeper.behind());
-    paint(painting, keeper, 0.02);
-    EXPECT_NE(keeper.trouble(), "") << "one stroke too many is in the file";
-    keeper.store_canvas(painting);
-    EXPECT_FALSE(io::Project::open(path).load_canvas(model.texels.n_slots()));
-    keeper.rewrite("sheet.ply", {}, painting);
-    EXPECT_FALSE(keeper.behind());
-    EXPECT_EQ(keeper.trouble(), "");
-    EXPECT_EQ(io::Project::open(path).strokes().size(), 3u);
-    EXPECT_TRUE(io::Project::open(path).load_canvas(model.texels.n_slots()));
+    EXPECT_TRUE(keeper_.behind());
+    paint(0.02);
+    EXPECT_NE(keeper_.trouble(), "") << "one stroke too many is in the file";
+    keeper_.store_canvas(painting_);
+    EXPECT_FALSE(io::Project::open(path_).load_canvas(model_.texels.n_slots()));
+    keeper_.rewrite("sheet.ply", {}, painting_);
+    EXPECT_FALSE(keeper_.behind());
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), 3u);
+    EXPECT_TRUE(io::Project::open(path_).load_canvas(model_.texels.n_slots()));
 }
 
 // A change of a stroke in the middle writes the file anew: when the disk gets full over that, the strokes of before
 // must still be in it.
 TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
-    const stroke::Model model = test::shipped_model("sheet.ply", 256);
-    stroke::Painting painting(model);
-    Keeper keeper;
-    const auto path = folder_ / "work.tuft";
-    ASSERT_EQ(keeper.start(path, "sheet.ply", {}, painting), "");
-    for (int i = 0; i < 8; ++i) paint(painting, keeper, 0.002 * i);
+    for (int i = 0; i < 8; ++i) paint(0.002 * i);
     std::string fault, elsewhere;
     {
         // Room for the model, and for the strokes but for two pages of the file.
-        const FullDisk disk(std::filesystem::file_size(path) - 8192);
-        fault = keeper.start(path, "sheet.ply", {}, painting);
-        elsewhere = keeper.start(folder_ / "other.tuft", "sheet.ply", {}, painting);
+        const FullDisk disk(std::filesystem::file_size(path_) - 8192);
+        fault = keeper_.start(path_, "sheet.ply", {}, painting_);
+        elsewhere = keeper_.start(folder_ / "other.tuft", "sheet.ply", {}, painting_);
     }
     EXPECT_NE(fault.find("work.tuft"), std::string::npos) << fault;
     EXPECT_EQ(fault.find(".part"), std::string::npos) << fault;
     EXPECT_NE(elsewhere, "");
-    EXPECT_EQ(io::Project::open(path).strokes().size(), 8u);
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), 8u);
     // Nothing half done lies about.
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) EXPECT_EQ(entry.path(), path);
-    paint(painting, keeper, 0.02);
-    EXPECT_EQ(io::Project::open(path).strokes().size(), 9u);
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) EXPECT_EQ(entry.path(), path_);
+    paint(0.02);
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), 9u);
 }
 
 }  // namespace
