@@ -42,11 +42,13 @@ void details(Session& s, const Layer& layer, std::size_t place) {
     }
     if (!ImGui::IsItemActive()) s.layer_opacity = -1;
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
     if (ui.button("Higher", nullptr, third, place + 1 < all.size())) change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
     ImGui::SameLine();
     if (ui.button("Lower", nullptr, third, place > 0)) change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
     ImGui::SameLine();
     if (ui.button("Remove", "With its strokes; Undo brings them back", third, all.size() > 1)) change(s, stroke::removed(layer.id));
+    ImGui::PopStyleVar();
     bool locked = layer.locked;
     if (ui.toggle("Locked", locked, "Takes no strokes")) {
         Layer other = layer;
