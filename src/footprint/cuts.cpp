@@ -226,6 +226,7 @@ std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame,
 namespace {
 
 constexpr double kTrackStep = 2.5e-5;  // metres between places of a track
+constexpr double kAboutAsWide = 0.1; // of the widest section's half width
 constexpr double kNarrowest = 0.2;   // of its width to which a section is drawn together
 
 /// The place's own value, between two of those that are there.
@@ -257,6 +258,15 @@ void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
     std::size_t widest = end - 1;
     for (std::size_t i = end - 1; i-- > begin;)
         if (trail.cuts[i].a > trail.cuts[widest].a) widest = i;
+    // Where it is about as wide: the widest section of all steps from node to node as the tuft is lifted.
+    double weight = 0, front = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const double run = place(std::min(i + 1, end - 1)) - place(i > begin ? i - 1 : begin);
+        const double w = run * std::exp((trail.cuts[i].a / trail.cuts[widest].a - 1) / kAboutAsWide);
+        weight += w;
+        front += w * place(i);
+    }
+    front = weight > 0 ? front / weight : place(widest);
     const auto number = [](double p) { return static_cast<long long>(std::floor(p / kTrackStep)); };
     reach_over(track, number(place(begin)), number(place(end - 1)) + 1);
     std::size_t i = begin;
@@ -265,15 +275,15 @@ void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
         while (i + 2 < end && place(i + 1) < at) ++i;
         const double run = place(i + 1) - place(i), f = run > 0 ? std::clamp((at - place(i)) / run, 0.0, 1.0) : 0;
         float& width = track.width[static_cast<std::size_t>(k - track.first)];
-        if (track.passing >= 0 && at >= track.passed && at < place(widest)) {
-            const double g = (at - track.passed) / (place(widest) - track.passed);
+        if (track.passing >= 0 && at >= track.passed && at < front) {
+            const double g = (at - track.passed) / (front - track.passed);
             width = static_cast<float>(std::lerp(track.passing, trail.cuts[widest].a, g));
-        } else if (width < 0 || at >= place(widest))
+        } else if (width < 0 || at >= front)
             width = static_cast<float>(std::lerp(trail.cuts[i].a, trail.cuts[i + 1].a, f));
     }
-    track.passed = place(widest);
+    track.passed = front;
     track.passing = trail.cuts[widest].a;
-    for (std::size_t k = begin; k < widest; ++k) {
+    for (std::size_t k = begin; k < end && place(k) < front; ++k) {
         Cut& cut = trail.cuts[k];
         const double grow = std::max(1 + amount * (width_at(track, place(k), cut.a) / std::max(cut.a, 1e-9) - 1), kNarrowest);
         cut.a *= grow;

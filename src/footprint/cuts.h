@@ -41,11 +41,12 @@ std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame,
 /// Where the hair of a dry tuft lies on the surface: half widths of the tuft by place on the track that its hair
 /// is drawn along, place = slid − along · length, metres. Friction holds what lies there, so hair follows in the track of
 /// the hair before it, towards the root, and is neither swept aside nor drawn together while the tuft is pressed and lifted.
+/// The way is the hair's, not the hand's: lifted, it straightens and goes on to its point where the hand stands.
 struct HairTracks {
     struct Track {
         long long first = 0;       ///< number of the place of width[0]
         std::vector<float> width;  ///< metres; negative: no hair has lain there yet
-        double passed = 0;         ///< the place up to which the widest section has come, metres
+        double passed = 0;         ///< the place up to which the widest sections have come, on the mean, metres
         double passing = -1;       ///< its half width there; negative: nowhere yet
     };
     std::vector<Track> tracks;     ///< of each branch two: its sub-spine, the trunk
@@ -53,7 +54,7 @@ struct HairTracks {
 
 /// Spreads a tuft that no water holds to a point: hair that lies on the surface has the width that the tuft had
 /// where it is widest as that passed the place, as far as `amount` (0–1) goes, and lies as much flatter. `slid`:
-/// metres drawn over the surface since the touch that `tracks` began with. A steady drag is as wide up to its
+/// metres that hair went over the surface since the touch that `tracks` began with. A steady drag is as wide up to its
 /// tip; a tuft pressed straight down lies as it came. `length` is the tuft's, metres.
 void splay(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount);
 

@@ -267,11 +267,14 @@ void Painting::draw_poses() {
 
         if (h.was_touching) h.move_on(pose, dt);
         const Vec3 way = h.was_touching ? pose.position - h.last_position : Vec3{0};
-        const Vec2 shift{glm::dot(way, contact.frame.t), glm::dot(way, contact.frame.b)};
+        const auto flat = [&](const Vec3& v) { return Vec2{glm::dot(v, contact.frame.t), glm::dot(v, contact.frame.b)}; };
+        const Vec2 shift = flat(way);
         if (!h.was_touching) h.tracks = {};
-        const double slid = glm::length(shift);
+        // The hair's own way: hair that is lifted goes on along its track while the hand stands or turns back.
+        const Vec2 drawn = h.was_touching ? flat(contact.travel) : Vec2{0};
+        const double slid = glm::length(drawn);
         h.slid += slid;
-        if (slid > 0) h.heading = shift / slid;
+        if (slid > 0) h.heading = drawn / slid;
         Stamp stamp = h.make_stamp(contact, dt);
         if (stamp.footprint.empty()) {
             h.was_touching = false;

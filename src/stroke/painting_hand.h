@@ -38,8 +38,8 @@ struct Painting::Hand {
     double last_time = 0;
     double speed = 0, travel = 0;  // m/s; metres drawn so far
     std::vector<double> soaked;    // wetness of each bundle where it touched last
-    double slid = 0;               // metres drawn over the surface since it was touched
-    Vec2 heading{0};               // unit, of the last motion over it; zero before the first
+    double slid = 0;               // metres that hair went over the surface since it was touched
+    Vec2 heading{0};               // unit, of the hair's last motion over it; zero before the first
     footprint::HairTracks tracks;  // of the hair that lies there
     ink::Touch touched;            // by the last stamp
     ink::Touch touch;              // of the stamps since the last flush, summed

@@ -269,6 +269,68 @@ TEST(DryBrush, ThreadsOfInkDoNotBreakInDashes) {
     EXPECT_LT(dashes, 0.45 * all);
 }
 
+/// A dry goat tuft drawn 30 mm at 0.3 m/s; it slows down, turns back and comes up 9 mm within 35 ms.
+Stroke turned_back_and_lifted(std::uint64_t seed) {
+    Stroke s = drag(seed);
+    s.trace.brush = "goat-medium";
+    s.settings.spacing = 1;
+    s.trace.samples.clear();
+    const double length = brush::load_preset(s.trace.brush).length;
+    for (int i = 0; i <= 180; ++i) {
+        const double t = 1e-3 * i, down = std::min(1.0, t / 0.02), left = std::max(0.0, t - 0.12) / 0.035;
+        const double x = 0.3 * (std::min(t, 0.12) + 0.0175 * left * (1 - left));
+        const double depth = 7e-3 * down - 9e-3 * std::min(1.0, left * left);
+        s.trace.samples.push_back({.time = t, .position = {x - 0.022, 0, length - depth}, .rotation = {1, 0, 0, 0}});
+    }
+    return s;
+}
+
+/// Ink by texels of the sheet, row by row: whether there is a tenth of a film.
+std::vector<std::vector<bool>> inked(const Painting& p) {
+    std::vector<std::vector<bool>> rows(kSize, std::vector<bool>(kSize));
+    const atlas::TexelMap& map = p.model().texels;
+    for (const std::uint32_t slot : p.canvas().touched_slots()) {
+        const ink::Plane* plane = p.canvas().plane(slot, 0);
+        for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
+            if (map.tiles[slot].area[t] <= 0 || (*plane)[t] < 0.1f) continue;
+            const Vec3 at = (Vec3(map.position(slot, t)) / kSide + 0.5) * static_cast<double>(kSize - 17);
+            rows[static_cast<std::size_t>(at.y + 0.5)][static_cast<std::size_t>(at.x + 0.5)] = true;
+        }
+    }
+    return rows;
+}
+
+/// Metres across the stroke that the ink takes up where it ends, over its last `length` metres.
+double breadth_at_end(const std::vector<std::vector<bool>>& rows, double length) {
+    std::size_t end = 0, lo = rows.size(), hi = 0;
+    for (const auto& row : rows)
+        for (std::size_t x = end; x < row.size(); ++x)
+            if (row[x]) end = x;
+    const std::size_t from = end - static_cast<std::size_t>(length / kSide * kSize);
+    for (std::size_t y = 0; y < rows.size(); ++y)
+        for (std::size_t x = from; x <= end; ++x)
+            if (rows[y][x]) {
+                lo = std::min(lo, y);
+                hi = std::max(hi, y);
+            }
+    return static_cast<double>(hi + 1 - lo) * kSide / kSize;
+}
+
+TEST(DryBrush, ALiftedTuftLeavesWithItsTip) {
+    const Model model = sheet();
+    for (std::uint64_t seed = 1; seed < 5; ++seed) {
+        Stroke wiped = wipe(0.6, seed), s = turned_back_and_lifted(seed);
+        wiped.trace.brush = s.trace.brush;
+        s.settings.dip = "carry";
+        Painting painting(model);
+        painting.paint(wiped);
+        painting.paint(s);
+        // Its tip is 0.9 mm wide with its film, and there are texels on both sides. Hair that followed the hand in place
+        // of its own track ended as a comb 3.2-3.8 mm wide, in rows of dots.
+        EXPECT_LT(breadth_at_end(inked(painting), 1e-3), 1.1e-3) << seed;
+    }
+}
+
 TEST(DryBrush, PaintingDriesTheTuft) {
     // Its wetness is what it holds over a quarter of its capacity, x (2 - x), and only falls.
     const Model model = sheet();
