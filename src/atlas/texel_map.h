@@ -18,7 +18,8 @@ inline constexpr std::uint8_t kNoPiece = 255;
 /// What ink asks of the texels of one occupied tile, texel t = row * 16 + column.
 /// Texels outside every chart have piece == kNoPiece and zero area.
 struct TexelTile {
-    alignas(64) std::array<float, kTileTexels> area;  ///< m² of surface the texel stands for
+    /// m² of surface the texel stands for; beside seams those of both charts share it (border_cells.h)
+    alignas(64) std::array<float, kTileTexels> area;
     alignas(64)
         std::array<std::uint8_t, kTileTexels> piece;  ///< index of the texel's piece in this tile
 };
@@ -104,8 +105,8 @@ inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
 /// texel; a centre on a shared edge belongs to one side, and where triangles overlap to the one with the lowest index).
 /// Its piece is the set of texels of the same chart and tile that hang together with it and whose normals are within
 /// 35° of the first; where normals of the tile stray further than 30° from their mean, of the same quarter of it. The
-/// same bits for any number of threads; about 1 s at 4096² on two threads, memory for occupied tiles only. Tiles,
-/// pieces and areas do not depend on `store`.
+/// same bits for any number of threads; about 1 s at 4096² on two threads, memory for occupied tiles only. Tiles and
+/// pieces do not depend on `store`, nor do areas, but for a thousandth beside seams.
 TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                          const ProgressFn& progress = {},
                          TexelStore store = TexelStore::automatic);

@@ -21,6 +21,7 @@ constexpr std::size_t kLines = 14;     // of memory asked for at once: as many a
 constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and drying
 // What may leave a texel in one step, of what it has: less than all of it together.
 constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
+constexpr double kSeamStiffness = 2;     // what links add to it; all that flows out of a texel stays below what it has
 constexpr double kBeadStep = 0.05;     // seconds: a bead goes a texel or a few
 constexpr double kLeastMixing = 2e-10; // m²/s
 constexpr double kStirring = 0.02;     // film units: mixing over mobility
@@ -166,9 +167,9 @@ struct WetFilm::State : TileList {
     double choose(const FilmParams& p, double left, bool beads, Step& step) const {
         const double area = map.texel_size * map.texel_size;
         const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
-        double stiffness = kSeamPart, most_w = 0, most_s = 0;
+        double stiffness = 4, most_w = 0, most_s = 0;
         for (const Active& tile : list) {
-            stiffness = std::max(stiffness, static_cast<double>(tile.stiffness) + (tile.links.empty() ? 0 : kSeamPart / 2));
+            stiffness = std::max(stiffness, static_cast<double>(tile.stiffness) + (tile.links.empty() ? 0 : kSeamStiffness));
             most_w = std::max(most_w, static_cast<double>(tile.outcome.most_w));
             most_s = std::max(most_s, static_cast<double>(tile.outcome.most_s));
         }
@@ -200,12 +201,10 @@ struct WetFilm::State : TileList {
     }
 
     /// Fluxes over the seams of a tile: added to dw, ds; what pigments need is kept.
-    void seam_fluxes(std::size_t index, const Step& step, Work& work, std::vector<Carried>& carried) const {
+    void seam_fluxes(std::size_t index, const Step& step, bool thin, Work& work, std::vector<Carried>& carried) const {
         const Active& tile = list[index];
         const Geometry& g = *geometry[tile.slot];
         carried.clear();
-        std::array<float, kTexels> slope;
-        if (!tile.links.empty()) slope.fill(0);
         const Sources& mine = sources[index];
         std::uint32_t slot = kNone, other = kNone;
         for (const atlas::SeamLink& l : tile.links) {
@@ -218,24 +217,56 @@ struct WetFilm::State : TileList {
             if (other != kNone)
                 there = {at(sources[other].liquid[0], l.other_texel), at(sources[other].liquid[1], l.other_texel)};
             const float t = here[0] + here[1], u = there[0] + there[1];
+            thin = thin || u < step.rim_depth;
             if (!(t + u > 0) || other == kNone) continue;
-            slope[l.texel] += l.weight * std::max(0.0f, std::min(t, step.rim_depth) - u);
             // One order for both sides, so that both have the same numbers.
             const bool first = tile.slot != l.other_slot ? tile.slot < l.other_slot : l.texel < l.other_texel;
             const bool both = t > 0 && u > 0;  // then what pins rims has no say, and lies in memory far away
             const float g0 = both ? 0 : g.grain[field_of(l.texel)];
             const float g1 = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
-            const SeamFlux f = first ? seam_flux(l.weight, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
-                                     : seam_flux(l.weight, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
+            const float apart = static_cast<float>(l.apart) / 64;
+            const SeamFlux f = first ? seam_flux(l.weight, apart, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
+                                     : seam_flux(l.weight, apart, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
             const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
             work.dw[l.texel] += sign * f.w * inverse;
             work.ds[l.texel] += sign * f.s * inverse;
             carried.push_back({l.texel, l.other_texel, other, first ? f.a : -f.b, first ? -f.b : f.a});
         }
-        for (std::size_t i = 0; i < tile.links.size(); ++i) {
-            const std::uint8_t t = tile.links[i].texel;
-            if (i > 0 && tile.links[i - 1].texel == t) continue;
-            if (slope[t] > 0) work.rim_slope[t] = std::sqrt(work.rim_slope[t] * work.rim_slope[t] + slope[t] * slope[t]);
+        if (step.rim > 0 && thin) slopes_over_seams(index, step, work);
+    }
+
+    /// `rim_slope` of the texels whose neighbours lie over a seam.
+    void slopes_over_seams(std::size_t index, const Step& step, Work& work) const {
+        const Active& tile = list[index];
+        const Geometry& g = *geometry[tile.slot];
+        auto other = others[index].begin();
+        for (std::size_t i = 0; i < tile.taps.size();) {
+            const std::uint8_t texel = tile.taps[i].texel;
+            const int k = field_of(texel), column = texel % kSide, row = texel / kSide;
+            const float here = std::min(work.total[k], step.rim_depth);
+            std::array<float, 4> beyond{};
+            std::array<bool, 4> tapped{};
+            for (; i < tile.taps.size() && tile.taps[i].texel == texel; ++i) {
+                const atlas::SeamTap& tap = tile.taps[i];
+                tapped[tap.side] = true;
+                if (tap.other_slot == kNone) {
+                    beyond[tap.side] += tap.weight * work.total[k + tap.other_texel % 3 - 1 + (tap.other_texel / 3 - 1) * kRow];
+                    continue;
+                }
+                if (other->first != tap.other_slot) other = std::lower_bound(others[index].begin(), others[index].end(), std::pair(tap.other_slot, 0u));
+                if (other->second == kNone) continue;
+                const Sources& there = sources[other->second];
+                beyond[tap.side] += tap.weight * (at(there.liquid[0], tap.other_texel) + at(there.liquid[1], tap.other_texel));
+            }
+            if (!(here > 0)) continue;
+            const auto drop = [&](int side, int conductance, int neighbour) {
+                if (conductance == 0 && !tapped[side]) return 0.0f;
+                return std::max(0.0f, here - (tapped[side] ? std::max(0.0f, beyond[side]) : work.total[neighbour]));
+            };
+            const int side = Geometry::right_of(column, row);
+            const float across = drop(0, g.gx[side], k + 1) + drop(2, g.gx[side - 1], k - 1);
+            const float along = drop(1, g.gy[texel + kSide], k + kRow) + drop(3, g.gy[texel], k - kRow);
+            work.rim_slope[texel] = std::sqrt(across * across + along * along);
         }
     }
 
@@ -249,11 +280,11 @@ struct WetFilm::State : TileList {
         if (!any_s) work.s.fill(0);
         Ahead& ahead = worker.ahead;
         ahead.fetch(kLines);
-        fluxes(work, g, step);
+        const bool thin = fluxes(work, g, step);
         ahead.fetch(2 * kLines);
         liquid_changes(work, g, step);
         ahead.fetch(kLines);
-        seam_fluxes(index, step, work, worker.carried);
+        seam_fluxes(index, step, thin, work, worker.carried);
         // From what is there and nothing else: the same whenever this journal is painted.
         const std::uint64_t seed =
             hash_bits(hash_bits(tile.slot, number),
@@ -369,11 +400,7 @@ struct WetFilm::State : TileList {
 
     void step(Canvas& canvas, const FilmParams& params, const Step& rates, FilmReport& report) {
         const bool alone = thread_count() == 1;
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            std::uint32_t n = 0;
-            each_read(i, [&](std::uint32_t) { ++n; });
-            readers[i].store(n, std::memory_order_relaxed);
-        }
+        for (std::size_t i = 0; i < list.size(); ++i) readers[i].store(n_readers[i], std::memory_order_relaxed);
         const int pigments = static_cast<int>(canvas.pigments().size());
         parallel_for(list.size(), 16, [&](std::size_t begin, std::size_t end) {
             std::unique_ptr<Worker> worker = take_worker();

@@ -68,6 +68,7 @@ struct FilmReport {
 /// Where fibres and pores lie in clouds (`unevenness`) D varies with the place over a millimetre or so, and
 /// fronts are crinkled.
 ///
+/// Beside seams texels are cells that tile the surface together with those of the other chart (border_cells.h).
 /// The fluxes through a face are the same numbers on both its sides, over seams too, so each
 /// amount is kept to rounding. Explicit steps, as many as stability needs (never negative, the
 /// pores never beyond their capacity) for any `seconds`; only tiles that are wet or next to wet

@@ -11,7 +11,7 @@ namespace {
 constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of the border need both sides
 constexpr double kMostConductance = 4; // over the smaller of the two areas
 constexpr double kNoShear = 0.05;     // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
-constexpr double kLeastPart = 0.5;     // of a face's conductance, where links over a seam do part of its work
+constexpr double kLeastDiagonal = 0.02; // beside seams: less is left out, as it costs as much as more
 constexpr double kGrainDepth = 0.4;   // of the mean
 constexpr double kFlocsRms = 0.437;    // of the octaves' sum
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
@@ -23,7 +23,8 @@ struct Spot {
     std::uint8_t free = 255;
     double grain = 1, ease = 1;        // of the pin; of the flow, its root
     double m11 = 1, m12 = 0, m22 = 1;  // √g times the inverse metric
-    Vec3 lacking{0};                   // of that (m11, m12, m22), beside a seam
+    bool border = false;               // beside a seam: its faces to other such texels are the seam's
+    std::array<double, 4> faces{};     // of a border, by `SeamFace::Way`
 };
 
 struct Neighbourhood {
@@ -69,21 +70,13 @@ double shear(const Neighbourhood& n, int column, int row) {
     return std::abs(m) < kNoShear ? 0 : m;
 }
 
-/// What the face between two texels beside a seam, (x, y) apart, takes of what they lack.
-double lack(const Spot& a, const Spot& b, double x, double y) {
-    if (a.lacking == Vec3{0} || b.lacking == Vec3{0}) return 0;
-    const double square = x * x + y * y;
-    return 0.5 * glm::dot(Vec3{x * x, 2 * x * y, y * y}, a.lacking + b.lacking) / (square * square);
-}
-
 /// The diagonal at the corner above and right of a texel: > 0 from it to the next, < 0 the other one.
 double diagonal(const Neighbourhood& n, int column, int row) {
     const Spot &a = n.at(column, row), &b = n.at(column + 1, row), &c = n.at(column, row + 1), &d = n.at(column + 1, row + 1);
-    if (a.valid && b.valid && c.valid && d.valid) return shear(n, column, row);
-    // A step of the edge of the texels.
-    if ((b.valid || c.valid) && together(a, d, 1.5)) return std::max(0.0, lack(a, d, 1, 1));
-    if ((a.valid || d.valid) && together(b, c, 1.5)) return -std::max(0.0, lack(b, c, 1, -1));
-    return 0;
+    const bool broken = !(a.valid && b.valid && c.valid && d.valid);
+    if (!broken && !(a.border && b.border && c.border && d.border)) return shear(n, column, row);
+    const double up = a.faces[atlas::SeamFace::above_right], down = b.faces[atlas::SeamFace::above_left];
+    return std::max(up, down) < kLeastDiagonal ? 0 : up > down ? up : -down;
 }
 
 double lattice(std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -119,12 +112,18 @@ double flocs(const Vec3& position) {
 }
 
 /// Of a tile that lies off by (x, y).
-void take_balance(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t slot, int x, int y) {
-    for (std::uint32_t i = seams.balance_start[slot]; i < seams.balance_start[slot + 1]; ++i) {
-        const atlas::SeamBalance& b = seams.balance[i];
-        const int column = x + b.texel % kSide, row = y + b.texel / kSide;
-        if (column < -1 || row < -1 || column > kSide || row > kSide) continue;
-        n.at(column, row).lacking = {static_cast<double>(b.m11), static_cast<double>(b.m12), static_cast<double>(b.m22)};
+void take_borders(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t slot, int x, int y) {
+    const auto spot = [&](int texel, int dx, int dy) -> Spot* {
+        const int column = x + texel % kSide + dx, row = y + texel / kSide + dy;
+        return column < -2 || row < -2 || column > kSide + 1 || row > kSide + 1 ? nullptr : &n.at(column, row);
+    };
+    constexpr std::array<std::array<int, 2>, 4> kWays{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
+    for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i)
+        if (Spot* s = spot(seams.links[i].texel, 0, 0)) s->border = true;
+    for (std::uint32_t i = seams.face_start[slot]; i < seams.face_start[slot + 1]; ++i) {
+        const atlas::SeamFace& f = seams.faces[i];
+        if (Spot* s = spot(f.texel, 0, 0)) s->border = true, s->faces[f.way] = static_cast<double>(f.conductance);
+        if (Spot* s = spot(f.texel, kWays[f.way][0], kWays[f.way][1])) s->border = true;
     }
 }
 
@@ -155,14 +154,15 @@ Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, 
     for (std::int64_t y = std::max<std::int64_t>(y0 / kSide - 1, 0); y < std::min(y0 / kSide + 2, tiles); ++y)
         for (std::int64_t x = std::max<std::int64_t>(x0 / kSide - 1, 0); x < std::min(x0 / kSide + 2, tiles); ++x)
             if (const std::uint32_t near = map.slot_of_tile[static_cast<std::size_t>(y * tiles + x)]; near != kNone)
-                take_balance(n, seams, near, static_cast<int>(x * kSide - x0), static_cast<int>(y * kSide - y0));
+                take_borders(n, seams, near, static_cast<int>(x * kSide - x0), static_cast<int>(y * kSide - y0));
     return n;
 }
 
-/// Of a straight face, before shear.
-double along(double a, double b, double lacking) {
-    const double mean = 0.5 * (a + b);
-    return std::max(mean + lacking, kLeastPart * mean);
+/// Of a straight face; m11 or m22 of both its texels, the shear on its two sides.
+double straight(const Spot& a, const Spot& b, atlas::SeamFace::Way way, double m_a, double m_b, double shear_a, double shear_b) {
+    // Never quite closed: slopes are taken from one to the other all the same.
+    if (a.border && b.border) return std::max(a.faces[way], static_cast<double>(kConductanceUnit));
+    return 0.5 * (m_a + m_b) - 0.5 * (std::abs(shear_a) + std::abs(shear_b));
 }
 
 double conductance(double g, const Spot& a, const Spot& b, double mean_area) {
@@ -216,15 +216,12 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
     for (int row = -1; row < kSide; ++row)
         for (int column = -1; column < kSide; ++column) {
             const Spot& s = n.at(column, row);
-            if (const Spot& right = n.at(column + 1, row); row >= 0 && together(s, right)) {
-                const double sheared = 0.5 * (std::abs(shear(n, column, row)) + std::abs(shear(n, column, row - 1)));
-                g.gx[Geometry::right_of(column, row)] = packed(conductance(along(s.m11, right.m11, lack(s, right, 1, 0)) - sheared, s, right, mean));
-            }
-            if (const Spot& up = n.at(column, row + 1); column >= 0 && together(s, up)) {
-                const double sheared = 0.5 * (std::abs(shear(n, column, row)) + std::abs(shear(n, column - 1, row)));
+            if (const Spot& right = n.at(column + 1, row); row >= 0 && together(s, right))
+                g.gx[Geometry::right_of(column, row)] =
+                    packed(conductance(straight(s, right, atlas::SeamFace::right, s.m11, right.m11, shear(n, column, row), shear(n, column, row - 1)), s, right, mean));
+            if (const Spot& up = n.at(column, row + 1); column >= 0 && together(s, up))
                 g.gy[(row + 1) * kSide + column] =
-                    packed(conductance(along(s.m22, up.m22, lack(s, up, 0, 1)) - sheared, s, up, mean));
-            }
+                    packed(conductance(straight(s, up, atlas::SeamFace::above, s.m22, up.m22, shear(n, column, row), shear(n, column - 1, row)), s, up, mean));
             const double m = diagonal(n, column, row);
             const double size = m > 0 ? conductance(m, s, n.at(column + 1, row + 1), mean)
                                       : conductance(-m, n.at(column + 1, row), n.at(column, row + 1), mean);

@@ -236,7 +236,7 @@ TUFT_INLINE float sum_of(float a, float d, float noise) {
 /// that had liquid and have none. Returns in `most` the greatest w, s and closed.
 TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restrict air,
                         float* __restrict closed, float* __restrict most, const Work& o,
-                        const float* __restrict inverse, const float* __restrict noise, const Step& step) {
+                        const float* __restrict noise, const Step& step) {
     const float soak = step.soak, pores = step.pores, per_pores = pores > 0 ? 1 / pores : 0;
     const float evaporation = step.evaporation, rim = step.rim;
     alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, any[kLanes] = {};
@@ -255,7 +255,7 @@ TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restr
             const float over = positive(s1 - pores);  // by rounding
             s1 -= over;
             w1 += over;
-            const float all = evaporation + rim * o.rim_slope[i] * inverse[i];
+            const float all = evaporation + rim * o.rim_slope[i];
             const float from_w = smaller(w1, all), from_s = smaller(s1, all - from_w);
             w1 -= from_w;
             s1 -= from_s;
@@ -350,11 +350,12 @@ void gather(Field& field, const std::array<const float*, 9>& planes) {
     }
 }
 
-void fluxes(Work& work, const Geometry& g, const Step& step) {
+bool fluxes(Work& work, const Geometry& g, const Step& step) {
     const Least least = totals(work, g, step.grip, step.rim > 0 ? step.rim_depth : 0);
     (least.dry ? faces_dry : faces_wet)(work, g, step);
     if (least.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
     else work.rim_slope.fill(0);
+    return least.thin;
 }
 
 void liquid_changes(Work& work, const Geometry& g, const Step& step) {
@@ -379,7 +380,7 @@ Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, cons
     Outcome out;
     alignas(64) std::array<float, kTexels> air, closed;
     std::array<float, 3> most{};
-    settle(w, s, air.data(), closed.data(), most.data(), work, g.inverse.data(), dither(seed), step);
+    settle(w, s, air.data(), closed.data(), most.data(), work, dither(seed), step);
     if (step.evaporation > 0 || step.rim > 0) out.evaporated = integral(air.data(), g.inverse.data());
     out.most_w = most[0];
     out.most_s = most[1];
@@ -421,13 +422,16 @@ const float* dither(std::uint64_t seed) {
     return &table[hash_bits(seed, 1) % kOffsets & ~std::uint64_t{1}];
 }
 
-SeamFlux seam_flux(float weight, const std::array<float, 2>& w, const std::array<float, 2>& s,
+SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, const std::array<float, 2>& s,
                    const std::array<float, 2>& grain, const Step& step) {
     const End e0{w[0], s[0], w[0] + s[0], 0, grain[0]}, e1{w[1], s[1], w[1] + s[1], 0, grain[1]};
     SeamFlux out;
     out.w = Law<true, true>::film_flux(weight, e0, e1, step);
     if (step.pores > 0) out.s = Law<true, true>::pore_flux(weight, e0, e1, step);
-    const Carriers c = carriers(weight, out.w, out.s, e0, e1, step);
+    Carriers c = carriers(weight, out.w, out.s, e0, e1, step);
+    const float more = 0.5f * (smaller(larger(1 / larger(apart, kLeast), 1), 2) - 1) * std::abs(out.w + step.passing * out.s);
+    c.a += more;
+    c.b -= more;
     out.a = c.a * rate_of(e0.t, step.grip);
     out.b = c.b * rate_of(e1.t, step.grip);
     return out;

@@ -22,6 +22,7 @@ void look(const Canvas& canvas, Active& tile) {
 TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
     : map(m), seams(std::move(s)), geometry(m.n_slots()), mark_(m.n_slots(), 0), place_(m.n_slots(), kNone) {
     for (const atlas::SeamLink& l : seams.links) weights_.push_back(l.weight);
+    taps_ = seams.taps;
     limit_links();
 }
 
@@ -51,6 +52,23 @@ void TileList::look_anew() {
             l.weight = static_cast<float>(weight);
         }
     limit_links();
+    close_taps();
+}
+
+/// Where a tape lies on a tap, nothing slopes that way: the texel itself takes the tap's place.
+void TileList::close_taps() {
+    seams.taps = taps_;
+    if (!ground_.free) return;
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t i = seams.tap_start[slot], next = i; i < seams.tap_start[slot + 1]; i = next) {
+            const atlas::SeamTap first = taps_[i];
+            bool closed = false;
+            for (; next < seams.tap_start[slot + 1] && taps_[next].texel == first.texel && taps_[next].side == first.side; ++next)
+                if (const atlas::SeamTap& tap = taps_[next]; tap.other_slot != kNone)
+                    closed = closed || passing(ground_.free(slot, tap.texel), ground_.free(tap.other_slot, tap.other_texel)) == 0;
+            if (!closed) continue;
+            for (std::uint32_t k = i; k < next; ++k) seams.taps[k] = {kNone, k == i ? 1.0f : 0.0f, first.texel, 4, first.side};
+        }
 }
 
 void TileList::limit_links() {
@@ -130,6 +148,7 @@ void TileList::spread() {
         if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
         next[i].slot = wanted[i];
         next[i].links = links_of(wanted[i]);
+        next[i].taps = std::span(seams.taps).subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
         place_[wanted[i]] = static_cast<std::uint32_t>(i);
         mark_[wanted[i]] = 0;
     }
@@ -143,11 +162,16 @@ void TileList::spread() {
         for (const atlas::SeamLink& l : list[i].links)
             if (others[i].empty() || others[i].back().first != l.other_slot)
                 others[i].push_back({l.other_slot, place_[l.other_slot]});
+        for (const atlas::SeamTap& t : list[i].taps)
+            if (t.other_slot != kNone && (others[i].empty() || others[i].back().first != t.other_slot))
+                others[i].push_back({t.other_slot, place_[t.other_slot]});
         std::sort(others[i].begin(), others[i].end());
         others[i].erase(std::unique(others[i].begin(), others[i].end()), others[i].end());
     }
     for (const Active& tile : list) place_[tile.slot] = kNone;
     readers = std::make_unique<std::atomic<std::uint32_t>[]>(list.size());
+    n_readers.assign(list.size(), 0);
+    for (std::size_t i = 0; i < list.size(); ++i) each_read(i, [&](std::uint32_t read) { ++n_readers[read]; });
 }
 
 bool TileList::changed() const {

@@ -14,7 +14,7 @@
 /// The tiles that a step of the wet film goes through; inside `ink` only.
 namespace tuft::ink::wet {
 
-inline constexpr double kSeamPart = 4;  ///< conductances over seams together, over the texel's area
+inline constexpr double kSeamPart = 5;  ///< conductances over seams together, over the texel's area
 
 using PlanePtr = std::unique_ptr<Plane>;
 
@@ -30,6 +30,7 @@ struct Active {
     std::array<std::uint32_t, 9> around{};  ///< places in the list, row by row, this one in the middle
     std::uint32_t pigments = 0;             ///< bits: those computed
     std::span<const atlas::SeamLink> links;
+    std::span<const atlas::SeamTap> taps;
     Outcome outcome;
     float stiffness = 0;
     bool seam_wet = false;
@@ -50,6 +51,8 @@ struct TileList {
     std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> others;  ///< of the list: slots over seams,
                                                                               ///< places in the list
     std::unique_ptr<std::atomic<std::uint32_t>[]> readers;  ///< of the list: tiles that still need this one's planes
+
+    std::vector<std::uint32_t> n_readers;   ///< of the list: how many there are in a step
 
     TileList(const atlas::TexelMap& m, atlas::SeamLinks s);
 
@@ -81,12 +84,14 @@ struct TileList {
 
   private:
     std::vector<float> weights_;        ///< of the links as they came
+    std::vector<atlas::SeamTap> taps_;  ///< as they came
     Ground ground_;
     std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch
     std::vector<std::uint32_t> place_;  ///< [n_slots] scratch
 
     void look_anew();
     void limit_links();
+    void close_taps();
     std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const;
     std::array<std::uint32_t, 9> around(std::uint32_t slot) const;
 };

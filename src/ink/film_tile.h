@@ -91,8 +91,8 @@ struct alignas(64) Work {
 
 /// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
 void gather(Field& field, const std::array<const float*, 9>& planes);
-/// total, rate, and what goes through the faces.
-void fluxes(Work& work, const Geometry& g, const Step& step);
+/// total, rate, and what goes through the faces. Whether less than rim_depth stands on some texel.
+bool fluxes(Work& work, const Geometry& g, const Step& step);
 /// dw and ds of the texels from the fluxes.
 void liquid_changes(Work& work, const Geometry& g, const Step& step);
 
@@ -122,7 +122,8 @@ struct SeamFlux {
     float w = 0, s = 0;  ///< from the first to the second
     float a = 0, b = 0;  ///< pigment: a p1 + b p2
 };
-SeamFlux seam_flux(float weight, const std::array<float, 2>& w, const std::array<float, 2>& s,
+/// `apart`: their distance, texels. What comes from upstream smears as over a whole texel.
+SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, const std::array<float, 2>& s,
                    const std::array<float, 2>& grain, const Step& step);
 
 }  // namespace tuft::ink::wet

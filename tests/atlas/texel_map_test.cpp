@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <sstream>
 
 #include "analytic_surfaces.h"
+#include "atlas/border_cells.h"
 #include "atlas/log_map.h"
 #include "atlas/piece_graph.h"
 #include "atlas/seam_links.h"
@@ -71,8 +74,11 @@ TEST(TexelMap, PositionsAndAreasAreThoseOfTheSheet) {
             }
             EXPECT_NEAR(map.position(slot, t).z, 0, 1e-9);
             EXPECT_EQ(map.normal(slot, t).z, 1);
+            const std::uint32_t x = map.tile_of_slot[slot] % map.tiles_per_side * kTile + t % kTile, y = map.tile_of_slot[slot] / map.tiles_per_side * kTile + t / kTile;
+            bool inside = true;  // not beside a seam
+            for (int k = 0; k < 25; ++k) inside = inside && texel_ref(map, x + k % 5 - 2, y + k / 5 - 2).valid();
             // Snapping to 1/4096 texel over grid cells of 7.5 texels.
-            EXPECT_NEAR(tile.area[t] / (texel * texel), 1, 1e-3);
+            if (inside) EXPECT_NEAR(tile.area[t] / (texel * texel), 1, 1e-3);
         }
     }
     EXPECT_NEAR(map.texel_size, texel, 1e-3 * texel);
@@ -133,10 +139,11 @@ TEST(TexelMap, SixteenBitsKeepPlacesAndNormals) {
         TexelShape room;
         for (std::uint32_t slot = 0; slot < exact.n_slots(); ++slot) {
             EXPECT_EQ(exact.tiles[slot].piece, small.tiles[slot].piece);
-            EXPECT_EQ(exact.tiles[slot].area, small.tiles[slot].area);
             const TexelShape& shape = shape_of(small, slot, room);
             for (int t = 0; t < kTileTexels; ++t) {
                 if (exact.tiles[slot].piece[t] == kNoPiece) continue;
+                // Beside seams they come from the places, which are off by 4e-4 of a texel.
+                ASSERT_NEAR(exact.tiles[slot].area[t] / small.tiles[slot].area[t], 1, 4e-3);
                 const Vec3f p = small.position(slot, t), n = small.normal(slot, t);
                 // One texel at a time or the whole tile, the same bits.
                 EXPECT_EQ(p, Vec3f(shape.px[t], shape.py[t], shape.pz[t]));
@@ -273,6 +280,62 @@ TEST(PieceGraph, StackedSheetsDoNotHangTogether) {
         for (std::uint32_t k = g.edge_start[i]; k < g.edge_start[i + 1]; ++k)
             EXPECT_EQ(g.pieces[i].normal.z > 0, g.pieces[g.edges[k].to].normal.z > 0);
     }
+}
+
+/// Two halves of a flat sheet of 0.2 m, texels of 1 mm, turned in the atlas by these angles.
+Unwrapped halves(double left, double right, double shift) {
+    const auto half = [&](double from, double angle, const Vec2& at) {
+        testing::Patch p = testing::flat({from, -0.1, 0}, {0.1, 0, 0}, {0, 0.2, 0}, 8, 16);
+        const Vec2 s{std::cos(angle), std::sin(angle)};
+        return testing::place(p, at, 100.0 * s, 200.0 * Vec2{-s.y, s.x});
+    };
+    return testing::build({half(-0.1, left, {160 + shift, 8.13}), half(0, right, {460.6 - shift, 8.37})}, 700);
+}
+
+TEST(BorderCells, TileTheSurfaceTogetherAndAreExactForLinearFlows) {
+    const double degree = std::numbers::pi / 180;
+    for (const auto& [a, b] : {std::pair{0.0, 0.0}, {0.0, 30.0}, {15.0, 45.0}, {45.0, 45.0}, {10.0, 75.0}})
+        for (const double shift : {0.1, 0.37, 0.8}) {
+            const Unwrapped u = halves(a * degree, b * degree, shift);
+            const TexelMap map = build_texel_map(u.mesh, u.atlas);
+            const BorderCells border = build_border_cells(u.mesh, u.atlas, map);
+            struct Sums {
+                double area = 0, length_distance = 0, least = 1e9;
+                Vec2 flux{0};
+                int faces = 0;
+            };
+            std::map<std::pair<std::uint32_t, int>, Sums> sums;
+            for (const BorderCell& c : border.cells) sums[{c.texel.slot, c.texel.texel}].area = c.area;
+            // Whole faces to texels that are no border themselves.
+            const auto add = [&](const TexelRef& from, const TexelRef& to, double conductance) {
+                const Vec2 d = Vec2(map.position(to.slot, to.texel)) - Vec2(map.position(from.slot, from.texel));
+                Sums& s = sums[{from.slot, from.texel}];
+                s.flux += conductance * d / 1e-3;
+                s.length_distance += conductance * glm::dot(d, d);
+                s.least = std::min(s.least, glm::length(d) / 1e-3);
+                ++s.faces;
+            };
+            for (const BorderFace& f : border.faces) add(f.a, f.b, f.conductance), add(f.b, f.a, f.conductance);
+            for (const BorderCell& c : border.cells) {
+                const std::uint32_t tile = map.tile_of_slot[c.texel.slot];
+                const int x = static_cast<int>(tile % map.tiles_per_side) * kTile + c.texel.texel % kTile, y = static_cast<int>(tile / map.tiles_per_side) * kTile + c.texel.texel / kTile;
+                for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+                    const TexelRef o = texel_ref(map, x + dx, y + dy);
+                    if (o.valid() && !sums.contains({o.slot, o.texel})) add(c.texel, o, 1);
+                }
+            }
+            std::size_t n = 0;
+            for (const BorderCell& c : border.cells) {
+                if (std::abs(map.position(c.texel.slot, c.texel.texel).y) > 0.095f) continue;
+                const Sums& s = sums[{c.texel.slot, c.texel.texel}];
+                if (s.least < 0.36) continue;  // conductances of pairs so close are held down
+                // Float positions, 1e-5 of a texel.
+                EXPECT_LT(glm::length(s.flux), 1e-3) << a << ' ' << b;
+                EXPECT_NEAR(s.length_distance / (4 * s.area), 1, 1e-3) << "of any cell: four times the area is Σ length distance";
+                ++n;
+            }
+            EXPECT_GT(n, 180u);
+        }
 }
 
 TEST(SeamLinks, AreTheSameFromBothSidesAndShort) {

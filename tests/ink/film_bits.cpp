@@ -73,7 +73,7 @@ int main() {
         gather(work.p, p_at);
         fluxes(work, g, step);
         liquid_changes(work, g, step);
-        const SeamFlux seam = seam_flux(0.7f, {w[0][5], w[1][9]}, {s[0][5], s[1][9]}, {0.9f, 1.1f}, step);
+        const SeamFlux seam = seam_flux(0.7f, 0.6f, {w[0][5], w[1][9]}, {s[0][5], s[1][9]}, {0.9f, 1.1f}, step);
         work.dw[5] -= seam.w;
         work.dp.fill(seam.a * p[0][5] + seam.b * p[1][9]);
         std::array<float, kTexels> pigment;
