@@ -12,9 +12,10 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr std::size_t kDear = 16384;    // triangles
+constexpr std::size_t kDear = 4096;     // triangles
 constexpr double kNearEnds = 1.0 / 32;  // of the border's length
 constexpr double kAsLong = 1.05;        // as another
+constexpr double kAtFirst = 1.1;        // beyond limits of form, before a chart is laid flat
 constexpr double kUsualWork = 5;        // triangles in all trials, over those of the mesh
 
 /// A rigid motion of the plane.
@@ -26,15 +27,13 @@ struct Motion {
     }
 };
 
-enum class Outcome : std::uint8_t { merged, stretched, misshapen };
-
 /// One pair of charts to be tried along one chain.
 struct Trial {
     std::uint32_t chain = kNone, a = kNone, b = kNone;  // chain and charts of the graph
     double rank = 0;
     std::vector<std::uint32_t> halves;  // seams to be glued, half-edges of the mesh
     std::size_t n_chain = 0;            // how many of them are the chain's own
-    Outcome outcome = Outcome::stretched;
+    bool merged = false;
     FlatChart flat;
 };
 
@@ -79,14 +78,20 @@ std::pair<Motion, double> fit_sides(const FlatChart& a, const FlatChart& b,
     return {m, std::sqrt(misfit / double(pairs.size()))};
 }
 
-/// Area of a chart over that of its hull.
-double hull_fill(const FlatChart& chart, const std::vector<Vec2>& hull) {
+/// How compact a chart is.
+struct Form {
+    double fill = 1;    // its area over that of its hull
+    double length = 0;  // of its smallest rectangle
+};
+
+Form form_of(const FlatChart& chart) {
+    const std::vector<Vec2> hull = chart_hull(chart);
     double area = 0;
     for (std::size_t i = 1; i + 1 < hull.size(); ++i) {
         const Vec2 p = hull[i] - hull[0], q = hull[i + 1] - hull[0];
         area += 0.5 * (p.x * q.y - p.y * q.x);
     }
-    return area > 0 ? chart.mesh.area / area : 1;
+    return {area > 0 ? chart.mesh.area / area : 1, smallest_rectangle(hull).length};
 }
 
 class Merger {
@@ -226,7 +231,10 @@ class Merger {
         // Charts that lie one over the other stay so; only near the ends of the chain do small
         // crossings go away. That is worth a look where laying flat is dear.
         if (mesh.faces.size() > kDear && crosses_itself(mesh, t.flat.uv, 0, kNearEnds)) return;
+        // Nor does laying flat change much of the shape.
+        const std::array<Form, 2> parts{form_of(a), form_of(b)};
         scale_to_area(mesh, t.flat.uv);
+        if (misshapen(form_of(t.flat), parts, kAtFirst)) return;
         const double flat_enough = 1 + 0.1 * (options_.l2 - 1);
         FlatCheck check = check_flat(mesh, t.flat.uv, options_.gap);
         if (!check.sound() || check.l2 > flat_enough) {
@@ -241,14 +249,15 @@ class Merger {
             return;
         t.flat.worst = check.linf;
         t.flat.l2 = check.l2;
-        const std::vector<Vec2> hull = chart_hull(t.flat);
-        const std::vector<Vec2> hull_a = chart_hull(a), hull_b = chart_hull(b);
-        const double parts = std::min(hull_fill(a, hull_a), hull_fill(b, hull_b));
-        const bool ragged = hull_fill(t.flat, hull) < std::min(merge_.least_fill, parts);
+        t.merged = !misshapen(form_of(t.flat), parts, 1);
+    }
+
+    /// Whether a chart of two parts is too ragged or too long, by more than `slack`.
+    bool misshapen(const Form& whole, const std::array<Form, 2>& parts, double slack) const {
+        if (slack * whole.fill < std::min({merge_.least_fill, parts[0].fill, parts[1].fill})) return true;
         // Two that lie beside each other may be as long as the longer of them.
-        const double longer = std::max(smallest_rectangle(hull_a).length, smallest_rectangle(hull_b).length);
-        const bool too_long = smallest_rectangle(hull).length > std::max(merge_.longest, kAsLong * longer);
-        t.outcome = ragged || too_long ? Outcome::misshapen : Outcome::merged;
+        const double longer = std::max(parts[0].length, parts[1].length);
+        return whole.length > slack * std::max(merge_.longest, kAsLong * longer);
     }
 
     Refusals::Change change(std::uint32_t chain, std::uint32_t a, std::uint32_t b) const {
@@ -263,7 +272,7 @@ class Merger {
         const std::array<const FlatChart*, 2> before{&cut_.charts[chart_at_[t.a]],
                                                      &cut_.charts[chart_at_[t.b]]};
         const std::array<const FlatChart*, 1> now{&t.flat};
-        if (t.outcome != Outcome::merged || !budget_.allows(before, now)) {
+        if (!t.merged || !budget_.allows(before, now)) {
             set_glued(t, false);
             refused_[t.chain] = 1;
             ++cut_.refused.merged[change(t.chain, t.a, t.b)];

@@ -71,16 +71,50 @@ mesh::PolygonSoup sphere(int n) {
     return soup;
 }
 
-// A disc of `texels` across with a soft rim, as a footprint on the model's equator.
-footprint::Footprint disc(const stroke::Model& model, int texels, double angle) {
+// Metres that a unit of the model counts for, so that its surface is as large as that of a sphere of
+// 50 mm: texels are about as large on every model then, and so are the brushes, whatever the model's size.
+double metres_per_unit(const mesh::PolygonSoup& soup) {
+    double area = 0;
+    for (std::size_t p = 0; p < soup.n_polygons(); ++p) {
+        const auto corner = [&](std::uint32_t c) { return soup.points[soup.corners[soup.polygon_start[p] + c]]; };
+        const std::uint32_t n = soup.polygon_start[p + 1] - soup.polygon_start[p];
+        for (std::uint32_t c = 2; c < n; ++c)
+            area += 0.5 * glm::length(glm::cross(corner(c - 1) - corner(0), corner(c) - corner(0)));
+    }
+    const double of_sphere = 4 * pi * 0.05 * 0.05;
+    return area > 0 && std::isfinite(area) ? std::sqrt(of_sphere / area) : kMillimetre;
+}
+
+// A place on the surface and the way that is taken there, along `frame.t`.
+struct Step {
+    Frame frame;
+    std::uint32_t triangle;
+};
+
+// Places a texel apart, straight on over the surface from one side of it; left at an edge.
+std::vector<Step> way_over(const stroke::Model& model, int n) {
+    const Box& box = model.mesh->bounds;
+    const Vec3 out{std::cos(0.3), std::sin(0.3), 0};
+    const auto hit = model.query->ray(box.centre() + box.diagonal() * out, -glm::normalize(out));
+    auto at = hit ? hit : model.query->closest_point(box.centre() + box.diagonal() * out);
+    const double texel = model.atlas.texel_size;
+    std::vector<Step> way{{make_frame(at->position, at->normal, {-out.y, out.x, 0.0}), at->triangle}};
+    while (static_cast<int>(way.size()) < n) {
+        const Frame& here = way.back().frame;
+        at = model.query->closest_point(here.origin + texel * here.t);
+        Vec3 heading = parallel_transport(here.t, here.n, at->normal);
+        if (glm::length(at->position - here.origin) < 0.5 * texel) heading = glm::cross(at->normal, heading);
+        way.push_back({make_frame(at->position, at->normal, heading), at->triangle});
+    }
+    return way;
+}
+
+// A disc of `texels` across with a soft rim.
+footprint::Footprint disc(const stroke::Model& model, int texels, const Step& at) {
     footprint::Footprint f;
     const double texel = model.atlas.texel_size;
-    const Box& box = model.mesh->bounds;
-    const Vec3 out{std::cos(angle), std::sin(angle), 0.1};
-    const auto on = model.query->ray(box.centre() + box.diagonal() * out, -glm::normalize(out));
-    const auto near = on ? on : model.query->closest_point(box.centre() + box.diagonal() * out);
-    f.frame = make_frame(near->position, near->normal, {0, 0, 1});
-    f.triangle = near->triangle;
+    f.frame = at.frame;
+    f.triangle = at.triangle;
     f.cell = texel;
     f.width = f.height = texels + 4;
     f.lo = Vec2(-0.5 * f.width * texel);
@@ -95,7 +129,7 @@ footprint::Footprint disc(const stroke::Model& model, int texels, double angle) 
     return f;
 }
 
-// Deposit alone: planning, evaluating and inking one stamp after the other along the equator.
+// Deposit alone: planning, evaluating and inking one stamp after the other along the way.
 double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps,
                               footprint::Isa isa, std::span<const char* const> inks) {
     ink::Canvas canvas(model.texels.n_slots());
@@ -113,9 +147,7 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
     alignas(64) std::array<float, atlas::kTileTexels> exposure;
     footprint::Unpacked unpacked;
     std::vector<footprint::Footprint> path;
-    const double radius = 0.5 * model.mesh->bounds.size().x;
-    for (int i = 0; i < stamps; ++i)
-        path.push_back(disc(model, texels, 0.3 + i * model.atlas.texel_size / radius));
+    for (const Step& at : way_over(model, stamps)) path.push_back(disc(model, texels, at));
     std::vector<double> runs;
     footprint::StampJobs jobs;
     for (int repeat = 0; repeat < 7; ++repeat) {
@@ -139,7 +171,7 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
 double footprint_texels(int texels) { return pi / 4 * texels * texels; }
 
 // The whole path: a brush as thick as makes lines of about `texels` across, dragged along
-// the equator; hand samples at 1 kHz and a stamp per texel.
+// the way; hand samples at 1 kHz and a stamp per texel.
 stroke::Stroke drag(const stroke::Model& model, stroke::Painting& painting, int texels) {
     brush::Preset preset = brush::load_preset("mixed-medium");
     const double scale = texels * model.atlas.texel_size / (2 * preset.radius);
@@ -153,17 +185,18 @@ stroke::Stroke drag(const stroke::Model& model, stroke::Painting& painting, int 
     s.trace.flat = false;
     s.trace.brush = "bench";
     s.trace.ink = "carbon";
-    const double r = 0.5 * model.mesh->bounds.size().x;
-    const Vec3 centre = model.mesh->bounds.centre();
-    const double arc = 400 * model.atlas.texel_size / r;
+    const std::vector<Step> way = way_over(model, 401);
+    const int reach = texels / 2;
     for (int i = 0; i <= 400; ++i) {
-        const double a = 0.3 + arc * i / 400;
+        // The hand keeps to the mean of the normals over the width of the line.
+        Vec3 n{0};
+        for (int k = std::max(0, i - reach); k <= std::min(400, i + reach); ++k) n += way[k].frame.n;
+        n = glm::length(n) > 0 ? glm::normalize(n) : way[i].frame.n;
         const double press = std::min(1.0, i / 60.0) * 0.25 * preset.length;
-        const Vec3 n{std::cos(a), std::sin(a), 0};
         stroke::TraceSample p;
         p.time = i * 1e-3;
-        p.position = centre + (r + preset.length - press) * n;
-        const Frame f = make_frame(Vec3{0}, n, {0, 0, 1});
+        p.position = way[i].frame.origin + (preset.length - press) * n;
+        const Frame f = make_frame(Vec3{0}, n, glm::cross(n, way[i].frame.t));
         p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
         s.trace.samples.push_back(p);
     }
@@ -311,6 +344,7 @@ int run(const Bench& a) {
     const auto add = [&](std::string name, mesh::PolygonSoup soup) {
         stroke::ModelOptions options = model_options(a.surface, console);
         options.unwrap.size = size;
+        options.repair.metres_per_unit = metres_per_unit(soup);
         Case c{.name = std::move(name)};
         set_thread_count(0);  // as a user waits for it
         options.progress = timed(console.progress(), c.map_seconds, c.graph_seconds);
