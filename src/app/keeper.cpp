@@ -10,7 +10,7 @@ template <class Action>
 void Keeper::attempt(const Action& action) {
     try {
         action();
-        if (!behind_) trouble_.clear();
+        if (!behind_ && !wanted_) trouble_.clear();
     } catch (const std::exception& error) {
         trouble_ = error.what();
     }
@@ -28,7 +28,12 @@ void Keeper::change(const Action& action) {
 
 void Keeper::rewrite(const std::string& source, const FileFrame& frame, stroke::Painting& painting) {
     behind_ = true;
-    if (std::string fault = start(path(), source, frame, painting); !fault.empty()) trouble_ = std::move(fault);
+    if (std::string fault = start(wanted_ ? wanted_->path : path(), source, frame, painting); !fault.empty()) trouble_ = std::move(fault);
+}
+
+void Keeper::start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame, const std::string& fault) {
+    wanted_ = {path, source, frame, fault};
+    trouble_ = fault;
 }
 
 void Keeper::take_presets(const io::Project& project) {
@@ -39,6 +44,7 @@ void Keeper::take_presets(const io::Project& project) {
 void Keeper::adopt(io::Project project) {
     take_presets(project);
     project_ = std::move(project);
+    wanted_.reset();
     pending_.clear();
     behind_ = false;
 }
@@ -61,6 +67,7 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
                                                           fresh.save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
                                                   });
         project_ = std::move(project);
+        wanted_.reset();
         pending_.clear();
         trouble_.clear();
         behind_ = false;
@@ -71,6 +78,10 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
 }
 
 void Keeper::prepare(stroke::Painting& painting, const std::string& brush, const std::string& ink) {
+    if (wanted_) {
+        const Wanted wanted = *wanted_;
+        if (std::string fault = start(wanted.path, wanted.source, wanted.frame, painting); !fault.empty()) wanted_->fault = trouble_ = std::move(fault);
+    }
     if (!brush.empty() && !brushes_.contains(brush)) {
         const std::string toml = brush::preset_toml(painting.brush(brush));
         brush::Preset preset = brush::parse_preset(toml, brush);
@@ -100,7 +111,7 @@ std::vector<std::string> Keeper::inks() const {
 }
 
 void Keeper::flush() {
-    if (!project_) throw Error("there is no project file");
+    if (!project_) throw Error(wanted_ ? wanted_->fault : "there is no project file");
     for (const auto& preset : brushes_) project_->put_brush(preset);
     for (const auto& preset : inks_) project_->put_ink(preset);
     project_->append(pending_);

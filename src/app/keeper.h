@@ -25,6 +25,9 @@ class Keeper {
     std::string start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                       stroke::Painting& painting);
 
+    /// There is no file that can be written: all waits in memory, and `start` is tried again before each stroke.
+    void start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame, const std::string& fault);
+
     /// `start` in the place of the file there is, which rows alone cannot bring up to date.
     void rewrite(const std::string& source, const FileFrame& frame, stroke::Painting& painting);
 
@@ -52,7 +55,14 @@ class Keeper {
     void change(const Action& action);
     void flush();
 
+    struct Wanted {
+        std::filesystem::path path;
+        std::string source;
+        FileFrame frame;
+        std::string fault;        ///< why it is not there yet
+    };
     std::optional<io::Project> project_;
+    std::optional<Wanted> wanted_;
     std::vector<stroke::Stroke> pending_;
     std::map<std::string, std::string> brushes_, inks_;  ///< TOML by name
     std::string trouble_;

@@ -106,6 +106,12 @@ void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn
     work.misfits = stroke::find_misfits(reports, stroke::compare_fit(strokes, length_of, mesh::SurfaceQuery(mesh), *work.model->query));
 }
 
+// In a file from now on, or in memory until there can be one.
+void keep(Painter::Work& work, const fs::path& file) {
+    const std::string fault = work.keeper.start(file, work.source, work.frame, *work.painting);
+    if (!fault.empty()) work.keeper.start_later(file, work.source, work.frame, fault);
+}
+
 Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
     Painter::Work work;
     stroke::ModelOptions prepare;
@@ -121,8 +127,7 @@ Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::
     if (!former.empty()) carry_strokes(former, work, progress);
     work.texture = std::make_unique<Texture>(*work.painting, progress);
     work.pixels = work.texture->pixels();
-    const std::string fault = work.keeper.start(project, work.source, work.frame, *work.painting);
-    if (!fault.empty()) throw Error("the work could not be kept: " + fault);
+    keep(work, project);
     return work;
 }
 
@@ -143,12 +148,13 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, const 
     io::show_looks(project, *work.painting);
     work.texture = std::make_unique<Texture>(*work.painting, progress);
     work.pixels = work.texture->pixels();
-    work.keeper.adopt(std::move(project));
     // A file that cannot be written is gone on with in a copy.
     const bool writable = ::access(path.c_str(), W_OK) == 0 && ::access(fs::absolute(path).parent_path().c_str(), W_OK) == 0;
-    if (!writable) {
-        const std::string fault = work.keeper.start(session, work.source, work.frame, *work.painting);
-        if (!fault.empty()) throw Error("the work could not be kept: " + fault);
+    if (writable) {
+        work.keeper.adopt(std::move(project));
+    } else {
+        work.keeper.take_presets(project);
+        keep(work, session);
     }
     return work;
 }

@@ -219,8 +219,7 @@ void Painter::publish(bool strokes_changed) {
     update_.can_redo = !undone_.empty();
     update_.project = work_.keeper.path();
     update_.trouble = work_.keeper.trouble();
-    if (!update_.trouble.empty() && work_.keeper.waiting() > 0)
-        update_.trouble += " (" + std::to_string(work_.keeper.waiting()) + " strokes wait in memory)";
+    update_.unkept = work_.keeper.waiting();
     last_publish_ = now();
 }
 

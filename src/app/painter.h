@@ -174,6 +174,7 @@ struct Update {
     std::string picked;           ///< name of an ink just picked up or taken in
     bool wet = false;             ///< some ink is
     std::string trouble;          ///< why work is not being kept, ""
+    std::size_t unkept = 0;       ///< strokes that wait in memory for that
     std::filesystem::path project;
 };
 

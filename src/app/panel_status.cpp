@@ -8,6 +8,22 @@
 
 namespace tuft::app {
 
+namespace {
+
+// As much of it as there is room for; the rest under the cursor.
+void one_line(const Session& s, const std::string& text) {
+    const std::string shown = s.ui.fitted(text, ImGui::GetContentRegionAvail().x);
+    ImGui::TextUnformatted(shown.c_str());
+    if (shown == text || !ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(s.ui.px(420));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+}  // namespace
+
 void status_bar(Session& s, float top) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0, top));
@@ -19,11 +35,13 @@ void status_bar(Session& s, float top) {
                                            ImGuiWindowFlags_NoBringToFrontOnFocus);
     s.message_time += ImGui::GetIO().DeltaTime;
     if (!s.last.trouble.empty()) {
+        const std::size_t n = s.last.unkept;
+        const std::string waits = n == 0 ? "" : " (" + s.ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ")";
         ImGui::PushStyleColor(ImGuiCol_Text, s.ui.settings().theme == Theme::dark ? ImVec4(1, 0.55f, 0.42f, 1) : ImVec4(0.72f, 0.10f, 0.02f, 1));
-        ImGui::Text("%s: %s", s.ui.tr("Not kept on disk"), s.last.trouble.c_str());
+        one_line(s, s.ui.tr("Not kept on disk") + waits + ": " + s.last.trouble);
         ImGui::PopStyleColor();
     } else if (!s.message.empty() && s.message_time < 12) {
-        ImGui::TextUnformatted(s.ui.tr_sentence(s.message).c_str());
+        one_line(s, s.ui.tr_sentence(s.message));
     } else {
         ImGui::TextDisabled("%s", s.ui.tr(s.keymap == Keymap::blender
                                               ? "Left: paint    Middle or right: turn    Shift+middle: move    Wheel: nearer    F1: all keys"

@@ -35,16 +35,18 @@ void take_picked(Session& s, const std::string& name) {
 
 std::unique_ptr<Painter> start_painter(Session& s, Painter::Work work) {
     const fs::path project = work.keeper.path();
-    s.note.write(project, work.source);
-    if (!is_unnamed(project)) remember_project(project);
+    if (project.empty()) s.note.clear();  // it is in memory only
+    else s.note.write(project, work.source);
+    if (!project.empty() && !is_unnamed(project)) remember_project(project);
     return std::make_unique<Painter>(std::move(work));
 }
 
-// The work lies in a file that a person named.
-void take_name(Session& s, const fs::path& project) {
+// The work lies in this file now.
+void take_file(Session& s, const fs::path& project) {
+    s.note.write(project, s.painter->source());
+    if (is_unnamed(project)) return;
     remember_project(project);
     s.recent = recent_projects();
-    s.note.write(project, s.painter->source());
     // The file that it had before it had a name is of no more use, but as what a revised model is made from.
     std::error_code ec;
     if (const fs::path& before = s.last.project; is_unnamed(before) && before != s.revises && before != s.former) fs::remove(before, ec);
@@ -269,7 +271,7 @@ void poll_painter(Session& s) {
     if (!u.picked.empty()) take_picked(s, u.picked);
     for (std::string& message : u.messages) say(s, std::move(message));
     u.messages.clear();
-    if (!u.project.empty() && u.project != s.last.project && !is_unnamed(u.project)) take_name(s, u.project);
+    if (!u.project.empty() && u.project != s.last.project) take_file(s, u.project);
     // The scene takes the tiles.
     std::vector<render::TilePixels> tiles = std::move(s.last.tiles);
     tiles.insert(tiles.end(), u.tiles.begin(), u.tiles.end());
@@ -306,7 +308,7 @@ Vec4f section_plane(const Session& s) {
 
 std::string project_name(const Session& s) {
     if (!s.painter) return "";
-    return is_unnamed(s.last.project) ? fs::path(s.painter->source()).stem().string() : s.last.project.stem().string();
+    return s.last.project.empty() || is_unnamed(s.last.project) ? fs::path(s.painter->source()).stem().string() : s.last.project.stem().string();
 }
 
 void load_settings(Session& s) {

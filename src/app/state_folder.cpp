@@ -55,7 +55,9 @@ fs::path state_folder() {
     else if (const char* home = std::getenv("HOME"); home && *home) base = fs::path(home) / ".local" / "state";
     const fs::path folder = made(base / "tuft");
     if (!base.empty() && ::access(folder.c_str(), W_OK) == 0) return folder;
-    return made(fs::temp_directory_path() / ("tuft-" + std::to_string(::getuid())));
+    std::error_code ec;
+    const fs::path temporary = fs::temp_directory_path(ec);
+    return made((ec ? fs::path("/tmp") : temporary) / ("tuft-" + std::to_string(::getuid())));
 }
 
 SessionNote::SessionNote() {

@@ -70,6 +70,7 @@ constexpr std::pair<const char*, const char*> kTexts[] = {
     {"Here", "当前目录"}, {"Up", "上一级"}, {"file name", "文件名"}, {"Open", "打开"}, {"Save", "保存"}, {"Replace", "替换"}, {"Replace it?", "替换原文件？"},
     {"There is no file of that name.", "没有这个文件。"}, {"Nothing can be written into this folder.", "这个文件夹不能写入。"},
     {"Nothing here that can be opened.", "这里没有可打开的文件。"}, {"Not kept on disk", "未存到磁盘"},
+    {"# stroke waits in memory", "# 笔暂存于内存"}, {"# strokes wait in memory", "# 笔暂存于内存"},
     {"Left: paint    Middle or right: turn    Shift+middle: move    Wheel: nearer    F1: all keys",
      "左键：绘制    中键或右键：转动    Shift+中键：平移    滚轮：远近    F1：全部按键"},
     {"Left: paint    Alt+left: turn    Alt+middle: move    Alt+right: nearer    F1: all keys",

@@ -80,6 +80,32 @@ TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
     EXPECT_EQ(io::Project::open(path_).strokes().size(), 1u);
 }
 
+// No folder can be written into when the work begins: it waits in memory, and is in its file as soon as there can be one.
+TEST_F(KeeperTest, WorkThatHasNoFileYetWaitsForOne) {
+    Keeper keeper;
+    const auto file = folder_ / "later" / "work.tuft";
+    const std::string fault = keeper.start(file, "sheet.ply", {}, painting_);
+    ASSERT_NE(fault, "");
+    keeper.start_later(file, "sheet.ply", {}, fault);
+    std::swap(keeper, keeper_);
+    for (int i = 0; i < 3; ++i) paint(0.002 * i);
+    const std::uint64_t gone = painting_.journal().strokes().back().id;
+    painting_.undo();
+    keeper_.remove(gone);
+    EXPECT_EQ(keeper_.trouble(), fault);
+    EXPECT_EQ(keeper_.waiting(), 2u);
+    EXPECT_TRUE(keeper_.path().empty());
+
+    std::filesystem::create_directories(file.parent_path());
+    paint(0.02);
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(keeper_.waiting(), 0u);
+    EXPECT_EQ(keeper_.path(), file);
+    const auto kept = io::Project::open(file).strokes();
+    ASSERT_EQ(kept.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(kept[i].id, painting_.journal().strokes()[i].id);
+}
+
 // Texels are never stored beside a journal that they do not show.
 TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
     for (int i = 0; i < 3; ++i) paint(0.002 * i);

@@ -459,6 +459,22 @@ TEST_F(StudioProgram, BadFilesAndFoldersAreAMessageAndWorkGoesOn) {
     EXPECT_EQ(ran.status, 0) << ran.err;
 }
 
+// Neither the state folder nor a temporary one can be written into.
+TEST_F(StudioProgram, WorkGoesOnWhereNothingCanBeKeptAndCanBeSavedElsewhere) {
+    fs::remove_all(path("state"));
+    std::ofstream(path("state")) << "a file, no folder";
+    const char* before = std::getenv("TMPDIR");
+    const std::string kept = before ? before : "";
+    setenv("TMPDIR", "/proc", 1);
+    const Ran ran = studio(kBowl + kTwoStrokes + "expect message tuft\nundo\nwait-ready\nexpect strokes 1\nsave work.tuft\nwait-ready\nwait 0.1\nexpect kept\n"
+                                                 "stroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 2\nexpect kept\n");
+    if (before) setenv("TMPDIR", kept.c_str(), 1);
+    else unsetenv("TMPDIR");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(io::Project::open(path("work.tuft")).strokes().size(), 2u);
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
+}
+
 TEST_F(StudioProgram, WrongUseIsOneLineAndStatusTwo) {
     for (const std::string options : {"--frobnicate", "--size banana", "a.ply b.ply"}) {
         const Ran ran = studio("quit\n", options);
