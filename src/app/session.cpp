@@ -62,13 +62,13 @@ void say(Session& s, std::string message) {
 void open_writing(Session& s, const fs::path& path) {
     if (!s.painter) return say(s, "Open a model first; then the writing can be placed on it.");
     try {
-        s.writing = read_writing(path);
+        say(s, "");
+        s.writing = read_writing(path, [&](const std::string& line) { say(s, line); });
         s.tool = Tool::writing;
         const double size = s.painter->model().mesh->bounds.diagonal();
         // A drawing far too large or small for the model comes at a third of it.
         const double own = std::max(s.writing.width, s.writing.height);
         if (own > 0 && (own > size || own < 0.02 * size)) s.writing.scale = 0.33 * size / own;
-        say(s, "");
     } catch (const Error& error) {
         say(s, error.what());
     }

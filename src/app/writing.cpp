@@ -35,8 +35,8 @@ void set_side_by_side(std::vector<stroke::Trace>& traces) {
 
 }  // namespace
 
-Writing read_writing(const std::filesystem::path& file) {
-    Writing out{.file = file, .traces = io::read_strokes(file)};
+Writing read_writing(const std::filesystem::path& file, const std::function<void(const std::string&)>& note) {
+    Writing out{.file = file, .traces = io::read_strokes(file, {.note = note})};
     std::erase_if(out.traces, [](const stroke::Trace& t) { return !t.flat || t.samples.empty(); });
     if (out.traces.empty()) throw Error(file.string(), "its strokes lie in space already; only flat writing can be placed");
     set_side_by_side(out.traces);

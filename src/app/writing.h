@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "mesh/surface_query.h"
@@ -23,7 +24,7 @@ struct Writing {
 };
 
 /// Reads an InkML or SVG file. Throws `Error` also when nothing in it is flat.
-Writing read_writing(const std::filesystem::path& file);
+Writing read_writing(const std::filesystem::path& file, const std::function<void(const std::string&)>& note = {});
 
 /// Where it comes to lie with its middle at a point of the surface, seen with `right` to the right.
 stroke::Placement place_writing(const Writing& writing, const mesh::SurfacePoint& at, const Vec3& normal, const Vec3& right);

@@ -163,7 +163,7 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
 
     std::vector<stroke::Stroke> strokes;
     for (const fs::path& file : a.strokes) {
-        std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true});
+        std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) { console.note(line); }});
         if (habit) traces = stroke::undo_habit(*habit, std::move(traces));
         for (stroke::Trace& trace : traces) {
             if (!a.brush.empty()) trace.brush = a.brush;

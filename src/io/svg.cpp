@@ -116,6 +116,7 @@ class Drawing {
         else if (name == "circle") ellipse(number(node, "cx"), number(node, "cy"), number(node, "r"), number(node, "r"));
         else if (name == "ellipse") ellipse(number(node, "cx"), number(node, "cy"), number(node, "rx"), number(node, "ry"));
         else if (name == "use") return use(node, matrix, style, depth);
+        else if (name == "text" || name == "image") ++(name == "text" ? n_texts_ : n_images_);
         if (style.blank && !style.stroked) lines_.resize(before);
         if (style.filled && lines_.size() > before) fill(before, style);
         children(node, matrix, style, depth);
@@ -187,6 +188,13 @@ class Drawing {
     }
 
     const std::vector<Drawn>& lines() const { return lines_; }
+    /// What a person would miss; empty: nothing.
+    std::string left_out() const {
+        std::string out;
+        if (n_texts_) out = std::to_string(n_texts_) + (n_texts_ > 1 ? " texts are" : " text is") + " left out: turn text into paths first";
+        if (n_images_) out += (out.empty() ? "" : "; ") + std::to_string(n_images_) + (n_images_ > 1 ? " images are" : " image is") + " left out";
+        return out;
+    }
     static std::string local(const char* name) {
         const char* colon = std::strchr(name, ':');
         return colon ? colon + 1 : name;
@@ -438,7 +446,7 @@ class Drawing {
     double width_ = 0;
     std::map<std::string, std::map<std::string, std::string>> classes_;  // declarations of style sheets
     std::vector<Drawn> lines_;
-    std::size_t n_points_ = 0, n_elements_ = 0;
+    std::size_t n_points_ = 0, n_elements_ = 0, n_texts_ = 0, n_images_ = 0;
     std::map<std::string, pugi::xml_node> by_id_;
 };
 
@@ -468,6 +476,7 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     drawing.read_sheets(svg, 0);
     drawing.walk(svg, drawing.frame(svg), {}, 0);
     if (drawing.lines().empty()) throw Error(source, "nothing is drawn in this file; text must be turned into paths first");
+    if (const std::string missed = drawing.left_out(); options.ink.note && !missed.empty()) options.ink.note(source + ": " + missed);
     std::ostringstream ink;
     ink.precision(12);
     ink << "<ink xmlns='http://www.w3.org/2003/InkML'>";

@@ -137,6 +137,17 @@ TEST(Svg, LinesHaveTheWidthOfTheirStroke) {
     EXPECT_THROW(drawn("<line " + line + " stroke='red' stroke-width='wide'/>"), Error);
 }
 
+TEST(Svg, WhatIsLeftOutIsSaid) {
+    std::vector<std::string> notes;
+    SvgOptions options;
+    options.ink.note = [&](const std::string& line) { notes.push_back(line); };
+    const auto read = [&](const std::string& inside) { parse_svg("<svg><path d='M0 0L9 9' stroke='red'/>" + inside + "</svg>", "a.svg", options); };
+    read("<text>Hello <tspan>there</tspan></text><image/><text display='none'>no</text>");
+    read("<g/>");
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_EQ(notes[0], "a.svg: 1 text is left out: turn text into paths first; 1 image is left out");
+}
+
 TEST(Svg, WhatIsFilledIsPaintedAllOver) {
     const std::string square = "<rect x='10' y='10' width='20' height='20' ";
     const auto lines = drawn(square + "fill='#102030'/>");
