@@ -26,6 +26,11 @@ paint bowl-outside bowl man-bu-ren-sheng "" --view 0,12
 paint plate plate plate-ornament "" --view 0,60
 paint car car car-pinstripe "--substrate clay" --view 25,12
 
+say "a drawing on the car's door"
+"$tuft" paint models/car.ply --strokes samples/strokes/roundel.svg --place 0,-270,118 --place-width 160 --substrate clay \
+  --atlas-size 8192 --project "$out/door.tuft"
+"$tuft" render "$out/door.tuft" -o "$out/door.png" --view 10,6 --zoom 3 --target 0,-270,130
+
 say "stroke sheet"
 "$tuft" paint models/sheet.ply --strokes samples/strokes/stroke-sheet.inkml --atlas-size 4096 \
   --project "$out/stroke-sheet.tuft"

@@ -54,30 +54,18 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
         const double part = static_cast<double>(i) / static_cast<double>(n), s = curve.front().along + part * length;
         const double press = hand.pressure * at_length(curve, s).pressure * smooth(part / std::max(1e-3, hand.settings.taper_in)) *
                              smooth((1 - part) / std::max(1e-3, hand.settings.taper_out));
-        CurvePlace place = at_length(curve, s);
+        const CurvePlace place = at_length(curve, s);
         // The hand runs straight ahead, and under a lean aside: the tuft is dragged behind it, along the curve.
         const Vec3 way = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;
         const stroke::Axes axes = stroke::axes_across(place.normal, hand.right, hand.down);
         const Vec2 ahead{glm::dot(way, axes.right), glm::dot(way, axes.down)};
-        if (press > 0 && glm::length(ahead) > 1e-9) {
-            const Vec2 lead = stroke::lead_of(hand.hold, press, hand.tilt, glm::normalize(ahead));
-            const CurvePlace led =
-                lay(query, place.position + lead.x * axes.right + lead.y * axes.down, place.normal, kReach + glm::length(lead));
-            place.position = led.position;
-            place.normal = led.normal;
-        }
-        stroke::LaidSample sample{.position = place.position, .normal = place.normal, .time = part * length / hand.settings.speed,
-                                  .pressure = press, .tilt = hand.tilt};
+        stroke::LaidSample sample{.position = place.position, .normal = place.normal, .right = axes.right, .down = axes.down,
+                                  .time = part * length / hand.settings.speed, .pressure = press, .tilt = hand.tilt};
+        if (press > 0 && glm::length(ahead) > 1e-9) sample.lead = stroke::lead_of(hand.hold, press, hand.tilt, glm::normalize(ahead));
         if (const auto on = query.closest_point(place.position, 0.01)) {
             sample.on = *on;
             sample.on_surface = glm::dot(on->normal, place.normal) > 0 && glm::distance(on->position, place.position) < 1e-3;
         }
-        const auto along = [&](const Vec3& v) {
-            const Vec3 d = v - glm::dot(v, place.normal) * place.normal;
-            return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
-        };
-        sample.right = along(hand.right);
-        sample.down = along(hand.down);
         samples.push_back(sample);
     }
     return stroke::hold(query, samples, hand.hold);

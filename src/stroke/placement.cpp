@@ -90,6 +90,15 @@ void level_out(const mesh::SurfaceQuery& query, std::span<const LaidSample> samp
     }
 }
 
+/// Height of the ground ahead over the plane at a place; 0 where there is none within as much.
+double rise(const mesh::SurfaceQuery& query, const Vec3& place, const Vec3& ahead, const Vec3& normal, double steady) {
+    const double most = glm::length(ahead);
+    const auto hit = exact_ray(query, place + ahead + most * normal, -normal, 2 * most);
+    if (!hit || glm::dot(hit->face_normal, normal) <= 0) return 0;
+    const double up = glm::dot(hit->position - place, normal);
+    return steady > 0 ? up + level_at(query, hit->position, normal, steady) : up;
+}
+
 }  // namespace
 
 double working_depth(const brush::Preset& preset) {
@@ -119,11 +128,16 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const L
         const Vec2 tilt = lean > 0 ? s.tilt * (lean / glm::length(s.tilt)) : Vec2{0};
         const Vec3 up = glm::normalize(ground.normal + std::tan(tilt.x) * axes.right +
                                        std::tan(tilt.y) * axes.down);
+        const Vec3 ahead = s.lead.x * axes.right + s.lead.y * axes.down;
+        double height = ground.height;
+        // A tuft that has not trailed yet touches where the hand is.
+        if (const double lead = glm::length(s.lead); along[i] < lead)
+            height += (1 - along[i] / lead) * rise(query, s.position, ahead, ground.normal, options.steady);
         const double depth = s.pressure > 0 ? s.pressure * options.working_depth : -options.hover;
         const Vec3 x = into_plane(axes.right, up);
         brush::Pose pose;
         pose.position =
-            s.position + (ground.height - depth) * ground.normal + options.tuft_length * up;
+            s.position + ahead + (height - depth) * ground.normal + options.tuft_length * up;
         pose.rotation = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up)));
         pose.time = s.time;
         poses.push_back(pose);
@@ -142,8 +156,15 @@ std::vector<brush::Pose> spatial_poses(const Trace& trace) {
 HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace,
                    const HoldOptions& options) {
     if (!trace.flat) return {{}, spatial_poses(trace)};
+    // Laid is where the ink is to be: over a hollow, the surface ahead leans otherwise.
+    const Trace led = lead_hand(trace, options);
+    const std::size_t touching = led.samples.size() - trace.samples.size();  // at the first sample's place
+    Trace ink = led;
+    for (std::size_t i = 0; i < ink.samples.size(); ++i) ink.samples[i].position = trace.samples[i - std::min(i, touching)].position;
     HandPath path;
-    path.laid = lay(query, lead_hand(trace, options));
+    path.laid = lay(query, ink);
+    for (std::size_t i = 0; i < ink.samples.size(); ++i)
+        path.laid.samples[i].lead = Vec2(led.samples[i].position - ink.samples[i].position);
     path.poses = hold(query, path.laid.samples, options);
     return path;
 }

@@ -25,6 +25,8 @@ struct LaidSample {
     double time = 0;         ///< seconds
     double pressure = 0;     ///< 0–1 of the working depth
     Vec2 tilt{0};            ///< radians, towards right, towards down
+    Vec2 lead{0};            ///< metres to the right and down, in the plane of the surface there, that the
+                             ///< hand is ahead of the ink
 };
 
 struct LaidTrace {
@@ -101,7 +103,8 @@ HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& 
 
 /// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the
 /// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
-/// pressure · working depth below the sample (hover above it where the pressure is 0).
+/// pressure · working depth below the sample (hover above it where the pressure is 0), ahead of it by the lead:
+/// where the ink is to lie, the hand does what it would do over the plane there.
 /// Normal and height are those of a steady hand: the mean of the normals within `steady` of
 /// travel that lie near it, and the height of the ground felt within that radius (`level_at`), a line through a
 /// quarter of it. It follows ridges and valleys, and passes over grooves narrower than half of the radius.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -94,6 +95,65 @@ TEST(LineWidth, AClosedLineHasNoGapWhereItsEndsMeet) {
     for (double& area : across) area /= 2 * std::numbers::pi * radius / 36;
     // As the straight line, and a fifth for heads and ends, which do not lie exactly over each other.
     for (const double w : across) EXPECT_NEAR(w, width, 0.2 * width + 6e-5);
+}
+
+/// Half of a cylinder's wall round the z axis with the radius of a bowl, seen from inside or from outside.
+Model wall(double radius, bool inside) {
+    constexpr int n = 120, m = 40;
+    mesh::PolygonSoup soup;
+    for (int j = 0; j <= m; ++j)
+        for (int i = 0; i <= n; ++i) {
+            const double a = std::numbers::pi * (i / double(n) - 0.5);
+            soup.points.push_back(radius * Vec3(std::cos(a), std::sin(a), 0) + Vec3(0, 0, 0.1 * (j / double(m) - 0.5)));
+        }
+    soup.polygon_start.push_back(0);
+    for (std::uint32_t j = 0; j < m; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = a + n + 1;
+            for (const auto& t : {std::array{a, b, c}, std::array{a, c, d}}) {
+                for (std::size_t k = 0; k < 3; ++k) soup.corners.push_back(t[inside ? 2 - k : k]);
+                soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+            }
+        }
+    ModelOptions options;
+    options.repair.metres_per_unit = 1;
+    options.unwrap.size = 2048;
+    return prepare_model(std::move(soup), options);
+}
+
+TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreLaidBothWays) {
+    // Slanting over the wall: the hand runs ahead to where the wall leans otherwise.
+    for (const bool inside : {false, true}) {
+        const Model model = wall(0.05, inside);
+        const mesh::SurfacePoint at = *model.query->closest_point({0.05, 0, 0});
+        std::array<double, 2> aside{};
+        for (const std::size_t way : {0, 1}) {
+            Stroke stroke = straight("wolf-medium", 0.0036, 0);
+            Placement& place = stroke.trace.placement;
+            place.origin = at.position;
+            place.right = glm::normalize(glm::cross(Vec3(0, 0, 1), at.normal));
+            place.down = glm::cross(place.right, at.normal);
+            for (TraceSample& s : stroke.trace.samples) s.position = s.position.x * (way ? 1.0 : -1.0) * Vec3(std::sqrt(0.5), std::sqrt(0.5), 0);
+            draw_to_width(stroke.trace, LineWidths(brush::load_preset("wolf-medium")));
+            Painting painting(model);
+            painting.paint(stroke);
+            const Vec3 across = (place.right - place.down) * std::sqrt(0.5);
+            double area = 0;
+            for (const std::uint32_t slot : painting.canvas().touched_slots())
+                if (const ink::Plane* plane = painting.canvas().plane(slot, 0))
+                    for (int t = 0; t < atlas::kTileTexels; ++t) {
+                        const double texel = model.texels.tiles[slot].area[t];
+                        const Vec3 p = Vec3(model.texels.position(slot, t)) - at.position;
+                        if (texel <= 0 || (*plane)[t] < 0.1f || glm::length(p) > 0.01) continue;
+                        area += texel;
+                        aside[way] += glm::dot(p, across) * texel;
+                    }
+            aside[way] /= area;
+        }
+        // A tenth of the width. The tuft lies over some 6 mm, along which the wall leans by 0.1 rad and more; a hand
+        // that was held over the surface ahead, not over the place of the ink, had the lines 1.1 mm aside.
+        for (const double a : aside) EXPECT_NEAR(a, 0, 3.6e-4) << inside;
+    }
 }
 
 TEST(LineWidth, BrushesComeInTheSizeThatDrawsIt) {
