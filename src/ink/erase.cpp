@@ -24,9 +24,8 @@ TUFT_CLONES void keep(float* __restrict factor, const float* __restrict film, co
                       const float* __restrict hides, const float* __restrict coverage, float rate) {
     for (int t = 0; t < kN; ++t) {
         const float f = coverage[t], e = hides[t];
-        const float x = f + (1 - f) * exp_minus(e);
-        const float hidden = -log_of(x > 1e-30f ? x : 1e-30f) / (e > 1e-3f ? e : 1.0f);
-        const float goal = e > 1e-3f ? hidden : 1 - f;
+        const float sum = f + exp_minus(e), x = sum < 1 ? sum : 1;
+        const float goal = -log_of(x > 1e-30f ? x : 1e-30f) / (e > 1e-3f ? e : 1e-3f);
         const float left = start[t] > film[t] ? film[t] / start[t] : 1;
         const float more = left - goal;
         const float after = left - (more > 0 ? more : 0) * rate;

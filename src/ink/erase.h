@@ -33,10 +33,11 @@ struct EraseParams {
 /// Takes one stamp's share of ink off a tile. With ρ = W / W₀ what is left of the start W₀,
 ///
 ///     dρ = −max(0, ρ − q(f)) (1 − exp(−strength ds / s0))
-///     q(f) = −ln(f + (1 − f) exp(−ε W₀)) / ε W₀,   q = 1 − f for ε W₀ = 0
+///     q(f) = −ln(min(1, f + exp(−ε W₀))) / ε W₀
 ///
-/// f the texel's coverage: under full coverage all goes, in whatever steps the eraser passes; a
-/// texel covered by half looks half uncovered in the end (see `deposit`), so edges are smooth.
+/// f the texel's coverage: under full coverage all goes, in whatever steps the eraser passes. A texel that looks
+/// covered by c = 1 − exp(−ε W₀) (see `deposit`) looks covered by c − f in the end: edges through ink are smooth,
+/// and at the rim of what is erased by its own stroke, where c = f, nothing is left.
 /// Pigments of all films, dry, open and soaked, and liquid go in proportion. Film never grows;
 /// less than 1e-6 film units, which nobody can see, go at once. Slots may be done by different
 /// threads; the bits do not depend on the instruction set. Returns what was taken away.

@@ -295,7 +295,7 @@ void Painting::draw_poses() {
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
         stamp.ink.capacity = std::max(h.substrate->capacity, static_cast<float>(ink::standing_film(h.ink.yield)));
         stamp.ds = h.step;
-        if (h.stroke.trace.erases) stamp.erases = 0.25 + 0.75 * touch.moment_factor;  // as ink is given
+        if (h.stroke.trace.erases) stamp.erases = 2 + 2 * touch.moment_factor;  // sooner than ink is given: tips rub off what tips left
         if (h.paste) {
             h.report.ink_given += h.lay_paste(stamp, touch.moment_factor);
             continue;

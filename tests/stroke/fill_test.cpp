@@ -172,6 +172,27 @@ TEST(Eraser, FilmOnlyFallsAndMoreSoUnderMorePressure) {
     }
 }
 
+/// How dark a texel looks, 0–1: what it hides.
+double looks(const Painting& p, std::uint32_t slot, int t) {
+    const ink::EraseStart start = ink::erase_start(p.canvas(), slot);
+    return 1 - std::exp(-static_cast<double>(start.hides[t]));
+}
+
+TEST(Eraser, TheSameStrokeLeavesNothingOfIt) {
+    Painting p(model());
+    p.paint(quick());
+    double before = 0, after = 0, worst = 0;
+    const auto each = [&](auto&& fn) {
+        for (const std::uint32_t slot : p.canvas().touched_slots())
+            for (int t = 0; t < atlas::kTileTexels; ++t) fn(looks(p, slot, t));
+    };
+    each([&](double look) { before += look; });
+    p.paint(eraser());
+    each([&](double look) { after += look, worst = std::max(worst, look); });
+    EXPECT_LT(after, 0.002 * before) << "4 % were left, all of it a line along the rim";
+    EXPECT_LT(worst, 0.25);
+}
+
 TEST(Eraser, WorksOnItsLayerAlone) {
     Painting p(model());
     p.paint(fill("carbon", {.film = 2}));
