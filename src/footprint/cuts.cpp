@@ -227,6 +227,7 @@ namespace {
 
 constexpr double kTrackStep = 2.5e-5;  // metres between places of a track
 constexpr double kAboutAsWide = 0.1; // of the widest section's half width
+constexpr double kFan = 0.35;        // slope at which lying hair leaves a lifted tuft: sideways it is held by friction, about that
 constexpr double kNarrowest = 0.2;   // of its width to which a section is drawn together
 
 /// The place's own value, between two of those that are there.
@@ -285,7 +286,8 @@ void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
     track.passing = trail.cuts[widest].a;
     for (std::size_t k = begin; k < end && place(k) < front; ++k) {
         Cut& cut = trail.cuts[k];
-        const double grow = std::max(1 + amount * (width_at(track, place(k), cut.a) / std::max(cut.a, 1e-9) - 1), kNarrowest);
+        const double laid = std::min(width_at(track, place(k), cut.a), trail.cuts[widest].a + kFan * (front - place(k)));
+        const double grow = std::max(1 + amount * (laid / std::max(cut.a, 1e-9) - 1), kNarrowest);
         cut.a *= grow;
         cut.b /= grow;
         // It lies as it lay: by the same part of its height.

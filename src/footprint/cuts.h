@@ -55,7 +55,8 @@ struct HairTracks {
 /// Spreads a tuft that no water holds to a point: hair that lies on the surface has the width that the tuft had
 /// where it is widest as that passed the place, as far as `amount` (0–1) goes, and lies as much flatter. `slid`:
 /// metres that hair went over the surface since the touch that `tracks` began with. A steady drag is as wide up to its
-/// tip; a tuft pressed straight down lies as it came. `length` is the tuft's, metres.
+/// tip; a tuft pressed straight down lies as it came; one that is lifted takes its stiff hair with it, which leaves it by
+/// a slope of 0.35 at most. `length` is the tuft's, metres.
 void splay(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount);
 
 /// The outline of a trail; without points when it is too small for one.

@@ -243,6 +243,35 @@ TEST(Hair, FollowsInItsTrack) {
     }
 }
 
+TEST(Hair, ComesWithTheTuftThatLiftsIt) {
+    // Drawn on, splayed hair is as wide at its ends as the belly; of a tuft whose last millimetres lie it fans out by
+    // 0.35 of what lies to either side at most, until it leaves with the tip.
+    const Pressed& p = pressed();
+    const double length = p.tuft.preset.length, drawn = length + 5e-3;
+    HairTracks tracks;
+    std::vector<Trail> now;
+    for (double slid = 0; slid <= drawn; slid += 1e-4) {
+        now = p.trails;
+        splay(now, tracks, slid, length, 1);
+    }
+    const double belly = now[0].cuts[12].a;
+    for (const double lies : {4e-3, 2e-3, 1e-3}) {
+        now = p.trails;
+        Trail& trail = now[0];
+        std::size_t n = 0;
+        while (n < trail.cuts.size() && (trail.along[0] - trail.along[n]) * length < lies) ++n;
+        trail.cuts.resize(n);
+        trail.along.resize(n);
+        trail.trunk = n;
+        double widest = 0;
+        for (Cut& cut : trail.cuts) widest = std::max(widest, cut.a *= 0.5);
+        ASSERT_LT(widest + 0.35 * lies, 0.8 * belly);
+        splay(now, tracks, drawn, length, 1);
+        for (const Cut& cut : trail.cuts) EXPECT_LE(cut.a, widest + 0.35 * lies + 1e-12) << lies;
+        EXPECT_GT(trail.cuts[n / 4].a, widest) << lies;  // it still fans out
+    }
+}
+
 TEST(Hair, ATrackIsAsWideWhateverTheSteps) {
     // Places of a track and steps of the hand used to beat: the tip of a steady drag went in and out every few dozen stamps.
     const Pressed& p = pressed();

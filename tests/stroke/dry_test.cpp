@@ -269,16 +269,17 @@ TEST(DryBrush, ThreadsOfInkDoNotBreakInDashes) {
     EXPECT_LT(dashes, 0.45 * all);
 }
 
-/// A dry goat tuft drawn 30 mm at 0.3 m/s; it slows down, turns back and comes up 9 mm within 35 ms.
-Stroke turned_back_and_lifted(std::uint64_t seed) {
+/// A goat tuft drawn 36 mm at 0.3 m/s, which comes up 9 mm within `lift` seconds; meanwhile the hand goes on for `on`
+/// metres and turns back.
+Stroke drawn_and_lifted(std::uint64_t seed, double lift, double on) {
     Stroke s = drag(seed);
     s.trace.brush = "goat-medium";
     s.settings.spacing = 1;
     s.trace.samples.clear();
     const double length = brush::load_preset(s.trace.brush).length;
-    for (int i = 0; i <= 180; ++i) {
-        const double t = 1e-3 * i, down = std::min(1.0, t / 0.02), left = std::max(0.0, t - 0.12) / 0.035;
-        const double x = 0.3 * (std::min(t, 0.12) + 0.0175 * left * (1 - left));
+    for (double t = 0; t <= 0.12 + 1.5 * lift; t += 1e-3) {
+        const double down = std::min(1.0, t / 0.02), left = std::max(0.0, t - 0.12) / lift;
+        const double x = 0.3 * std::min(t, 0.12) + 4 * on * left * (1 - left);
         const double depth = 7e-3 * down - 9e-3 * std::min(1.0, left * left);
         s.trace.samples.push_back({.time = t, .position = {x - 0.022, 0, length - depth}, .rotation = {1, 0, 0, 0}});
     }
@@ -318,17 +319,21 @@ double breadth_at_end(const std::vector<std::vector<bool>>& rows, double length)
 
 TEST(DryBrush, ALiftedTuftLeavesWithItsTip) {
     const Model model = sheet();
-    for (std::uint64_t seed = 1; seed < 5; ++seed) {
-        Stroke wiped = wipe(0.6, seed), s = turned_back_and_lifted(seed);
-        wiped.trace.brush = s.trace.brush;
-        s.settings.dip = "carry";
-        Painting painting(model);
-        painting.paint(wiped);
-        painting.paint(s);
-        // Its tip is 0.9 mm wide with its film, and there are texels on both sides. Hair that followed the hand in place
-        // of its own track ended as a comb 3.2-3.8 mm wide, in rows of dots.
-        EXPECT_LT(breadth_at_end(inked(painting), 1e-3), 1.1e-3) << seed;
-    }
+    const struct {
+        double lift, on;
+    } hands[] = {{0.035, 1.3e-3}, {0.3, 0}};
+    for (const auto& hand : hands)
+        for (std::uint64_t seed = 1; seed < 4; ++seed) {
+            Stroke wiped = wipe(0.6, seed), s = drawn_and_lifted(seed, hand.lift, hand.on);
+            wiped.trace.brush = s.trace.brush;
+            s.settings.dip = "carry";
+            Painting painting(model);
+            painting.paint(wiped);
+            painting.paint(s);
+            // Its tip is 0.9 mm wide with its film, and there are texels on both sides. Hair that followed the hand in
+            // place of its own track ended as a comb 3.2-3.8 mm wide, in rows of dots.
+            EXPECT_LT(breadth_at_end(inked(painting), 1e-3), 1.1e-3) << seed << " in " << hand.lift << " s";
+        }
 }
 
 TEST(DryBrush, PaintingDriesTheTuft) {
