@@ -1,8 +1,11 @@
 #include "atlas/file_uvs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <span>
 
 #include "atlas/chart_mesh.h"
 #include "atlas/coverage.h"
@@ -50,18 +53,66 @@ Bounds bounds_of(const Atlas& atlas, const std::vector<std::uint32_t>& chart) {
     return b;
 }
 
-/// Turns over charts that lie mirrored.
+/// Turns over charts that lie mirrored: a page of nothing else as a whole, which leaves its charts as
+/// they lie to each other, others each in its place.
 void turn_mirrored(Atlas& atlas, const Charts& charts) {
-    for (const auto& chart : charts) {
+    const double k = atlas.pages_per_side();
+    std::vector<std::uint8_t> mirrored(charts.size());
+    std::vector<Bounds> bounds(charts.size());
+    std::map<double, bool> all;  // by page: no chart of it is not
+    const auto column = [&](std::size_t c) { return std::floor(0.5 * k * (bounds[c].lo.x + bounds[c].hi.x)); };
+    const auto page = [&](std::size_t c) { return column(c) + k * std::floor(0.5 * k * (bounds[c].lo.y + bounds[c].hi.y)); };
+    for (std::size_t c = 0; c < charts.size(); ++c) {
         double area = 0;
-        for (const std::uint32_t t : chart) area += signed_area(atlas, t);
-        if (area >= 0) continue;
-        const Bounds b = bounds_of(atlas, chart);
-        const auto lo = static_cast<float>(b.lo.x), hi = static_cast<float>(b.hi.x);
-        for_corners(chart, [&](std::size_t c) {
-            atlas.corner_uvs[c].x = std::clamp(lo + hi - atlas.corner_uvs[c].x, lo, hi);
+        for (const std::uint32_t t : charts[c]) area += signed_area(atlas, t);
+        mirrored[c] = area < 0;
+        bounds[c] = bounds_of(atlas, charts[c]);
+        bool& whole = all.try_emplace(page(c), true).first->second;
+        whole = whole && mirrored[c];
+    }
+    for (std::size_t c = 0; c < charts.size(); ++c) {
+        if (!mirrored[c]) continue;
+        const bool whole = all.at(page(c));
+        const auto lo = static_cast<float>(whole ? column(c) / k : bounds[c].lo.x);
+        const auto hi = static_cast<float>(whole ? (column(c) + 1) / k : bounds[c].hi.x);
+        for_corners(charts[c], [&](std::size_t i) {
+            atlas.corner_uvs[i].x = std::clamp(lo + hi - atlas.corner_uvs[i].x, lo, hi);
         });
     }
+}
+
+/// Triangles that lie where another lies, corner upon corner.
+std::size_t triangles_on_others(std::span<const Vec2f> uvs) {
+    std::vector<std::array<float, 6>> places(uvs.size() / 3);
+    for (std::size_t t = 0; t < places.size(); ++t) {
+        std::array<std::array<float, 2>, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i) corners[i] = {uvs[3 * t + i].x, uvs[3 * t + i].y};
+        std::sort(corners.begin(), corners.end());
+        for (std::size_t i = 0; i < 3; ++i) std::copy(corners[i].begin(), corners[i].end(), &places[t][2 * i]);
+    }
+    std::sort(places.begin(), places.end());
+    std::size_t n = 0;
+    for (std::size_t t = 0; t < places.size(); ++t)
+        n += (t > 0 && places[t] == places[t - 1]) || (t + 1 < places.size() && places[t] == places[t + 1]);
+    return n;
+}
+
+/// Why UVs of which some lie upon others cannot be kept; `read`: as they were before mirrored
+/// charts were turned over.
+std::string why_they_overlap(const Atlas& atlas, std::vector<Vec2f> read, std::size_t texels) {
+    if (const std::size_t n = triangles_on_others(read); n > 0)
+        return std::to_string(n) + " triangles lie where others do, as halves of a symmetric model that share " +
+               "their part of the texture";
+    std::size_t turned = 0;
+    for (std::size_t c = 0; c < read.size(); c += 3) {
+        const Vec2 a(read[c + 1] - read[c]), b(read[c + 2] - read[c]);
+        if (a.x * b.y - a.y * b.x >= 0) continue;
+        std::swap(read[c + 1], read[c + 2]);
+        ++turned;
+    }
+    if (turned > 0 && cover(read, {}, atlas.size).twice == 0)
+        return "charts lie mirrored between others, which they would overlap turned over";
+    return "they overlap in " + std::to_string(texels) + " texels";
 }
 
 /// Finds the charts that the UVs make and numbers them in the atlas.
@@ -206,6 +257,7 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
     atlas.from_file = true;
     if (std::string what = give_size(mesh, options, atlas); !what.empty())
         return fault(std::move(what));
+    const std::vector<Vec2f> read = atlas.corner_uvs;
     turn_mirrored(atlas, charts);
     if (atlas.pages > 1) snap_charts(mesh, atlas, charts);
     std::size_t roomless = 0, flipped = 0;
@@ -215,11 +267,11 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
         flipped += area < 0;
     }
     if (roomless > 0) return fault(std::to_string(roomless) + " triangles have no room in them");
+    if (flipped > 0 && triangles_on_others(read) > 0) return fault(why_they_overlap(atlas, read, 0));
     if (flipped > 0) return fault(std::to_string(flipped) + " triangles are flipped");
 
     const Coverage coverage = cover(atlas.corner_uvs, {}, atlas.size);
-    if (coverage.twice > 0)
-        return fault("they overlap in " + std::to_string(coverage.twice) + " texels");
+    if (coverage.twice > 0) return fault(why_they_overlap(atlas, read, coverage.twice));
     const std::vector<std::uint8_t> seam = uv_seams(twin_half_edges(mesh), atlas.corner_uvs);
     const int gap = smallest_gap(seam, atlas);
     const int least = std::min<int>(options.uvs == UvPolicy::keep ? 1 : 2, int(options.gutter));

@@ -42,6 +42,72 @@ TEST(FileUvs, ThatAreMirroredAreTurnedOver) {
     EXPECT_EQ(u.report.overlapping_texels, 0u);
 }
 
+/// A square sheet of 0.1 m and its mirror image above it, which has the same UVs plus (`page`, 0), as a
+/// mirror modifier leaves them.
+TriangleMesh mirrored_sheets(const std::function<Vec2f(const Vec2f&)>& uv, float page) {
+    std::vector<Vec3f> p;
+    test::Triangles t;
+    std::vector<Vec2f> uvs;
+    const Vec2f corners[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (const std::uint32_t image : {0u, 1u}) {
+        for (const Vec2f& c : corners)
+            p.emplace_back(0.1f * (image ? 1 - c.x : c.x), 0.1f * c.y, 0.1f * float(image));
+        for (std::array<std::uint32_t, 3> f : {std::array{0u, 1u, 2u}, std::array{0u, 2u, 3u}}) {
+            if (image) std::swap(f[1], f[2]);
+            t.push_back({4 * image + f[0], 4 * image + f[1], 4 * image + f[2]});
+            for (const std::uint32_t v : f) uvs.push_back(uv(corners[v]) + Vec2f(page * float(image), 0));
+        }
+    }
+    TriangleMesh m = test::finish_mesh(p, t);
+    m.corner_uvs = std::move(uvs);
+    return m;
+}
+
+std::string why_not_kept(const TriangleMesh& m) {
+    UnwrapOptions options;
+    options.size = 512;
+    options.uvs = UvPolicy::keep;
+    try {
+        unwrap(m, options);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(FileUvs, OfHalvesThatShareTheirTextureAreRefusedForThat) {
+    const TriangleMesh m = mirrored_sheets([](const Vec2f& c) { return Vec2f(0.2f) + 0.5f * c; }, 0);
+    EXPECT_NE(why_not_kept(m).find("4 triangles lie where others do"), std::string::npos) << why_not_kept(m);
+}
+
+TEST(FileUvs, OnAPageOfMirroredChartsKeepTheirPlacesToEachOther) {
+    // The two triangles of each sheet lie apart, those of the image mirrored on page 1002: turned over
+    // each by itself they would touch.
+    TriangleMesh m = mirrored_sheets([](const Vec2f& c) { return Vec2f(0.05f) + 0.8f * c; }, 1);
+    for (const std::size_t t : {1u, 3u})
+        for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) m.corner_uvs[c] += Vec2f(-0.02f, 0.02f);
+    UnwrapOptions options;
+    options.size = 512;
+    options.uvs = UvPolicy::keep;
+    const Unwrapped u = unwrap(m, options);
+    EXPECT_EQ(u.atlas.pages, 2u);
+    EXPECT_EQ(u.report.charts, 4u);
+    EXPECT_EQ(u.report.flips, 0u);
+    EXPECT_EQ(u.report.overlapping_texels, 0u);
+}
+
+TEST(FileUvs, MirroredBetweenOthersAreRefusedForThat) {
+    // A triangle of the sheet and one of its image share a square, as lightmaps have them: turned over,
+    // the mirrored one lies on the other.
+    TriangleMesh m = mirrored_sheets([](const Vec2f& c) { return 0.4f * c; }, 0);
+    for (std::size_t c = 0; c < 12; ++c) {
+        const std::size_t t = c / 3;
+        if (t == 1 || t == 3) m.corner_uvs[c] += Vec2f(0, 0.05f);
+        if (t == 0 || t == 3) m.corner_uvs[c] += Vec2f(0.5f, 0.5f);
+    }
+    EXPECT_NE(why_not_kept(m).find("mirrored between others"), std::string::npos) << why_not_kept(m);
+}
+
 TEST(FileUvs, ThatCannotServeAreRenewed) {
     TriangleMesh m = test::cylinder();
     const std::function<Vec2f(const Vec3f&)> bad[] = {
