@@ -63,7 +63,7 @@ Painting::Hand::Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model&
 }
 
 void Painting::Hand::flush() {
-    const double given = stamper.flush();
+    const double given = stamper.flush(film_progress);
     float sum = 0;
     for (const float t : touch) sum += t;
     for (float& t : touch) t /= sum;

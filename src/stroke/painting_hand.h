@@ -32,7 +32,7 @@ struct Painting::Hand {
     std::vector<brush::Pose> poses;
     StrokeReport report;
     ProgressFn progress;   // asked before every stamp whether to go on,
-    ProgressFn film_progress;  // and before every step of the film meanwhile
+    ProgressFn film_progress;  // and before every step of the film meanwhile, every few hundred tiles of a batch
     double done = 0;       // of the samples
     brush::TuftState state;
     double last_time = 0;

@@ -43,7 +43,8 @@ bool Stamper::add(Stamp stamp) {
     return batch_.size() >= kBatch;
 }
 
-double Stamper::flush() {
+double Stamper::flush(const ProgressFn& going_on) {
+    constexpr std::size_t kTilesPerQuestion = 512;
     if (batch_.empty()) return 0;
     const footprint::Surface surface = model_.surface();
     parallel_for(batch_.size(), 2, [&](std::size_t begin, std::size_t end) {
@@ -84,7 +85,7 @@ double Stamper::flush() {
     for (std::size_t i = 0; i < batch_.size(); ++i) laws[i] = ink::deposit_law(batch_[i].ink, batch_[i].ds);
     std::vector<double> given(order.size(), 0.0);
     std::vector<ink::Amounts> erased(erases ? order.size() : 0);
-    parallel_for(runs.size() - 1, 4, [&](std::size_t begin, std::size_t end) {
+    const auto lay_tiles = [&](std::size_t begin, std::size_t end) {
         alignas(64) std::array<float, atlas::kTileTexels> exposure;
         footprint::Unpacked unpacked;
         for (std::size_t r = begin; r < end; ++r) {
@@ -110,7 +111,12 @@ double Stamper::flush() {
                 given[k] = ink::deposit(canvas_, slot, exposure, tile.area, stamp.ink, laws[job.stamp]);
             }
         }
-    });
+    };
+    for (std::size_t from = 0; from + 1 < runs.size(); from += kTilesPerQuestion) {
+        report(going_on, "painting", 0);
+        const std::size_t n = std::min(kTilesPerQuestion, runs.size() - 1 - from);
+        parallel_for(n, 4, [&](std::size_t begin, std::size_t end) { lay_tiles(from + begin, from + end); });
+    }
     batch_.clear();
     for (const ink::Amounts& e : erased) erased_ += e;
     double sum = 0;

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/progress.h"
 #include "footprint/stamp.h"
 #include "ink/deposit_mixed.h"
 #include "ink/erase.h"
@@ -43,8 +44,9 @@ class Stamper {
 
     /// Takes a stamp; true when the batch is full and must be flushed.
     bool add(Stamp stamp);
-    /// Lays down what was added. Returns the ink given, film·m².
-    double flush();
+    /// Lays down what was added. Returns the ink given, film·m². Asks `going_on` every few hundred
+    /// tiles; a stop leaves tiles half done, which `take_before` has as they were.
+    double flush(const ProgressFn& going_on = {});
 
     /// What erasing stamps have taken away since the start.
     const ink::Amounts& erased() const { return erased_; }

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "ink/composite.h"
 #include "sheet.h"
+#include "stroke/stamper.h"
 
 namespace tuft::stroke {
 namespace {
@@ -156,6 +157,23 @@ TEST(Painting, CancelLeavesNothingBehind) {
     painting.cancel();
     EXPECT_EQ(painting.canvas().hash(), before);
     EXPECT_EQ(painting.journal().strokes().size(), 1u);
+}
+
+TEST(Painting, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {
+    const Model model = sheet();
+    Painting painting(model);
+    Stroke wide = line("goat-large*2", 12e-3, make_frame({0, 0, 0}, {0, 0, 1}, {1, 0, 0}));
+    wide.settings.spacing = 3;  // coarse is enough here, and quick
+    const std::uint64_t before = painting.canvas().hash();
+    int asked = 0;
+    const StrokeReport report = Painting(model).paint(wide, [&](std::string_view, double) { return ++asked > 0; });
+    EXPECT_GT(asked, static_cast<int>(report.stamps + report.stamps / Stamper::kBatch)) << "within batches too";
+    for (int last = asked / 2; last < asked / 2 + 12; ++last) {  // a batch and more
+        int n = 0;
+        EXPECT_THROW(painting.paint(wide, [&](std::string_view, double) { return ++n < last; }), Cancelled);
+        EXPECT_EQ(n, last) << "it stops at once";
+        EXPECT_EQ(painting.canvas().hash(), before);
+    }
 }
 
 TEST(Painting, AStrokeInTheAirTouchesNothingAndSaysHowFar) {
