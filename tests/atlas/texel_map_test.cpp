@@ -78,7 +78,9 @@ TEST(TexelMap, PositionsAndAreasAreThoseOfTheSheet) {
             bool inside = true;  // not beside a seam
             for (int k = 0; k < 25; ++k) inside = inside && texel_ref(map, x + k % 5 - 2, y + k / 5 - 2).valid();
             // Snapping to 1/4096 texel over grid cells of 7.5 texels.
-            if (inside) EXPECT_NEAR(tile.area[t] / (texel * texel), 1, 1e-3);
+            if (inside) {
+                EXPECT_NEAR(tile.area[t] / (texel * texel), 1, 1e-3);
+            }
         }
     }
     EXPECT_NEAR(map.texel_size, texel, 1e-3 * texel);
