@@ -10,10 +10,10 @@ using test::Window;
 // Opens, unwraps, paints, undoes, is killed, recovers, saves and exports; the texels are those of a
 // replay, and those that `tuft paint` makes of the exported strokes, to the bit, and the exported model is valid.
 TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
-    open_studio(TUFT_SOURCE "/models/plate.ply");
+    open_studio(TUFT_SOURCE "/models/sphere.ply");
     std::this_thread::sleep_for(std::chrono::seconds(2));
     // Enter agrees to what the dialog proposes, once it is there.
-    wait_for("the model", [&] { return keys("Return"), titled("plate"); });
+    wait_for("the model", [&] { return keys("Return"), titled("sphere"); });
     wait_for("the project", [&] { return kept() == 0; });
     stroke({{460, 300}, {520, 330}, {560, 300}});
     wait_for("a stroke", [&] { return kept() == 1; });
@@ -26,7 +26,7 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     end(studio_, SIGKILL);
 
     open_studio("");
-    wait_for("the recovery", [&] { return keys("Return"), titled("plate"); });
+    wait_for("the recovery", [&] { return keys("Return"), titled("sphere"); });
     std::this_thread::sleep_for(std::chrono::seconds(1));
     stroke({{450, 280}, {500, 290}});
     wait_for("three strokes", [&] { return kept() == 3; });
@@ -62,7 +62,7 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     EXPECT_EQ(replayed["strokes"], 3);
     EXPECT_EQ(replayed["canvas_hash"], test::stored_hash(path("work.tuft")));
     const std::string size = std::to_string(io::Project::open(path("work.tuft")).model().atlas.size);
-    const nlohmann::json painted = tuft("paint " TUFT_SOURCE "/models/plate.ply --strokes '" + path("work.inkml") + "' --atlas-size " + size);
+    const nlohmann::json painted = tuft("paint " TUFT_SOURCE "/models/sphere.ply --strokes '" + path("work.inkml") + "' --atlas-size " + size);
     EXPECT_EQ(painted["strokes"].size(), 3u);
     EXPECT_EQ(painted["canvas_hash"], test::stored_hash(path("work.tuft")));
     const int valid = std::system(("bash '" TUFT_SOURCE "/tests/io/validate_glb.sh' '" TUFT_SOURCE "/build/node' '" + path("work.glb") + "' >'" + path("valid") + "' 2>&1").c_str());
