@@ -48,12 +48,11 @@ CurvePlace at_length(std::span<const CurvePlace> curve, double s) {
 std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<const CurvePlace> curve, const CurveHand& hand) {
     const double length = curve.back().along - curve.front().along, step = std::max(hand.settings.speed * kSample, length / kMostSamples);
     const auto n = static_cast<std::size_t>(std::max(2.0, std::ceil(length / step)));
-    const auto smooth = [](double x) { x = std::clamp(x, 0.0, 1.0); return x * x * (3 - 2 * x); };
     std::vector<stroke::LaidSample> samples;
     for (std::size_t i = 0; i <= n; ++i) {
         const double part = static_cast<double>(i) / static_cast<double>(n), s = curve.front().along + part * length;
-        const double press = hand.pressure * at_length(curve, s).pressure * smooth(part / std::max(1e-3, hand.settings.taper_in)) *
-                             smooth((1 - part) / std::max(1e-3, hand.settings.taper_out));
+        const double press = hand.pressure * at_length(curve, s).pressure * stroke::smooth_step(part / std::max(1e-3, hand.settings.taper_in)) *
+                             stroke::smooth_step((1 - part) / std::max(1e-3, hand.settings.taper_out));
         const CurvePlace place = at_length(curve, s);
         // The hand runs straight ahead, and under a lean aside: the tuft is dragged behind it, along the curve.
         const Vec3 way = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;

@@ -171,16 +171,15 @@ Ground feel(const SurfaceQuery& query, const Ground& guess, double radius, doubl
 
 double level_at(const SurfaceQuery& query, const Vec3& position, const Vec3& normal, double radius) {
     constexpr int kScales = 3;
-    const auto smooth = [](double x) { x = std::clamp(x, 0.0, 1.0); return x * x * (3 - 2 * x); };
     double height = 0, left = 1, before = 0;
     for (int scale = 0; scale < kScales; ++scale) {
         const Ground ground = feel(query, {.position = position, .normal = normal, .heading = any_across(normal)},
                                    radius / double(1 << scale), kBelow);
         if (!ground.found) continue;
         const double up = glm::dot(ground.position - position, normal);
-        if (before > 0) left *= smooth((kSame - ground.misfit / before) / (kSame - kBetter));
+        if (before > 0) left *= smooth_step((kSame - ground.misfit / before) / (kSame - kBetter));
         height += left * (up - height);
-        left *= smooth((ground.misfit / radius - kTrusted) / (kDoubted - kTrusted));
+        left *= smooth_step((ground.misfit / radius - kTrusted) / (kDoubted - kTrusted));
         before = ground.misfit;
         if (left <= 0) break;
     }

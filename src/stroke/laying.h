@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <span>
+#include <vector>
+
 #include "mesh/surface_query.h"
 #include "stroke/placement.h"
 
@@ -19,6 +23,20 @@ Vec3 into_plane(const Vec3& direction, const Vec3& normal);
 /// the plane of the triangle, in double.
 std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, const Vec3& origin,
                                             const Vec3& direction, double t_max);
+
+/// Metres from the first sample to each along straight lines; of samples with a `position`.
+template <class Sample>
+std::vector<double> travelled(std::span<const Sample> samples) {
+    std::vector<double> along(samples.size(), 0);
+    for (std::size_t i = 1; i < samples.size(); ++i) along[i] = along[i - 1] + glm::length(samples[i].position - samples[i - 1].position);
+    return along;
+}
+
+/// 3x² − 2x³ between 0 and 1, flat beyond.
+inline double smooth_step(double x) {
+    x = std::clamp(x, 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+}
 
 /// What a sample brings with it from the hand.
 LaidSample hand_data(const TraceSample& sample);

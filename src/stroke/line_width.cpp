@@ -5,6 +5,7 @@
 #include <span>
 
 #include "brush/sweep.h"
+#include "stroke/laying.h"
 #include "stroke/placement.h"
 
 namespace tuft::stroke {
@@ -59,21 +60,10 @@ constexpr double kEnd = 1.5;    // line widths over which a hand sets down and l
 constexpr double kMost = 0.25;  // of the line at most
 constexpr double kPoint = 0.4;  // part of the width that the line has at its very ends
 
-double smooth(double x) {
-    x = std::clamp(x, 0.0, 1.0);
-    return x * x * (3 - 2 * x);
-}
-
-std::vector<double> travelled(std::span<const TraceSample> samples) {
-    std::vector<double> along(samples.size(), 0);
-    for (std::size_t i = 1; i < samples.size(); ++i) along[i] = along[i - 1] + glm::length(samples[i].position - samples[i - 1].position);
-    return along;
-}
-
 /// A line that ends where it began goes on along itself for `more` metres, at the same pace.
 void overlap(Trace& trace, double more) {
     std::vector<TraceSample>& s = trace.samples;
-    const std::vector<double> along = travelled(s);
+    const std::vector<double> along = travelled<TraceSample>(s);
     const std::size_t n = s.size();
     if (n < 4 || glm::length(s.back().position - s.front().position) > 1e-6 * along.back()) return;
     const double ends = s.back().time, begins = s.front().time;
@@ -91,17 +81,17 @@ void overlap(Trace& trace, double more) {
 
 void draw_to_width(Trace& trace, const LineWidths& widths) {
     if (trace.samples.empty()) return;
-    const double whole = travelled(trace.samples).back();
+    const double whole = travelled<TraceSample>(trace.samples).back();
     const double end = std::min(kEnd * trace.line_width, kMost * whole);
     overlap(trace, 2 * end);
-    const std::vector<double> along = travelled(trace.samples);
+    const std::vector<double> along = travelled<TraceSample>(trace.samples);
     const auto part = [&](const TraceSample& s) { return s.pressure / kMiddle; };
     const bool head = part(trace.samples.front()) > kPoint, tail = part(trace.samples.back()) > kPoint;  // else it runs out by itself
     for (std::size_t i = 0; i < along.size(); ++i) {
         double near = 1e30;
         if (head) near = along[i];
         if (tail) near = std::min(near, along.back() - along[i]);
-        const double ends = end > 0 ? std::lerp(kPoint, 1.0, smooth(near / end)) : 1;
+        const double ends = end > 0 ? std::lerp(kPoint, 1.0, smooth_step(near / end)) : 1;
         trace.samples[i].pressure = widths.pressure(trace.line_width * std::min(1.0, part(trace.samples[i])) * ends);
     }
 }

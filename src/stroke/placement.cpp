@@ -17,13 +17,6 @@ struct Held {
     double height = 0;  ///< metres above the sample, along `normal`
 };
 
-std::vector<double> travelled(std::span<const LaidSample> samples) {
-    std::vector<double> along(samples.size(), 0);
-    for (std::size_t i = 1; i < samples.size(); ++i)
-        along[i] = along[i - 1] + glm::length(samples[i].position - samples[i - 1].position);
-    return along;
-}
-
 /// The mean of the normals within `steady` of travel, as far to one side as to the other, so that ends do not pull.
 std::vector<Held> steady_normals(std::span<const LaidSample> samples, std::span<const double> along, double steady) {
     constexpr std::size_t kMost = 64;  // samples looked at to each side
