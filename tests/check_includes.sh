@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fails when a file in src/ includes a room that does not lie below its own, or a
+# Fails when a file in src/ includes a room, or a part of the studio, that does not lie below its own, or a
 # third-party header outside the room that may use it.
 set -u
 src=$1
@@ -14,6 +14,14 @@ while IFS=: read -r file line; do
     complain "$file: $line: $room (level ${level[$room]}) must not include $target (level ${level[$target]})"
   fi
 done < <(grep -rE --include='*.h' --include='*.cpp' '^#include "[a-z_]+/' "$src")
+# Within the studio: hand and keys, what is seen, what is kept, and over them the panels.
+declare -A storey=([input]=0 [view]=1 [document]=2)
+while IFS=: read -r file line; do
+  own=$(sed -E 's#.*/app/([a-z]+)/.*#\1#' <<<"$file")
+  target=$(sed -E 's#.*"app/([a-z_]+)[/.].*#\1#' <<<"$line")
+  [ -n "${storey[$own]:-}" ] || continue
+  [ "${storey[$target]:-9}" -le "${storey[$own]}" ] || complain "$file: $line: app/$own must not include app/$target"
+done < <(grep -rE --include='*.h' --include='*.cpp' '^#include "app/' "$src/app")
 # wall PATTERN ALLOWED...: headers that match may only be included by files that match one of ALLOWED.
 wall() {
   local pattern=$1; shift

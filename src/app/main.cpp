@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
-#include "app/display.h"
-#include "app/imgui_feed.h"
-#include "app/script.h"
+#include "app/input/imgui_feed.h"
+#include "app/script/script.h"
 #include "app/studio.h"
+#include "app/view/display.h"
 
 namespace {
 

@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "app/curve.h"
-#include "app/file_dialog.h"
-#include "app/hand.h"
-#include "app/keys.h"
-#include "app/opening.h"
-#include "app/painter.h"
-#include "app/pictures.h"
-#include "app/state_folder.h"
-#include "app/ui.h"
-#include "app/viewport.h"
-#include "app/writing.h"
+#include "app/document/curve.h"
+#include "app/document/opening.h"
+#include "app/document/painter.h"
+#include "app/document/pictures.h"
+#include "app/document/state_folder.h"
+#include "app/document/writing.h"
+#include "app/input/hand.h"
+#include "app/input/keys.h"
+#include "app/panels/file_dialog.h"
+#include "app/panels/ui.h"
+#include "app/view/viewport.h"
 #include "render/gl_scene.h"
 
 namespace tuft::app {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <span>
 
-#include "app/imgui_feed.h"
-#include "app/model_colours.h"
-#include "app/panels.h"
+#include "app/input/imgui_feed.h"
+#include "app/panels/panels.h"
+#include "app/view/model_colours.h"
 #include "core/files.h"
 
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/events.h"
+#include "app/input/events.h"
 #include "app/session.h"
 #include "brush/tuft.h"
 #include "render/gl_scene.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/gtx/quaternion.hpp>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
 #include "app/studio.h"
 
 /// The atlas beside the model; moving strokes over the model.

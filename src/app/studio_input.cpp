@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
 #include "app/studio.h"
 
 /// What the window does with a person's events: painting, looking round, keys.

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
 #include "app/studio.h"
 
 /// Making masks on the model; the eyedropper.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
 #include "app/studio.h"
 #include "brush/skin.h"
 #include "ink/composite.h"

@@ -1,11 +1,11 @@
-#include "app/curve.h"
+#include "app/document/curve.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "app/texture.h"
+#include "app/view/texture.h"
 #include "models.h"
 #include "stroke/lead.h"
 

@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "app/imgui_feed.h"
-#include "app/script.h"
+#include "app/input/imgui_feed.h"
+#include "app/script/script.h"
 #include "core/error.h"
 
 namespace tuft::app {

@@ -1,9 +1,9 @@
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
-#include "app/display.h"
-#include "app/texture.h"
-#include "app/viewport.h"
+#include "app/view/display.h"
+#include "app/view/texture.h"
+#include "app/view/viewport.h"
 #include "core/random.h"
 #include "models.h"
 #include "render/gl_view.h"

@@ -1,11 +1,11 @@
-#include "app/hand.h"
+#include "app/input/hand.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "app/viewport.h"
+#include "app/view/viewport.h"
 #include "models.h"
 
 namespace tuft::app {

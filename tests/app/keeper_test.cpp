@@ -1,4 +1,4 @@
-#include "app/keeper.h"
+#include "app/document/keeper.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

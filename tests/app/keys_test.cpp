@@ -1,8 +1,8 @@
-#include "app/keys.h"
+#include "app/input/keys.h"
 
 #include <gtest/gtest.h>
 
-#include "app/events.h"
+#include "app/input/events.h"
 
 namespace tuft::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/painter.h"
+#include "app/document/painter.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

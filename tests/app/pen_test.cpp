@@ -1,10 +1,10 @@
-#include "app/pen_samples.h"
+#include "app/input/pen_samples.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>
 
-#include "app/hand.h"
-#include "app/imgui_feed.h"
+#include "app/input/hand.h"
+#include "app/input/imgui_feed.h"
 #include "core/units.h"
 #include "models.h"
 

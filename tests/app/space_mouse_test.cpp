@@ -1,4 +1,4 @@
-#include "app/space_mouse.h"
+#include "app/input/space_mouse.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

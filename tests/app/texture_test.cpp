@@ -1,4 +1,4 @@
-#include "app/texture.h"
+#include "app/view/texture.h"
 
 #include <gtest/gtest.h>
 

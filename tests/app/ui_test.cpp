@@ -1,4 +1,4 @@
-#include "app/ui.h"
+#include "app/panels/ui.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>
@@ -65,7 +65,7 @@ TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
     const std::regex shown(R"re((?:button|choice|toggle|slider|heading|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
     const std::regex words("[a-z]{3}");
     std::size_t seen = 0;
-    for (const auto& file : std::filesystem::directory_iterator(TUFT_SOURCE "/src/app")) {
+    for (const auto& file : std::filesystem::recursive_directory_iterator(TUFT_SOURCE "/src/app")) {
         std::ifstream in(file.path());
         const std::string text{std::istreambuf_iterator<char>(in), {}};
         for (std::sregex_iterator it(text.begin(), text.end(), shown), end; it != end; ++it) {

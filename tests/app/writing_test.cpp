@@ -1,4 +1,4 @@
-#include "app/writing.h"
+#include "app/document/writing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,160 @@
+#include "app/document/keeper.h"
+#include "io/looks.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tuft::app {
+
+template <class Action>
+void Keeper::attempt(const Action& action) {
+    try {
+        action();
+        if (!behind_ && !wanted_) trouble_.clear();
+    } catch (const std::exception& error) {
+        trouble_ = error.what();
+    }
+}
+
+template <class Action>
+void Keeper::change(const Action& action) {
+    attempt([&] {
+        if (!project_) return;
+        const bool was = std::exchange(behind_, true);
+        action();
+        behind_ = was;
+    });
+}
+
+void Keeper::rewrite(const std::string& source, const FileFrame& frame, stroke::Painting& painting) {
+    behind_ = true;
+    if (std::string fault = start(wanted_ ? wanted_->path : path(), source, frame, painting); !fault.empty()) trouble_ = std::move(fault);
+}
+
+void Keeper::start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame, const std::string& fault) {
+    wanted_ = {path, source, frame, fault};
+    trouble_ = fault;
+}
+
+void Keeper::take_presets(const io::Project& project) {
+    for (const auto& [name, toml] : project.brushes()) brushes_[name] = toml;
+    for (const auto& [name, toml] : project.inks()) inks_[name] = toml;
+}
+
+void Keeper::adopt(io::Project project) {
+    take_presets(project);
+    project_ = std::move(project);
+    wanted_.reset();
+    pending_.clear();
+    behind_ = false;
+}
+
+std::string Keeper::start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
+                          stroke::Painting& painting) {
+    try {
+        const stroke::Model& model = painting.model();
+        io::Project project = io::Project::create(path, {.source = source,
+                                                         .frame = frame,
+                                                         .mesh = *model.mesh,
+                                                         .atlas = model.atlas,
+                                                         .substrate = ink::substrate_toml(painting.painted_on())},
+                                                  [&](io::Project& fresh) {
+                                                      io::store_looks(fresh, painting);
+                                                      for (const auto& preset : brushes_) fresh.put_brush(preset);
+                                                      for (const auto& preset : inks_) fresh.put_ink(preset);
+                                                      fresh.append(painting.journal().strokes());
+                                                      if (!painting.journal().empty())
+                                                          fresh.save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
+                                                  });
+        project_ = std::move(project);
+        wanted_.reset();
+        pending_.clear();
+        trouble_.clear();
+        behind_ = false;
+        return "";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
+void Keeper::prepare(stroke::Painting& painting, const std::string& brush, const std::string& ink) {
+    if (wanted_) {
+        const Wanted wanted = *wanted_;
+        if (std::string fault = start(wanted.path, wanted.source, wanted.frame, painting); !fault.empty()) wanted_->fault = trouble_ = std::move(fault);
+    }
+    if (!brush.empty() && !brushes_.contains(brush)) {
+        const std::string toml = brush::preset_toml(painting.brush(brush));
+        brush::Preset preset = brush::parse_preset(toml, brush);
+        preset.name = brush;
+        painting.use_brush(preset);
+        brushes_[brush] = toml;
+        attempt([&] { if (project_) project_->put_brush({brush, toml}); });
+    }
+    if (!ink.empty() && !inks_.contains(ink)) {
+        const std::string toml = ink::ink_toml(painting.ink(ink));
+        ink::Ink parsed = ink::parse_ink(toml, ink);
+        parsed.name = ink;
+        painting.use_ink(parsed);
+        inks_[ink] = toml;
+        attempt([&] { if (project_) project_->put_ink({ink, toml}); });
+    }
+}
+
+void Keeper::store_looks(const stroke::Painting& painting) {
+    attempt([&] { if (project_) io::store_looks(*project_, painting); });
+}
+
+std::vector<std::string> Keeper::inks() const {
+    std::vector<std::string> names;
+    for (const auto& [name, toml] : inks_) names.push_back(name);
+    return names;
+}
+
+void Keeper::flush() {
+    if (!project_) throw Error(wanted_ ? wanted_->fault : "there is no project file");
+    for (const auto& preset : brushes_) project_->put_brush(preset);
+    for (const auto& preset : inks_) project_->put_ink(preset);
+    project_->append(pending_);
+    pending_.clear();
+}
+
+void Keeper::add(const stroke::Stroke& stroke) {
+    attempt([&] {
+        if (pending_.empty() && trouble_.empty() && project_) {
+            try {
+                project_->append(stroke);
+            } catch (...) {
+                pending_.push_back(stroke);
+                throw;
+            }
+        } else {
+            pending_.push_back(stroke);
+            flush();
+        }
+    });
+}
+
+void Keeper::remove(std::uint64_t id) {
+    const auto waits = std::find_if(pending_.begin(), pending_.end(), [id](const auto& s) { return s.id == id; });
+    if (waits != pending_.end()) {
+        pending_.erase(waits);
+        return;
+    }
+    change([&] { project_->remove(id); });
+}
+
+void Keeper::set_hidden(std::uint64_t id, bool hidden) {
+    for (stroke::Stroke& stroke : pending_)
+        if (stroke.id == id) {
+            stroke.hidden = hidden;
+            return;
+        }
+    change([&] { project_->set_hidden(id, hidden); });
+}
+
+void Keeper::store_canvas(const stroke::Painting& painting) {
+    if (painting.journal().empty()) return;
+    attempt([&] { if (project_ && pending_.empty() && !behind_) project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id); });
+}
+
+}  // namespace tuft::app

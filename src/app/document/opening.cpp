@@ -1,0 +1,255 @@
+#include "app/document/opening.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <thread>
+
+#include "core/units.h"
+#include "io/looks.h"
+#include "io/read_model.h"
+#include "io/restore.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::app {
+
+namespace {
+
+// What a person reads while the rooms below report, and how far that part is of the whole: as it takes for a model
+// of 100,000 triangles that is looked at and unwrapped, and for a project.
+enum Kind { kLook, kUnwrap, kProject };
+struct Stage {
+    std::string_view name;
+    const char* title;
+    double span[3][2];
+};
+constexpr Stage kStages[] = {
+    {"reading", "Reading the file", {{0, 0.6}, {0, 0.04}, {0, 0.1}}},
+    {"welding", "Checking the mesh", {{0.6, 0.75}, {0.04, 0.06}, {0.1, 0.1}}},
+    {"matching edges", "Checking the mesh", {{0.75, 0.85}, {0.06, 0.08}, {0.1, 0.1}}},
+    {"building the surface", "Checking the mesh", {{0.85, 0.95}, {0.08, 0.1}, {0.1, 0.1}}},
+    {"normals", "Checking the mesh", {{0.95, 1}, {0.1, 0.11}, {0.1, 0.1}}},
+    {"charts", "Cutting it into charts", {{1, 1}, {0.11, 0.3}, {0.1, 0.1}}},
+    {"merge", "Cutting it into charts", {{1, 1}, {0.3, 0.5}, {0.1, 0.1}}},
+    {"cut to pack", "Laying the charts out", {{1, 1}, {0.5, 0.55}, {0.1, 0.1}}},
+    {"pack", "Laying the charts out", {{1, 1}, {0.55, 0.75}, {0.1, 0.1}}},
+    {"check", "Laying the charts out", {{1, 1}, {0.75, 0.76}, {0.1, 0.1}}},
+    {"texel map", "Placing the texels", {{1, 1}, {0.76, 0.85}, {0.1, 0.3}}},
+    {"piece graph", "Placing the texels", {{1, 1}, {0.85, 0.9}, {0.3, 0.4}}},
+    {"search tree", "Placing the texels", {{1, 1}, {0.9, 0.92}, {0.4, 0.45}}},
+    {"painting", "Painting the strokes", {{1, 1}, {0.92, 0.97}, {0.45, 0.95}}},
+    {"picture of the ink", "Placing the texels", {{1, 1}, {0.97, 1}, {0.95, 1}}},
+};
+
+}  // namespace
+
+struct Opening::Job {
+    std::thread thread;
+    std::atomic<bool> stop{false}, done{false};
+    std::mutex mutex;
+    const char* phase = kStages[0].title;
+    double fraction = 0;
+    Kind kind = kUnwrap;
+    Result result;
+
+    ProgressFn progress() {
+        return [this](std::string_view name, double part) {
+            const std::lock_guard lock(mutex);
+            for (const Stage& stage : kStages)
+                if (stage.name == name) {
+                    const auto& [from, to] = stage.span[kind];
+                    phase = stage.title;
+                    // A step that is done again does not take the bar back.
+                    fraction = std::max(fraction, from + (to - from) * std::clamp(part, 0.0, 1.0));
+                }
+            return !stop.load();
+        };
+    }
+};
+
+namespace {
+
+Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
+    Inspected out;
+    out.path = path;
+    report(progress, "reading", 0);
+    out.soup = io::read_model(path);
+    Box bounds;
+    for (const Vec3& p : out.soup.points) bounds.add(p);
+    const auto fixed = io::metres_per_unit_of(path);
+    out.unit_fixed = fixed.has_value();
+    const mesh::UnitGuess guess = mesh::guess_unit(bounds);
+    mesh::RepairOptions repair;
+    repair.metres_per_unit = fixed.value_or(guess.metres_per_unit);
+    repair.progress = progress;
+    const mesh::Surface surface = mesh::build_surface(out.soup, repair);
+    out.summary = mesh::summarise(surface, repair.metres_per_unit);
+    out.summary.unit = guess;
+    out.defects = mesh::describe_defects(surface.report);
+    return out;
+}
+
+// Strokes of a former project, its presets and ground, on the new model.
+void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn& progress) {
+    const io::Project project = io::Project::open(former);
+    work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
+    io::use_presets(project, *work.painting);
+    work.keeper.take_presets(project);
+    const std::vector<stroke::Stroke> strokes = project.strokes();
+    const std::vector<stroke::StrokeReport> reports = work.painting->replay(strokes, progress);
+    const mesh::TriangleMesh mesh = project.model().mesh;
+    const auto length_of = [&](const std::string& brush) { return work.painting->brush(brush).length; };
+    work.misfits = stroke::find_misfits(reports, stroke::compare_fit(strokes, length_of, mesh::SurfaceQuery(mesh), *work.model->query));
+}
+
+// In a file from now on, or in memory until there can be one.
+void keep(Painter::Work& work, const fs::path& file) {
+    const std::string fault = work.keeper.start(file, work.source, work.frame, *work.painting);
+    if (!fault.empty()) work.keeper.start_later(file, work.source, work.frame, fault);
+}
+
+Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
+    Painter::Work work;
+    stroke::ModelOptions prepare;
+    const auto fixed = io::metres_per_unit_of(in.path);
+    prepare.repair.metres_per_unit = fixed.value_or(metres_per(options.frame.unit).value_or(kMillimetre));
+    prepare.repair.y_up = options.frame.y_up && !fixed;
+    prepare.unwrap.size = options.atlas_size;
+    prepare.progress = progress;
+    work.source = in.path.string();
+    work.frame = options.frame;
+    work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
+    work.painting = std::make_unique<stroke::Painting>(*work.model, stroke::PaintingOptions{.substrate = options.substrate});
+    if (!former.empty()) carry_strokes(former, work, progress);
+    work.texture = std::make_unique<Texture>(*work.painting, progress);
+    work.pixels = work.texture->pixels();
+    keep(work, project);
+    return work;
+}
+
+Painter::Work load_project(const fs::path& path, const fs::path& session, const ProgressFn& progress) {
+    Painter::Work work;
+    report(progress, "reading", 0);
+    io::Project project = io::Project::open(path);
+    io::ProjectModel stored = project.model();
+    work.source = stored.source;
+    work.frame = stored.frame;
+    const ink::Substrate substrate = ink::parse_substrate(stored.substrate, path.string());
+    work.model = std::make_unique<stroke::Model>(
+        stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), progress));
+    work.painting = std::make_unique<stroke::Painting>(*work.model);
+    work.painting->use_substrate(substrate);
+    io::use_presets(project, *work.painting);
+    io::restore_strokes(project, *work.painting, progress);
+    io::show_looks(project, *work.painting);
+    work.texture = std::make_unique<Texture>(*work.painting, progress);
+    work.pixels = work.texture->pixels();
+    // A file that cannot be written is gone on with in a copy.
+    const bool writable = ::access(path.c_str(), W_OK) == 0 && ::access(fs::absolute(path).parent_path().c_str(), W_OK) == 0;
+    if (writable) {
+        work.keeper.adopt(std::move(project));
+    } else {
+        work.keeper.take_presets(project);
+        keep(work, session);
+    }
+    return work;
+}
+
+}  // namespace
+
+Opening::Opening() = default;
+Opening::~Opening() {
+    cancel();
+    for (const auto& job : leaving_) job->thread.join();
+}
+
+// Steps such as reading a large file end only when they are done; nobody waits for that.
+void Opening::cancel() {
+    if (!job_) return;
+    job_->stop = true;
+    leaving_.push_back(std::move(job_));
+}
+
+template <class Step>
+void Opening::start(Step step) {
+    cancel();
+    job_ = std::make_unique<Job>();
+    Job* job = job_.get();
+    job->thread = std::thread([job, step = std::move(step)]() mutable {
+        try {
+            step(*job);
+        } catch (const Cancelled&) {
+            job->result = {};
+        } catch (const std::bad_alloc&) {
+            job->result.error = "there is not enough memory for this model";
+        } catch (const std::exception& error) {
+            job->result.error = error.what();
+        }
+        job->done = true;
+    });
+}
+
+void Opening::inspect(const fs::path& path) {
+    start([path](Job& job) {
+        job.kind = kLook;
+        job.result.inspected = inspect_file(path, job.progress());
+    });
+}
+
+void Opening::prepare(Inspected inspected, const OpenOptions& options, const fs::path& project) {
+    start([inspected = std::move(inspected), options, project](Job& job) mutable {
+        job.result.work = prepare_model(std::move(inspected), options, {}, project, job.progress());
+    });
+}
+
+void Opening::revise(Inspected inspected, const OpenOptions& options, const fs::path& former, const fs::path& project) {
+    start([inspected = std::move(inspected), options, former, project](Job& job) mutable {
+        job.result.work = prepare_model(std::move(inspected), options, former, project, job.progress());
+    });
+}
+
+void Opening::load(const fs::path& project, const fs::path& session) {
+    start([project, session](Job& job) {
+        job.kind = kProject;
+        job.result.work = load_project(project, session, job.progress());
+    });
+}
+
+std::string Opening::phase() const {
+    if (!job_) return {};
+    const std::lock_guard lock(job_->mutex);
+    return job_->phase;
+}
+
+double Opening::fraction() const {
+    if (!job_) return 0;
+    const std::lock_guard lock(job_->mutex);
+    return job_->fraction;
+}
+
+Opening::Result Opening::poll() {
+    std::erase_if(leaving_, [](const std::unique_ptr<Job>& job) {
+        const bool done = job->done;
+        if (done) job->thread.join();
+        return done;
+    });
+    if (!job_ || !job_->done) return {};
+    job_->thread.join();
+    Result result = std::move(job_->result);
+    result.done = true;
+    job_.reset();
+    return result;
+}
+
+double expected_texel(double area, std::uint32_t size) { return std::sqrt(area / 0.75) / std::max(1u, size); }
+
+std::uint32_t proposed_size(double area) {
+    constexpr double kFine = 0.4 * kMillimetre;
+    return expected_texel(area, 2048) > kFine && 2 * stroke::atlas_memory(4096) < stroke::available_memory() ? 4096 : 2048;
+}
+
+}  // namespace tuft::app

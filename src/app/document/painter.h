@@ -1,0 +1,291 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "app/document/keeper.h"
+#include "app/view/texture.h"
+#include "stroke/fit.h"
+#include "stroke/painting.h"
+#include "stroke/symmetry.h"
+
+namespace tuft::app {
+
+/// What the painter is asked to do; it does so in order.
+struct BeginStroke {
+    std::string brush, ink;
+    stroke::Symmetry symmetry;
+    bool carry = false;           ///< goes on with the hair and ink of the stroke before
+    bool as_it_is = false;        ///< with what is in the brush, whatever ink is chosen; where it is held
+    std::uint32_t layer = stroke::kFirstLayer;  ///< or the palette
+    std::uint32_t mask = 0;       ///< kept to; 0: none
+    bool erases = false;          ///< takes ink off
+    bool wet = false;             ///< ink that flows and mixes
+    std::string tip_ink;          ///< every stroke begins with this one in the tip; empty: with one ink
+    double tip_depth = 0.3;       ///< of it, part of the tuft's length
+    bool joined = false;          ///< is undone together with the one before it
+};
+/// Dips, rinses, wipes or combs a brush, or lets the ink dry.
+struct CareForBrush {
+    stroke::Action action = stroke::Action::dip;
+    std::string brush, ink;
+    double seconds = 0;           ///< of drying; 0: until all is dry
+    stroke::Extent extent = {};   ///< of a dip or a wipe
+};
+struct ExtendStroke {
+    std::vector<brush::Pose> poses;
+    double asked = 0;             ///< seconds on the window's clock, comes back in `Update::done`
+};
+struct EndStroke {};
+/// Paints traces that lie on the model already; undone together.
+struct PaintTraces {
+    std::vector<stroke::Trace> traces;
+    stroke::Symmetry symmetry;    ///< its turns; writing is not mirrored
+    std::uint32_t layer = stroke::kFirstLayer;
+    std::uint32_t mask = 0;
+    bool wet = false;
+};
+struct CancelStroke {};
+struct UndoStroke {};
+struct RedoStroke {};
+/// Lays ink over a part of the model.
+struct FillModel {
+    std::string ink;
+    stroke::Fill fill;
+    std::uint32_t layer = stroke::kFirstLayer;
+    std::uint32_t mask = 0;
+};
+/// The eyedropper: what lies at a place becomes an ink of its own.
+struct PickInk {
+    Vec3 point{0};                ///< metres, frame of the model or the palette
+    bool on_palette = false;
+};
+/// Takes an ink in from outside.
+struct TakeInk {
+    ink::Ink ink;
+};
+/// Shows what is painted with one ink as if it were another one.
+struct RecolourInk {
+    std::string name;
+    ink::Ink wanted;
+};
+/// Shows the work on another material; nothing is painted anew.
+struct ShowOn {
+    std::string substrate;
+};
+/// Makes or ends a mask.
+struct ChangeMasks {
+    stroke::MaskEdit edit;
+    std::uint32_t with = 0;       ///< a new one: another mask that it is taken together with; 0: none
+    stroke::MaskKind how = stroke::MaskKind::unite;  ///< or intersect
+};
+/// Veils what a mask leaves out; 0: nothing.
+struct ShowMask {
+    std::uint32_t id = 0;
+};
+/// Adds, changes, moves or removes a layer.
+struct ChangeLayers {
+    stroke::LayerEdit edit;
+};
+/// Hands over the whole texture anew.
+struct SendTexture {
+    bool wetness = false;         ///< its fourth channel: the liquid, not the ink's height
+};
+struct SaveProject {
+    std::filesystem::path path;
+};
+struct ExportModel {
+    std::filesystem::path path;
+    bool height = true, orm = true;  ///< maps besides the base colour
+    bool pigments = false;        ///< likewise, where the path is an .exr file
+    std::uint32_t size = 0;       ///< texels per side; 0: as painted
+    int pictures = 0;             ///< of the model beside it: none, one, or that many all round
+    int picture_width = 1280;     ///< pixels; 16 : 9
+    double azimuth = 0, elevation = 0.45;  ///< radians, from where they are seen
+};
+/// p → to + rotation (p − from)
+struct RigidMove {
+    Vec3 from{0}, to{0};          ///< metres
+    Quat rotation{1, 0, 0, 0};
+};
+/// Changes a stroke that is already there; the rest is painted again.
+struct EditStroke {
+    std::uint64_t id = 0;
+    std::optional<bool> hidden;
+    std::optional<std::string> brush, ink;
+    std::optional<RigidMove> move;
+    bool remove = false;
+    bool joined = false;          ///< is undone together with the one before it
+};
+using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
+                             ExportModel, EditStroke, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
+
+/// A stroke for the list.
+struct StrokeLine {
+    std::uint64_t id = 0;
+    stroke::Action action = stroke::Action::stroke;
+    std::string brush, ink, label;
+    bool hidden = false, erases = false, on_palette = false;
+    double length = 0;            ///< metres of the hand's way
+    std::vector<Vec3f> places;    ///< metres, model frame: where the hand was; empty for flat traces
+    std::vector<Vec3f> way;       ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
+};
+
+/// How the work is shown, apart from how it was painted.
+struct Looks {
+    std::map<std::string, ink::Ink> recolours;  ///< by the name of the ink painted with
+    std::string substrate, painted_on;
+    float roughness = 0.1f;       ///< of the bare surface, as shown
+};
+
+/// What changed since the last look.
+struct Update {
+    std::optional<render::MapPixels> pixels;  ///< the whole texture, older than the tiles
+    std::vector<render::TilePixels> tiles;
+    std::optional<std::vector<StrokeLine>> strokes;
+    std::vector<std::string> messages;
+    std::optional<brush::TuftState> tuft;  ///< of the stroke in work; no branches: none
+    double done = 0;              ///< the latest `ExtendStroke::asked` that is painted
+    std::size_t waiting = 0;      ///< commands not done yet
+    std::string busy;             ///< long work being done, ""
+    double fraction = 0;          ///< of it
+    double undo_seconds = 0;      ///< that the last undo took
+    double fullness = 1;          ///< ink in the brush last painted with, of its capacity
+    std::optional<std::array<std::uint8_t, 3>> brush_colour;  ///< sRGB of a full film of it
+    std::optional<stroke::PalettePicture> palette;  ///< what changed on it
+    bool on_palette = false;      ///< `tuft` is there
+    bool can_undo = false, can_redo = false;
+    stroke::LayerTable layers;
+    stroke::MaskTable masks;
+    std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones
+    std::optional<Looks> looks;
+    std::string picked;           ///< name of an ink just picked up or taken in
+    bool wet = false;             ///< some ink is
+    std::string trouble;          ///< why work is not being kept, ""
+    std::size_t unkept = 0;       ///< strokes that wait in memory for that
+    std::filesystem::path project;
+};
+
+/// Paints on a thread of its own, so that drawing never waits for the simulation nor the
+/// simulation for drawing. From its making on, only that thread touches the painting.
+class Painter {
+  public:
+    struct Work {
+        std::unique_ptr<stroke::Model> model;
+        std::unique_ptr<stroke::Painting> painting;
+        std::unique_ptr<Texture> texture;
+        render::MapPixels pixels;  ///< what the texture shows at the start, for the graphics card
+        Keeper keeper;
+        std::string source;
+        FileFrame frame;  ///< of the model file
+        std::vector<stroke::Misfit> misfits;  ///< of a revised model: strokes that do not fit it
+    };
+    explicit Painter(Work work);
+    /// Finishes everything that was asked for first.
+    ~Painter();
+
+    void post(Command command);
+    Update take();
+    /// Nothing asked for is left to do.
+    bool idle() const;
+    /// Waits until it is so, but not longer than so many seconds.
+    void wait_idle(double seconds) const;
+    /// Stops a repainting in work; what was before stays.
+    void stop_long_work() { stop_ = true; }
+
+    const stroke::Model& model() const { return *work_.model; }  ///< never changes
+    /// The texture as it was at the start; once.
+    render::MapPixels take_pixels() { return std::move(work_.pixels); }
+    /// Figures of the model's atlas; nullptr while they are measured, which the first call begins.
+    const atlas::AtlasReport* atlas_report();
+    const std::string& source() const { return work_.source; }
+    const FileFrame& frame() const { return work_.frame; }  ///< of the model file
+
+  private:
+    /// An entry of the journal that was changed, or taken out.
+    struct Change {
+        std::size_t at = 0;                   ///< its place
+        stroke::Stroke before;
+        std::optional<stroke::Stroke> after;  ///< none: taken out
+    };
+    /// What one undo takes back.
+    struct Step {
+        std::size_t made = 0;                 ///< entries at the journal's end
+        std::optional<Change> change;         ///< or this
+        bool joined = false;                  ///< and the step before it
+    };
+    void run();
+    void perform(Command& command);
+    void begin(const BeginStroke& command);
+    void extend(const ExtendStroke& command);
+    void end();
+    void cancel();
+    void drop_loads();
+    void fill(const FillModel& command);
+    void act(stroke::Stroke entry);
+    void change_layers(const ChangeLayers& command);
+    void change_masks(const ChangeMasks& command);
+    void show_mask(const ShowMask& command);
+    void pick(const PickInk& command);
+    void add_ink(ink::Ink ink);
+    void recolour(const RecolourInk& command);
+    void show_on(const ShowOn& command);
+    void send_pixels();
+    void publish_looks();
+    void look_at_brush();
+    void load_tip(const BeginStroke& command, std::size_t& made);
+    void paint_traces(PaintTraces& command);
+    void care(const CareForBrush& command);
+    void undo();
+    void redo();
+    void edit(const EditStroke& command);
+    void rewrite(std::vector<stroke::Stroke> strokes);
+    void put(const Change& change, bool back);
+    void take_presets(stroke::Painting& painting);
+    void export_model(const ExportModel& command);
+    void export_maps(const ExportModel& command, const stroke::Painting& painting, const ink::ComposeOptions& compose);
+    void export_strokes(const std::filesystem::path& path);
+    void draw_pictures(const ExportModel& command, const stroke::Painting& painting);
+    void publish(bool strokes_changed = false);
+    void say(std::string message);
+    ProgressFn progress(const std::string& name);
+
+    Work work_;
+    std::shared_future<atlas::AtlasReport> measured_;
+    BeginStroke current_;
+    std::size_t loads_ = 0;                ///< entries that loaded the brush for the stroke in work
+    std::vector<stroke::Stroke> undone_before_;  ///< them, of the journal
+    std::vector<ink::Ink> own_inks_;
+    stroke::PalettePicture palette_;
+    std::optional<std::array<std::uint8_t, 3>> brush_colour_;
+    double undo_seconds_ = 0;
+    double asked_ = 0, last_publish_ = 0;
+    std::vector<Step> steps_, undone_;        ///< the last one at the back
+    std::vector<StrokeLine> lines_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable wake_;
+    mutable std::condition_variable rests_;
+    std::deque<Command> queue_;
+    Update update_;
+    bool working_ = false, quit_ = false;
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+/// The list entry of a stroke.
+StrokeLine stroke_line(const stroke::Stroke& stroke);
+
+}  // namespace tuft::app

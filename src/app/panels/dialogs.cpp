@@ -1,0 +1,218 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/panels/panels.h"
+#include "core/units.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::app {
+
+bool begin_dialog(Session& s, const char* title, float width) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.48f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(18), s.ui.px(14)));
+    const std::string name = std::string(s.ui.tr(title)) + "###dialog " + title;
+    const bool open = ImGui::Begin(name.c_str(), nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                                                              ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+    if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+    s.ui.in_dialog = true;
+    return open;
+}
+
+void end_dialog(Session& s) {
+    s.ui.in_dialog = false;
+    ImGui::End();
+    ImGui::PopStyleVar();
+}
+
+namespace {
+
+// Two columns: name and value.
+void fact(Session& s, const char* name, const std::string& value) {
+    ImGui::TextDisabled("%s", s.ui.tr(name));
+    ImGui::SameLine(s.ui.px(150));
+    s.ui.wrapped(value);
+}
+
+std::string print(const char* format, double a, double b = 0, double c = 0) {
+    char text[96];
+    std::snprintf(text, sizeof text, format, a, b, c);
+    return text;
+}
+
+// 1,234,567
+std::string grouped(std::size_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, ",");
+    return text;
+}
+
+}  // namespace
+
+void open_dialog(Session& s) {
+    if (!s.inspected || !begin_dialog(s, s.revises.empty() ? "Open model" : "Revised model", 520)) {
+        if (s.inspected) end_dialog(s);
+        return;
+    }
+    Ui& ui = s.ui;
+    const Inspected& in = *s.inspected;
+    const mesh::MeshSummary& m = in.summary;
+    const double factor = metres_per(s.open_options.frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
+    Vec3 size = m.bounds.size() * factor * 1e3;
+    if (s.open_options.frame.y_up && !in.unit_fixed) std::swap(size.y, size.z);
+    fact(s, "File", in.path.filename().string());
+    fact(s, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
+    fact(s, "Triangles", grouped(m.n_triangles));
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", ui.tr("Unit of the file"));
+    ImGui::SameLine(ui.px(150));
+    static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"};
+    ImGui::BeginDisabled(in.unit_fixed);
+    ui.combo("Unit", s.open_options.frame.unit, units, 90);
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    if (in.unit_fixed) ImGui::TextDisabled("%s", ui.tr("the format says so"));
+    else if (s.open_options.frame.unit == m.unit.unit) ImGui::TextDisabled("%s", ui.tr("guessed from the size"));
+    else ImGui::TextDisabled("%s: %s", ui.tr("guessed"), m.unit.unit.c_str());
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", ui.tr("Upward axis"));
+    ImGui::SameLine(ui.px(150));
+    static const std::vector<std::string> axes{"z", "y"};
+    std::string up = s.open_options.frame.y_up || in.unit_fixed ? "y" : "z";
+    ImGui::BeginDisabled(in.unit_fixed);
+    if (ui.combo("Up", up, axes, 90)) s.open_options.frame.y_up = up == "y";
+    ImGui::EndDisabled();
+    if (in.unit_fixed) {
+        ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", ui.tr("the format says so"));
+    }
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", ui.tr("Texels per side"));
+    ImGui::SameLine(ui.px(150));
+    static const std::vector<std::string> sizes{"1024", "2048", "4096", "8192"};
+    std::string atlas = std::to_string(s.open_options.atlas_size);
+    if (ui.combo("Atlas size", atlas, sizes, 90)) s.open_options.atlas_size = static_cast<std::uint32_t>(std::stoul(atlas));
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    const double texel = expected_texel(m.area * factor * factor, s.open_options.atlas_size);
+    ImGui::TextDisabled("%s", print(ui.tr("one texel is about %.2f mm"), texel * 1e3).c_str());
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", ui.tr("Painted on"));
+    ImGui::SameLine(ui.px(150));
+    ui.combo("Surface", s.open_options.substrate, s.substrates, 160);
+    ui.heading("Checked and repaired");
+    if (in.defects.empty()) ui.note(ui.tr("The mesh is sound; nothing had to be repaired."));
+    for (const std::string& line : in.defects) ui.wrapped("\xc2\xb7 " + ui.tr_sentence(line));
+    for (const std::string& line : m.report.warnings) ui.wrapped("\xc2\xb7 " + line);
+    const std::size_t memory = stroke::atlas_memory(s.open_options.atlas_size);
+    const bool fits = memory < stroke::available_memory();
+    if (!fits) ui.wrapped(ui.tr("This many texels need more memory than is free."));
+    ImGui::Dummy(ImVec2(0, ui.px(4)));
+    const char* action = s.revises.empty() ? "Unwrap and paint" : "Unwrap and repaint";
+    ui.buttons_at_right({{"Cancel", 120}, {action, 120}});
+    const bool cancelled = ui.button("Cancel", nullptr, 120);
+    ImGui::SameLine();
+    const bool accepted = ui.primary_button(action, 120, fits);
+    end_dialog(s);
+    if (accepted) accept_inspected(s);
+    else if (cancelled) s.inspected.reset();
+}
+
+void opening_progress(Session& s) {
+    if (!begin_dialog(s, "Opening", 380)) return end_dialog(s);
+    std::string phase = s.opening.phase();
+    ImGui::TextUnformatted(s.ui.tr(phase.c_str()));
+    ImGui::ProgressBar(static_cast<float>(s.opening.fraction()), ImVec2(-1, s.ui.px(18)), "");
+    s.ui.buttons_at_right({{"Cancel", 110}});
+    const bool stop = s.ui.button("Cancel", nullptr, 110);
+    end_dialog(s);
+    if (stop) s.opening.cancel();
+}
+
+void recovery_dialog(Session& s) {
+    if (s.lost.empty()) return;
+    if (!begin_dialog(s, "Unfinished work", 480)) return end_dialog(s);
+    Ui& ui = s.ui;
+    const LostWork work = s.lost.front();
+    ui.wrapped(ui.tr("The program ended before this work was saved under a name. It is complete to the last finished stroke."));
+    ImGui::Dummy(ImVec2(0, ui.px(2)));
+    if (const unsigned texture = s.pictures.texture(work.project)) {
+        ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), ImVec2(ui.px(180), ui.px(120)));
+        ImGui::Dummy(ImVec2(0, ui.px(2)));
+    }
+    fact(s, "Model", fs::path(work.source).filename().string());
+    fact(s, "Project", is_unnamed(work.project) ? ui.tr("not named yet") : work.project.string());
+    ImGui::Dummy(ImVec2(0, ui.px(4)));
+    ui.buttons_at_right({{"Discard", 100}, {"Later", 100}, {"Go on with it", 140}});
+    const bool drop = ui.button("Discard", "Removes this work for good, unless it lies in a project of its own", 100);
+    ImGui::SameLine();
+    const bool later = ui.button("Later", "It is offered again at the next start", 100);
+    ImGui::SameLine();
+    const bool go_on = ui.primary_button("Go on with it", 140);
+    end_dialog(s);
+    if (go_on) {
+        forget_lost_work(work, false);
+        open_path(s, work.project);
+    } else if (drop) {
+        forget_lost_work(work, true);
+    }
+    if (go_on || later || drop) s.lost.erase(s.lost.begin());
+}
+
+void settings_dialog(Session& s) {
+    if (!s.show_settings) return;
+    if (!begin_dialog(s, "Settings", 420)) return end_dialog(s);
+    Ui& ui = s.ui;
+    UiSettings& w = s.wanted;
+    bool changed = false;
+    ui.heading("Language");
+    if (ui.choice("English", w.language == Language::english, nullptr, 120)) w.language = Language::english, changed = true;
+    ImGui::SameLine();
+    // In its own script, for those who read no other.
+    if (ui.choice(ui.has_chinese ? "中文" : "Chinese", w.language == Language::chinese, nullptr, 120)) w.language = Language::chinese, changed = true;
+    ui.heading("Colours");
+    if (ui.choice("Dark", w.theme == Theme::dark, nullptr, 120)) w.theme = Theme::dark, changed = true;
+    ImGui::SameLine();
+    if (ui.choice("Light", w.theme == Theme::light, nullptr, 120)) w.theme = Theme::light, changed = true;
+    ui.heading("Size of text and buttons");
+    for (const float scale : {1.0f, 1.25f, 1.5f, 2.0f}) {
+        char label[16];
+        std::snprintf(label, sizeof label, "%.0f %%", 100.0 * static_cast<double>(scale));
+        if (ui.choice(label, std::abs(w.scale - scale) < 0.01f, nullptr, 72)) w.scale = scale, changed = true;
+        ImGui::SameLine();
+    }
+    ImGui::NewLine();
+    ui.heading("Mouse and hand");
+    if (ui.choice("As in Blender", s.keymap == Keymap::blender, "Turn with the middle button", 150)) s.keymap = Keymap::blender, changed = true;
+    ImGui::SameLine();
+    if (ui.choice("As in Maya", s.keymap == Keymap::maya, "Turn with Alt and the left button", 150)) s.keymap = Keymap::maya, changed = true;
+    changed |= ui.toggle("Left-handed: tools on the right", w.left_handed);
+    bool cap = false;
+    if (s.cap.seen) {
+        ui.heading("SpaceMouse");
+        if (ui.choice("Moves the model", !s.cap.moves_eye, "It goes where you push and turn the cap", 150)) s.cap.moves_eye = false, cap = true;
+        ImGui::SameLine();
+        if (ui.choice("Moves the eye", s.cap.moves_eye, "The cap is your head", 150)) s.cap.moves_eye = true, cap = true;
+        cap |= ui.toggle("Keep the horizon level", s.cap.level);
+        cap |= ui.slider("Cap speed", s.cap.speed, 0.1, 4, "%.1f");
+    }
+    if (cap) store_settings(s);
+    if (ui.button("Keys...", "Look up and change what the keys do", 150)) s.show_keys = true;
+    ImGui::Dummy(ImVec2(0, ui.px(4)));
+    ui.buttons_at_right({{"Close", 110}});
+    const bool close = ui.button("Close", nullptr, 110);
+    end_dialog(s);
+    if (changed) {
+        s.restyle = true;
+        store_settings(s);
+    }
+    if (close) s.show_settings = false;
+}
+
+}  // namespace tuft::app

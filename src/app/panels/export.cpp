@@ -1,0 +1,115 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/panels/panels.h"
+
+namespace tuft::app {
+namespace {
+
+// What programs want: format, maps, and the largest side they like.
+struct Preset {
+    const char *name, *extension, *note;
+    bool roughness, relief;
+    std::uint32_t most;           ///< texels per side; 0: any
+};
+constexpr Preset kPresets[] = {
+    {"Blender", ".glb", "One GLB file; File > Import > glTF 2.0", true, true, 0},
+    {"Unreal", ".glb", "One GLB file; drag it into the content browser", true, true, 8192},
+    {"Unity", ".gltf", "glTF with pictures beside it, for the glTFast package", true, true, 8192},
+    {"Web", ".glb", "A small GLB file for model viewers in a browser", false, false, 2048},
+    {"16-bit maps", ".png", "PNG pictures alone, 16 bits a channel, one for each map", true, true, 0},
+    {"EXR maps", ".exr", "Floating-point pictures alone, linear colour, one for each map", true, true, 0},
+    {"Strokes", ".inkml", "The strokes alone, to be painted again with tuft paint", false, false, 0},
+    {"Print proof", ".obj", "OBJ, MTL and PNG for colour printers and print shops", false, false, 0},
+};
+
+const Preset& preset_of(const std::string& name) {
+    const auto at = std::find_if(std::begin(kPresets), std::end(kPresets), [&](const Preset& p) { return name == p.name; });
+    return at == std::end(kPresets) ? kPresets[0] : *at;
+}
+
+void choose_preset(Session& s) {
+    const Preset& p = preset_of(s.export_choice.preset);
+    s.export_choice.relief = p.relief;
+    s.export_choice.roughness = p.roughness;
+    const std::uint32_t painted = s.painter ? s.painter->model().atlas.size : 0;
+    s.export_choice.size = p.most && painted > p.most ? p.most : 0;
+}
+
+void row(Session& s, const char* name) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", s.ui.tr(name));
+    ImGui::SameLine(s.ui.px(130));
+}
+
+}  // namespace
+
+ExportModel export_command(const Session& s, const std::filesystem::path& path) {
+    const ExportChoice& c = s.export_choice;
+    return {.path = path, .height = c.relief, .orm = c.roughness, .pigments = c.pigments, .size = c.size, .pictures = c.picture, .picture_width = c.picture_width,
+            .azimuth = s.view.orbit.azimuth, .elevation = s.view.orbit.elevation};
+}
+
+void export_dialog(Session& s) {
+    if (!s.show_export || !s.painter) return;
+    if (!begin_dialog(s, "Export", 460)) return end_dialog(s);
+    Ui& ui = s.ui;
+    ExportChoice& c = s.export_choice;
+    std::vector<std::string> names;
+    for (const Preset& p : kPresets) names.emplace_back(p.name);
+    row(s, "For");
+    if (ui.combo("Preset", c.preset, names)) choose_preset(s);
+    ui.note(ui.tr(preset_of(c.preset).note));
+    const bool strokes_alone = preset_of(c.preset).extension == std::string(".inkml");
+    if (strokes_alone && std::any_of(s.strokes.begin(), s.strokes.end(), [](const StrokeLine& l) { return l.action == stroke::Action::layer || l.action == stroke::Action::mask; }))
+        ui.wrapped(ui.tr("Strokes name their layer and mask; what layers and masks are stays in the project."));
+    ImGui::BeginDisabled(strokes_alone);
+    row(s, "Maps");
+    bool colour = true;
+    ImGui::BeginDisabled();
+    ui.toggle("Base colour", colour);
+    ImGui::EndDisabled();
+    row(s, "");
+    ui.toggle("Roughness", c.roughness, "Occlusion, roughness and metal in one picture");
+    row(s, "");
+    ui.toggle("Relief of the ink", c.relief, "A normal map made from the film's height");
+    if (preset_of(c.preset).extension == std::string(".exr")) {
+        row(s, "");
+        ui.toggle("Pigment amounts", c.pigments, "A channel for each pigment, in film units");
+    }
+    row(s, "Texels per side");
+    static const std::vector<std::string> sizes{"As painted", "512", "1024", "2048", "4096", "8192"};
+    std::string size = c.size ? std::to_string(c.size) : "As painted";
+    if (ui.combo("Export size", size, sizes, 130)) c.size = size == "As painted" ? 0 : static_cast<std::uint32_t>(std::stoul(size));
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%u", s.painter->model().atlas.size);
+    ui.hint("Another size is painted anew from the strokes, not scaled");
+    row(s, "Pictures");
+    static const std::vector<std::string> pictures{"None", "One, as seen now", "24 all round", "72 all round"};
+    static constexpr int counts[] = {0, 1, 24, 72};
+    const auto at = static_cast<std::size_t>(std::find(std::begin(counts), std::end(counts), c.picture) - std::begin(counts));
+    std::string picture = pictures[std::min<std::size_t>(at, 3)];
+    if (ui.combo("Pictures of it", picture, pictures, 200)) c.picture = counts[std::find(pictures.begin(), pictures.end(), picture) - pictures.begin()];
+    if (c.picture) {
+        row(s, "");
+        static const std::vector<std::string> widths{"640", "1280", "1920", "3840"};
+        std::string width = std::to_string(c.picture_width);
+        if (ui.combo("Picture width", width, widths, 100)) c.picture_width = std::stoi(width);
+        ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("\xc3\x97 %d", c.picture_width * 9 / 16);
+    }
+    ImGui::EndDisabled();
+    ImGui::Dummy(ImVec2(0, ui.px(4)));
+    ui.buttons_at_right({{"Cancel", 110}, {"Choose a file...", 160}});
+    const bool cancel = ui.button("Cancel", nullptr, 110);
+    ImGui::SameLine();
+    const bool go = ui.primary_button("Choose a file...", 160);
+    end_dialog(s);
+    if (go) s.files.show(FileDialog::Purpose::export_model, project_name(s) + preset_of(c.preset).extension);
+    if (go || cancel) s.show_export = false;
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,217 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "app/panels/panels.h"
+#include "ink/composite.h"
+#include "ink/kubelka_munk.h"
+#include "ink/recolour.h"
+
+/// Inks: choosing, loading the brush, and what the work is shown with afterwards.
+namespace tuft::app {
+namespace {
+
+void swatch(ImDrawList* draw, ImVec2 centre, float radius, unsigned colour) {
+    draw->AddCircleFilled(centre, radius, colour, 32);
+    draw->AddCircle(centre, radius, IM_COL32(128, 128, 128, 160), 32);
+}
+
+std::vector<std::string> ink_names(const Session& s) {
+    std::vector<std::string> names = s.inks;
+    for (const ink::Ink& ink : s.own_inks) names.push_back(ink.name);
+    return names;
+}
+
+// What an ink is made of, for people.
+std::string recipe_text(const Session& s, const std::string& name) {
+    std::string text = s.ui.tr(name.c_str());
+    const ink::Ink* ink = find_ink(s, name);
+    if (!ink || ink->parts.size() < 2) return text;
+    for (const ink::InkPart& part : ink->parts) {
+        char line[96];
+        std::snprintf(line, sizeof line, "\n%.0f %%  %s", 100 * part.fraction / ink->strength(), s.ui.tr(part.pigment.name.c_str()));
+        text += line;
+    }
+    return text;
+}
+
+void swatches(Session& s) {
+    constexpr std::size_t columns = 6;
+    const float gap = s.ui.px(6), size = (ImGui::GetContentRegionAvail().x + gap) / columns - gap;
+    const std::vector<std::string> names = ink_names(s);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const std::string& name = names[i];
+        if (i % columns) ImGui::SameLine(0, gap);
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        if (ImGui::InvisibleButton(("ink " + name).c_str(), ImVec2(size, size))) s.ink = name;
+        s.ui.mark(name);
+        ImDrawList* draw = ImGui::GetWindowDrawList();
+        const ImVec2 centre(at.x + 0.5f * size, at.y + 0.5f * size);
+        swatch(draw, centre, 0.42f * size, ink_colour(s, name));
+        if (name == s.ink) draw->AddCircle(centre, 0.5f * size, s.ui.accent, 32, s.ui.px(2));
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", recipe_text(s, name).c_str());
+    }
+}
+
+float part_of_row(Session& s, int n) {
+    return (ImGui::GetContentRegionAvail().x - static_cast<float>(n - 1) * ImGui::GetStyle().ItemSpacing.x) / static_cast<float>(n) / s.ui.settings().scale;
+}
+
+// What is done with a brush between strokes.
+void care(Session& s) {
+    Ui& ui = s.ui;
+    const float half = part_of_row(s, 2);
+    const auto act = [&](stroke::Action action, double depth = 1, double side = 0) {
+        s.painter->post(CareForBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
+    };
+    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half)) act(stroke::Action::dip, s.dip_depth, s.dip_side);
+    ImGui::SameLine();
+    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half)) act(stroke::Action::wipe, s.dip_depth, s.dip_side);
+    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::Action::rinse);
+    ImGui::SameLine();
+    if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::Action::reshape);
+    ui.slider("How deep", s.dip_depth, 0.05, 1, "%.0f %%", "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then", 0.01);
+    ui.slider("Which side", s.dip_side, -1, 1, "%.0f %%", "Part of the hair's width that is dipped or wiped, from the right flank, or from the left when negative; 0: all of it. Wipe one side and dip it into another ink: the stroke shows both side by side", 0.01);
+    if (s.last.brush_colour) {
+        const auto& c = *s.last.brush_colour;
+        ImGui::PushStyleColor(ImGuiCol_PlotHistogram, IM_COL32(c[0], c[1], c[2], 255));
+    }
+    ImGui::ProgressBar(static_cast<float>(s.last.fullness), ImVec2(-1, ui.px(14)), "");
+    if (s.last.brush_colour) ImGui::PopStyleColor();
+    ui.hint("Ink left in the brush");
+}
+
+void two_inks(Session& s) {
+    Ui& ui = s.ui;
+    ui.toggle("Another ink in the tip", s.two_inks, "Every stroke begins with the chosen ink in the belly and another one in the tip: petals, leaves");
+    if (!s.two_inks) return;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float size = ImGui::GetFrameHeight();
+    swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.36f * size, ink_colour(s, s.tip_ink));
+    ImGui::Dummy(ImVec2(size, size));
+    ImGui::SameLine();
+    ui.combo("Tip ink", s.tip_ink, ink_names(s));
+    ui.slider("Tip", s.tip_depth, 0.05, 0.9, "%.0f %%", "How far up the hair it goes", 0.01);
+}
+
+}  // namespace
+
+void ink_section(Session& s) {
+    Ui& ui = s.ui;
+    ui.heading("Ink");
+    swatches(s);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(ui.tr(s.ink.c_str()));
+    const float half = part_of_row(s, 2);
+    if (ui.button("Load...", "An ink from a file", half)) s.files.show(FileDialog::Purpose::ink, {});
+    ImGui::SameLine();
+    if (ui.button("Keep...", "Writes the ink in hand to a file, for other work", half)) s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
+    if (ui.choice("Palette", s.palette.shown, "A plate on which brushes mix inks (P)", part_of_row(s, 1))) show_palette(s, !s.palette.shown);
+    ui.toggle("Wet ink", s.wet, "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
+    if (s.wet || s.last.wet) {
+        if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
+        ImGui::SameLine();
+        if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1))) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush});
+    }
+    ui.toggle("Carry ink over", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
+    if (s.carry) care(s);
+    else two_inks(s);
+}
+
+unsigned ink_colour(const ink::Ink& ink) {
+    const ink::Rgb linear = ink::colour_of_film(ink, {0.88f, 0.88f, 0.88f});
+    int rgb[3];
+    for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<int>(std::lround(255 * ink::srgb_encode(linear[c])));
+    return IM_COL32(rgb[0], rgb[1], rgb[2], 255);
+}
+
+unsigned ink_colour(const Session& s, const std::string& name) {
+    static std::map<const ink::Ink*, unsigned> shipped;
+    const ink::Ink* ink = find_ink(s, name);
+    if (!ink) return IM_COL32(40, 40, 40, 255);
+    if (!s.own_inks.empty() && ink >= s.own_inks.data() && ink < s.own_inks.data() + s.own_inks.size()) return ink_colour(*ink);
+    const auto [at, is_new] = shipped.try_emplace(ink);
+    if (is_new) at->second = ink_colour(*ink);
+    return at->second;
+}
+
+namespace {
+
+void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) {
+    ink::Ink& edited = s.recipe;
+    bool released = false, held = false;
+    for (ink::InkPart& part : edited.parts) {
+        double others = 0;
+        for (const ink::InkPart& other : edited.parts)
+            if (&other != &part) others += other.fraction;
+        s.ui.slider(part.pigment.name.c_str(), part.fraction, 0, std::max(0.01, 1 - others), "%.0f %%", "Part of the wet ink; the rest is water", 0.01);
+        released = released || ImGui::IsItemDeactivatedAfterEdit();
+        held = held || ImGui::IsItemActive();
+    }
+    static const std::vector<std::string> pigments = ink::list_pigments();
+    std::string more = s.ui.tr("Add a pigment...");
+    if (s.ui.combo("Add a pigment", more, pigments)) {
+        try {
+            const bool there = std::any_of(edited.parts.begin(), edited.parts.end(), [&](const ink::InkPart& p) { return p.pigment.name == more; });
+            const double room = 1 - edited.strength();
+            if (!there) edited.parts.push_back({ink::load_pigment(more), std::min(0.1, std::max(0.0, room))});
+            released = true;
+        } catch (const Error& error) {
+            say(s, error.what());
+        }
+    }
+    if (released) s.painter->post(RecolourInk{name, edited});
+    else if (!held && s.painter->idle()) edited = shown;
+}
+
+}  // namespace
+
+void colours_panel(Session& s, float top, float bottom, float left) {
+    Ui& ui = s.ui;
+    begin_side_panel(s, "###colours", left, top, kToolWidth, bottom);
+    ui.heading("Recolour");
+    ui.note(ui.tr("Pigment amounts stay as they were painted; only what they look like changes."));
+    std::set<std::string> used;
+    for (const StrokeLine& line : s.strokes)
+        if (!line.ink.empty() && !line.erases) used.insert(line.ink);
+    const std::vector<std::string> names = ink_names(s);
+    if (used.empty()) ui.note(ui.tr("Nothing is painted yet."));
+    for (const std::string& name : used) {
+        const auto other = s.looks.recolours.find(name);
+        const ink::Ink* shown = other != s.looks.recolours.end() ? &other->second : find_ink(s, name);
+        if (!shown) continue;
+        ImGui::PushID(name.c_str());
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float size = ImGui::GetFrameHeight();
+        swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.40f * size, ink_colour(*shown));
+        ImGui::Dummy(ImVec2(size, size));
+        ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
+        ImGui::Text("%s %s", ui.tr(name.c_str()), ui.tr("as"));
+        std::string wanted = shown->name;
+        if (ui.combo(("As " + name).c_str(), wanted, names, part_of_row(s, 1) - 80) && find_ink(s, wanted)) s.painter->post(RecolourInk{name, *find_ink(s, wanted)});
+        ImGui::SameLine();
+        if (ui.choice("Recipe", s.recipe_of == name, "Its pigments", part_of_row(s, 1))) {
+            s.recipe_of = s.recipe_of == name ? "" : name;
+            s.recipe = *shown;
+        }
+        std::string shared;
+        for (const std::string& with : used)
+            if (const ink::Ink *a = find_ink(s, name), *b = find_ink(s, with); with != name && a && b && !ink::shared_pigments(*a, *b).empty())
+                shared += (shared.empty() ? "" : ", ") + with;
+        if (shown->name != name && !shared.empty()) ui.note(std::string(ui.tr("Changes with it:")) + " " + shared);
+        if (s.recipe_of == name) recipe_sliders(s, name, *shown);
+        ImGui::PopID();
+    }
+    ui.heading("Material");
+    std::string material = s.looks.substrate;
+    if (ui.combo("Shown on", material, s.substrates)) s.painter->post(ShowOn{material});
+    if (material != s.looks.painted_on) ImGui::TextDisabled("%s %s", ui.tr("painted on"), ui.tr(s.looks.painted_on.c_str()));
+    ImGui::Dummy(ImVec2(0, ui.px(4)));
+    if (ui.primary_button("Back to the tools", part_of_row(s, 1))) s.show_colours = false;
+    ImGui::End();
+}
+
+}  // namespace tuft::app

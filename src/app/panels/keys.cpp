@@ -1,0 +1,72 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/panels/panels.h"
+
+namespace tuft::app {
+namespace {
+
+void mouse_rows(Session& s) {
+    const bool maya = s.keymap == Keymap::maya;
+    const std::pair<const char*, const char*> rows[] = {
+        {"Left button", "Paint"},
+        {maya ? "Alt + left" : "Middle, right, Alt + left", "Turn the view"},
+        {maya ? "Alt + middle" : "Shift + middle", "Move the view"},
+        {maya ? "Alt + right, wheel" : "Ctrl + middle, wheel", "Nearer and further"},
+        {"Ctrl + wheel", "Roll the view"},
+        {"Enter   Backspace   Esc", "Curve: paint it, remove a point, drop it"},
+        {"Esc while painting", "Take the stroke in hand back"},
+    };
+    for (const auto& [key, what] : rows) {
+        ImGui::TextUnformatted(s.ui.tr(what));
+        ImGui::SameLine(s.ui.px(300));
+        ImGui::TextDisabled("%s", s.ui.tr(key));
+    }
+}
+
+void key_rows(Session& s) {
+    Ui& ui = s.ui;
+    for (int i = 0; i < static_cast<int>(Act::count); ++i) {
+        const auto act = static_cast<Act>(i);
+        ImGui::PushID(i);
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(ui.tr(title_of(act)));
+        ImGui::SameLine(ui.px(300));
+        const bool asked = s.key_asked == act;
+        const std::string name = asked ? ui.tr("press a key...") : name_of(s.keys.chord(act)).empty() ? "\xe2\x80\x93" : name_of(s.keys.chord(act));
+        if (asked) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
+        if (ImGui::Button((name + "##chord").c_str(), ImVec2(ui.px(150), 0))) s.key_asked = asked ? std::nullopt : std::optional(act);
+        if (asked) ImGui::PopStyleColor();
+        ui.mark(std::string("key ") + word_of(act));
+        ImGui::PopID();
+    }
+}
+
+}  // namespace
+
+void keys_dialog(Session& s) {
+    if (!s.show_keys) return;
+    if (!begin_dialog(s, "Keys and mouse", 520)) return end_dialog(s);
+    Ui& ui = s.ui;
+    const float screen = ImGui::GetIO().DisplaySize.y;
+    ImGui::BeginChild("keys", ImVec2(0, std::min(ui.px(460), screen - ui.px(150))));
+    ui.heading("Mouse");
+    mouse_rows(s);
+    ui.heading("Keys");
+    ui.note(ui.tr("Click a key to change it."));
+    key_rows(s);
+    ImGui::EndChild();
+    ImGui::Dummy(ImVec2(0, ui.px(4)));
+    ui.buttons_at_right({{"As shipped", 130}, {"Close", 110}});
+    if (ui.button("As shipped", nullptr, 130, !s.keys.shipped())) {
+        s.keys = {};
+        store_settings(s);
+    }
+    ImGui::SameLine();
+    const bool close = ui.button("Close", nullptr, 110);
+    end_dialog(s);
+    if (close) s.show_keys = false, s.key_asked.reset();
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,43 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/panels/panels.h"
+
+namespace tuft::app {
+
+void misfit_dialog(Session& s) {
+    if (!s.show_misfits || !s.painter) return;
+    if (!begin_dialog(s, "Strokes that no longer fit", 520)) return end_dialog(s);
+    Ui& ui = s.ui;
+    ui.wrapped(ui.tr("These strokes do not lie on the revised model as they did. They stay in the journal."));
+    const float rows = std::min(8.0f, static_cast<float>(s.misfits.size()));
+    ImGui::BeginChild("misfits", ImVec2(0, rows * ImGui::GetTextLineHeightWithSpacing() + ui.px(6)));
+    for (const stroke::Misfit& misfit : s.misfits) {
+        const auto line = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == misfit.stroke; });
+        if (line == s.strokes.end()) continue;
+        char text[160];
+        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.strokes.begin() + 1, ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
+        const std::string why = ui.tr_sentence(misfit.reason);
+        const float room = ImGui::GetContentRegionAvail().x, right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);
+        ImGui::PushID(static_cast<int>(misfit.stroke));
+        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.selected == misfit.stroke)) s.selected = misfit.stroke;
+        ImGui::PopID();
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - right);
+        ImGui::TextDisabled("%s", why.c_str());
+    }
+    ImGui::EndChild();
+    ui.buttons_at_right({{"Back to the former model", 120}, {"Hide them", 120}, {"Keep them", 120}});
+    const bool back = ui.button("Back to the former model", "The revised one is among the recent projects then", 120);
+    ImGui::SameLine();
+    const bool hide = ui.button("Hide them", nullptr, 120);
+    ImGui::SameLine();
+    const bool keep = ui.primary_button("Keep them", 120);
+    end_dialog(s);
+    if (back) return open_former(s);
+    if (hide)
+        for (const stroke::Misfit& misfit : s.misfits) s.painter->post(EditStroke{.id = misfit.stroke, .hidden = true, .joined = &misfit != &s.misfits.front()});
+    if (hide || keep) s.show_misfits = false;
+}
+
+}  // namespace tuft::app

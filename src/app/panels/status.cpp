@@ -1,0 +1,152 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/panels/panels.h"
+#include "ink/composite.h"
+
+namespace tuft::app {
+
+namespace {
+
+// As much of it as there is room for; the rest under the cursor.
+void one_line(const Session& s, const std::string& text) {
+    const std::string shown = s.ui.fitted(text, ImGui::GetContentRegionAvail().x);
+    ImGui::TextUnformatted(shown.c_str());
+    if (shown == text || !ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(s.ui.px(420));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+}  // namespace
+
+void status_bar(Session& s, float top) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(0, top));
+    ImGui::SetNextWindowSize(ImVec2(screen.x, screen.y - top));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(12), s.ui.px(6)));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGui::Begin("###status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                           ImGuiWindowFlags_NoBringToFrontOnFocus);
+    s.message_time += ImGui::GetIO().DeltaTime;
+    if (!s.last.trouble.empty()) {
+        const std::size_t n = s.last.unkept;
+        const std::string waits = n == 0 ? "" : " (" + s.ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ")";
+        ImGui::PushStyleColor(ImGuiCol_Text, s.ui.settings().theme == Theme::dark ? ImVec4(1, 0.55f, 0.42f, 1) : ImVec4(0.72f, 0.10f, 0.02f, 1));
+        one_line(s, s.ui.tr("Not kept on disk") + waits + ": " + s.last.trouble);
+        ImGui::PopStyleColor();
+    } else if (!s.message.empty() && s.message_time < 12) {
+        one_line(s, s.ui.tr_sentence(s.message));
+    } else {
+        ImGui::TextDisabled("%s", s.ui.tr(s.keymap == Keymap::blender
+                                              ? "Left: paint    Middle or right: turn    Shift+middle: move    Wheel: nearer    F1: all keys"
+                                              : "Left: paint    Alt+left: turn    Alt+middle: move    Alt+right: nearer    F1: all keys"));
+    }
+    if (s.painter) {
+        char text[160];
+        const stroke::Model& m = s.painter->model();
+        std::snprintf(text, sizeof text, s.ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size, m.atlas.texel_size * 1e3);
+        const float x = screen.x - ImGui::CalcTextSize(text).x - s.ui.px(14);
+        if (ImGui::GetItemRectMax().x + s.ui.px(24) < x) {
+            ImGui::SameLine(x);
+            ImGui::TextDisabled("%s", text);
+        }
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(3);
+}
+
+namespace {
+
+// The tuft in the plane of its bend: x along it, y along the holder, metres from the mouth.
+struct SideView {
+    Vec3 mouth, up, along;
+    ImVec2 origin;
+    float scale = 1;
+
+    ImVec2 at(const Vec3& p) const {
+        const Vec3 d = p - mouth;
+        return {origin.x + scale * static_cast<float>(glm::dot(d, along)), origin.y - scale * static_cast<float>(glm::dot(d, up))};
+    }
+};
+
+void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
+    const brush::Branch& branch = s.tuft.branches.front();
+    const brush::Section &root = branch.sections.back(), &tip = branch.sections.front();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    SideView v{.mouth = root.centre, .up = -root.tangent};
+    Vec3 bend = tip.centre - root.centre;
+    bend -= glm::dot(bend, v.up) * v.up;
+    v.along = glm::length(bend) > 1e-4 ? glm::normalize(bend) : make_frame(Vec3(0), v.up).t;
+    double length = 0;
+    for (std::size_t i = 1; i < branch.sections.size(); ++i)
+        length += glm::distance(branch.sections[i].centre, branch.sections[i - 1].centre);
+    v.scale = static_cast<float>(0.72 * size.y / length);
+    v.origin = {at.x + 0.40f * size.x, at.y + 0.2f * size.y};
+    // The surface below, a point for every few pixels.
+    const mesh::SurfaceQuery& query = *s.painter->model().query;
+    std::vector<ImVec2> ground;
+    for (float x = at.x; x <= at.x + size.x; x += s.ui.px(4)) {
+        const Vec3 from = v.mouth + static_cast<double>((x - v.origin.x) / v.scale) * v.along + 0.3 * length * v.up;
+        const auto hit = query.ray(from, -v.up, 0, 2.2 * length);
+        if (hit) ground.push_back(v.at(hit->position));
+    }
+    draw->AddPolyline(ground.data(), static_cast<int>(ground.size()), s.ui.faint, 0, s.ui.px(2));
+    const unsigned ink = colour_in_tuft(s);
+    const auto encoded = [](float linear) { return ink::srgb_encode(linear); };
+    for (const brush::Branch& b : s.tuft.branches)
+        for (std::size_t i = 1; i < b.sections.size(); ++i) {
+            const auto edge = [&](const brush::Section& c, double side) {
+                const Vec3 across = glm::cross(c.tangent, glm::cross(v.up, v.along));
+                const double r = std::hypot(c.a * glm::dot(c.e, across), c.b * glm::dot(c.m, across));
+                return v.at(c.centre + side * r * across);
+            };
+            const brush::Section &p = b.sections[i - 1], &q = b.sections[i];
+            const Vec3f hair = hair_colour(static_cast<double>(i) / static_cast<double>(b.sections.size()), ink);
+            draw->AddQuadFilled(edge(p, 1), edge(q, 1), edge(q, -1), edge(p, -1),
+                                ImGui::ColorConvertFloat4ToU32(ImVec4(encoded(hair[0]), encoded(hair[1]), encoded(hair[2]), 1)));
+            if (p.pressure > 0 && q.pressure > 0) draw->AddLine(v.at(p.centre), v.at(q.centre), s.ui.accent, s.ui.px(2.5f));
+        }
+    const auto r = static_cast<float>(std::max(root.a, root.b)) * v.scale * 1.1f;
+    draw->AddRectFilled(ImVec2(v.origin.x - r, at.y), ImVec2(v.origin.x + r, v.origin.y), IM_COL32(150, 104, 58, 255), 2);
+}
+
+}  // namespace
+
+void tuft_inset(Session& s) {
+    if (!s.view.inset || !s.painter || s.tuft.branches.empty()) return;
+    Ui& ui = s.ui;
+    const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
+    if (static_cast<float>(s.area.width) < 2.5f * width || static_cast<float>(s.area.height) < 2 * height) return;  // the model needs the room
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y + s.area.height) - height - pad));
+    ImGui::SetNextWindowSize(ImVec2(width, height));
+    ImGui::SetNextWindowBgAlpha(0.82f);
+    ImGui::Begin("###tuft", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                         ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, ui.px(126));
+    ImGui::PushClipRect(at, ImVec2(at.x + size.x, at.y + size.y), true);
+    draw_side(s, at, size);
+    ImGui::PopClipRect();
+    ImGui::Dummy(size);
+    const auto line = [&](const char* name, const char* format, double value) {
+        char text[48] = "\xe2\x80\x93";
+        if (s.tuft.touching) std::snprintf(text, sizeof text, format, value);
+        ImGui::TextDisabled("%s", ui.tr(name));
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text).x);
+        ImGui::TextUnformatted(text);
+    };
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(8), ui.px(1)));
+    line("Force", "%.0f mN", s.tuft.normal_force * 1e3);
+    line("Moment", "%.2f mN m", std::abs(s.tuft.root_moment) * 1e3);
+    line("Depth", "%.1f mm", s.depth * 1e3);
+    ImGui::PopStyleVar();
+    ImGui::End();
+}
+
+}  // namespace tuft::app

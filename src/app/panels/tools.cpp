@@ -1,0 +1,307 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "app/panels/panels.h"
+#include "brush/tuft.h"
+#include "core/files.h"
+#include "core/units.h"
+
+namespace tuft::app {
+namespace {
+
+constexpr float kRackHeight = 54;
+
+// Sorts of hair as they look, sRGB; a brush of another sort is grey.
+unsigned hair_colour(const std::string& sort) {
+    if (sort == "goat") return IM_COL32(240, 236, 226, 255);
+    if (sort == "wolf") return IM_COL32(196, 128, 62, 255);
+    if (sort == "mixed") return IM_COL32(222, 184, 138, 255);
+    return IM_COL32(170, 172, 178, 255);
+}
+
+// The tuft's outline, ferrule above, tip below.
+void draw_tuft_icon(Session& s, const brush::Preset& preset, unsigned hair, ImVec2 at, float width, float height) {
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    constexpr double longest = 0.048;  // metres that fill the icon
+    const auto scale = static_cast<float>(height * 0.74f / longest);
+    const float x = at.x + 0.5f * width, top = at.y + 0.19f * height;
+    constexpr int n = 24;
+    std::vector<ImVec2> outline;
+    for (int side = 0; side < 2; ++side)
+        for (int i = 0; i <= n; ++i) {
+            const double u = static_cast<double>(side ? n - i : i) / n;
+            // A little wider than to scale, so that small ones are seen.
+            const auto r = (static_cast<float>(brush::rest_radius(preset, u)) * 1.35f * scale + (u < 0.97 ? s.ui.px(0.8f) : 0)) * (side ? -1.0f : 1.0f);
+            outline.emplace_back(x + r, top + static_cast<float>(u * preset.length) * scale);
+        }
+    // Smoothed edges of the pieces would show between them: the outline smooths the whole.
+    const ImDrawListFlags flags = draw->Flags;
+    draw->Flags &= ~ImDrawListFlags_AntiAliasedFill;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t j = outline.size() - 1 - i;
+        draw->AddQuadFilled(outline[i], outline[i + 1], outline[j - 1], outline[j], hair);
+    }
+    draw->Flags = flags;
+    draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed, 1.0f);
+    const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * 1.5f + s.ui.px(0.8f);
+    draw->AddRectFilled(ImVec2(x - r, at.y + 0.05f * height), ImVec2(x + r, top), IM_COL32(122, 78, 38, 255), 1.5f);
+}
+
+const brush::Preset& preset_of(const std::string& name) {
+    static std::map<std::string, brush::Preset> known;
+    auto at = known.find(name);
+    if (at == known.end()) at = known.emplace(name, brush::load_preset(name)).first;
+    return at->second;
+}
+
+void brush_cell(Session& s, const std::string& name, const std::string& sort, float width) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool chosen = name == brush::sized_name(s.brush).base;
+    const float height = s.ui.px(kRackHeight);
+    if (ImGui::InvisibleButton(name.c_str(), ImVec2(width, height))) s.brush = name;
+    s.ui.mark(name);
+    const bool over = ImGui::IsItemHovered();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImVec2 end(at.x + width, at.y + height);
+    draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : over ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), s.ui.px(4));
+    if (chosen) draw->AddRect(at, end, s.ui.accent, s.ui.px(4), 0, s.ui.px(2));
+    const brush::Preset& preset = preset_of(name);
+    draw_tuft_icon(s, preset, hair_colour(sort), at, width, height);
+    if (!over) return;
+    char text[256];
+    std::snprintf(text, sizeof text, s.ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3, 2 * preset.radius * 1e3);
+    ImGui::SetTooltip("%s\n%s", s.ui.tr(name.c_str()), text);
+}
+
+// A row for each sort of hair, small to large; sorts with a single brush share the last one.
+void brush_rack(Session& s) {
+    s.ui.heading("Brush");
+    std::map<std::string, std::vector<std::string>> sorts;
+    for (const std::string& name : s.brushes) sorts[name.substr(0, name.find('-'))].push_back(name);
+    std::vector<std::string> single;
+    for (const auto& [sort, names] : sorts)
+        if (names.size() == 1) single.push_back(names.front());
+    const float label = s.ui.px(58), gap = s.ui.px(5);
+    const float width = (ImGui::GetContentRegionAvail().x - label - 2 * gap) / 3;
+    const auto row = [&](const char* title, std::vector<std::string> names) {
+        std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) { return preset_of(a).length < preset_of(b).length; });
+        const float y = ImGui::GetCursorPosY();
+        ImGui::SetCursorPosY(y + 0.5f * (s.ui.px(kRackHeight) - ImGui::GetTextLineHeight()));
+        ImGui::TextDisabled("%s", s.ui.tr(title));
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (i % 3 == 0) ImGui::SetCursorPosY(y + static_cast<float>(i / 3) * (s.ui.px(kRackHeight) + gap));
+            else ImGui::SameLine(0, gap);
+            if (i % 3 == 0) ImGui::SetCursorPosX(ImGui::GetStyle().WindowPadding.x + label);
+            brush_cell(s, names[i], names[i].substr(0, names[i].find('-')), width);
+        }
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + gap);
+    };
+    for (const auto& [sort, names] : sorts)
+        if (names.size() > 1) row(sort.c_str(), names);
+    if (!single.empty()) row("other", single);
+    brush::SizedName sized = brush::sized_name(s.brush);
+    const double thick = 2 * preset_of(sized.base).radius;
+    ImGui::TextUnformatted(s.ui.tr(sized.base.c_str()));
+    double now = thick * sized.factor;
+    if (s.ui.slider("Tuft size", now, thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm", "How thick it is; its length goes with it", kMillimetre))
+        size_brush(s, now / thick);
+}
+
+// The curve from a pen's pressure to the brush's depth; its ends and its middle can be dragged. The dot
+// is what the pen does now.
+void pen_curve(Session& s) {
+    Ui& ui = s.ui;
+    HandSettings& h = s.hand;
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ui.px(96));
+    ImGui::InvisibleButton("pen curve", size);
+    ui.mark("Pen curve");
+    const bool held = ImGui::IsItemActive();
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float pad = ui.px(8);
+    const auto place = [&](double x, double y) {
+        return ImVec2(at.x + pad + static_cast<float>(x) * (size.x - 2 * pad), at.y + size.y - pad - static_cast<float>(y) * (size.y - 2 * pad));
+    };
+    const double x = std::clamp(static_cast<double>((mouse.x - at.x - pad) / (size.x - 2 * pad)), 0.0, 1.0);
+    const double y = std::clamp(static_cast<double>((at.y + size.y - pad - mouse.y) / (size.y - 2 * pad)), 0.02, 0.98);
+    const double middle = 0.5 * (h.pen_least + h.pen_full);
+    if (ImGui::IsItemActivated()) {
+        const double to_least = std::abs(x - h.pen_least) + y, to_full = std::abs(x - h.pen_full) + 1 - y;
+        const double to_middle = std::abs(x - middle) + std::abs(y - std::pow(0.5, h.pen_gamma));
+        s.pen_handle = to_middle <= std::min(to_least, to_full) ? 1 : to_least < to_full ? 0 : 2;
+    }
+    if (held && s.pen_handle == 0) h.pen_least = std::min(x, h.pen_full - 0.1);
+    if (held && s.pen_handle == 2) h.pen_full = std::max(x, h.pen_least + 0.1);
+    if (held && s.pen_handle == 1) h.pen_gamma = std::clamp(std::log(y) / std::log(0.5), 0.25, 4.0);
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) h.pen_least = 0, h.pen_full = 1, h.pen_gamma = 1;
+    ui.hint("Drag its ends and its middle; a double click makes it straight");
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), ImGui::GetColorU32(ImGuiCol_FrameBg), ui.px(4));
+    for (int i = 1; i < 4; ++i) {
+        draw->AddLine(place(0.25 * i, 0), place(0.25 * i, 1), ImGui::GetColorU32(ImGuiCol_Separator));
+        draw->AddLine(place(0, 0.25 * i), place(1, 0.25 * i), ImGui::GetColorU32(ImGuiCol_Separator));
+    }
+    ImVec2 points[49];
+    for (int i = 0; i < 49; ++i) points[i] = place(i / 48.0, pen_depth(h, i / 48.0));
+    draw->AddPolyline(points, 49, ui.accent, 0, ui.px(2));
+    for (const ImVec2& p : {place(h.pen_least, 0), place(middle, std::pow(0.5, h.pen_gamma)), place(h.pen_full, 1)})
+        draw->AddCircleFilled(p, ui.px(4.5f), ui.strong);
+    if (s.pen_pressure >= 0) {
+        const ImVec2 dot = place(std::min(1.0, s.pen_pressure), pen_depth(h, s.pen_pressure));
+        draw->AddLine(dot, place(std::min(1.0, s.pen_pressure), 0), IM_COL32(255, 176, 32, 160), ui.px(1));
+        draw->AddCircleFilled(dot, ui.px(5), IM_COL32(255, 176, 32, 255));
+    }
+}
+
+void hand_section(Session& s) {
+    Ui& ui = s.ui;
+    ui.heading("Hand");
+    ui.slider("Pressure", s.hand.pressure, 0.02, 1, "%.2f", "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
+    ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length", kMillimetre);
+    if (ui.button(s.more_hand ? "Less" : "More...", nullptr, 80)) s.more_hand = !s.more_hand;
+    if (!s.more_hand) return;
+    ui.slider("Speed lightens", s.hand.speed_effect, 0, 1, "%.2f", "As a hand does. Only for a mouse; a pen says its own pressure");
+    ui.slider("Rest deepens", s.hand.dwell_effect, 0, 1, "%.2f", "A mouse that stays where it is sinks in slowly");
+    ui.note(ui.tr("Pen: from its force to the brush's depth"));
+    pen_curve(s);
+    double right = s.hand.tilt.x, up = s.hand.tilt.y;
+    ui.slider("Lean sideways", right, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", "Of the holder, seen on the screen. Arrow keys", kDegree);
+    ui.slider("Lean away", up, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", "Of the holder, seen on the screen. Arrow keys", kDegree);
+    s.hand.tilt = {right, up};
+}
+
+void symmetry_section(Session& s) {
+    Ui& ui = s.ui;
+    ui.heading("Symmetry");
+    ui.toggle("X", s.symmetry.mirror_x, "Mirror left and right; the copy is painted anew and meets the model as it is there");
+    ImGui::SameLine();
+    ui.toggle("Y", s.symmetry.mirror_y, "Mirror front and back");
+    ImGui::SameLine();
+    ui.toggle("Z", s.symmetry.mirror_z, "Mirror above and below");
+    double n = s.symmetry.radial;
+    if (ui.slider("Copies round", n, 1, 16, "%.0f", "For plates and bowls; the axis stands upright through the middle"))
+        s.symmetry.radial = static_cast<int>(std::lround(n));
+}
+
+void section_section(Session& s) {
+    Ui& ui = s.ui;
+    ui.heading("Look inside");
+    ui.toggle("Cut open", s.view.section, "Hides a part of the model; the brush reaches what is behind");
+    if (!s.view.section) return;
+    static const char* axes[] = {"Across", "Along", "From above"};
+    for (int k = 0; k < 3; ++k) {
+        if (k) ImGui::SameLine();
+        if (ui.choice(axes[k], s.view.section_axis == k)) s.view.section_axis = k;
+    }
+    ui.slider("What stays", s.view.section_at, 0.02, 1, "%.2f");
+}
+
+void tool_buttons(Session& s) {
+    struct Entry {
+        Tool tool;
+        const char *name, *hint;
+    };
+    static constexpr Entry entries[] = {
+        {Tool::brush, "Brush", "Paint freely (B)"},
+        {Tool::line, "Line", "Straight as you see it, from press to release; Shift for steps of 15 degrees. Its ends can be moved afterwards (L)"},
+        {Tool::curve, "Curve", "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"},
+        {Tool::writing, "Place", "Lays writing or a drawing from a file where you click (T)"},
+        {Tool::eraser, "Eraser", "Takes ink off with the brush, as deep as it is pressed; a pen's other end does so too (E)"},
+        {Tool::fill, "Fill", "Lays the chosen ink over the whole model, a part or a chart where you click (G)"},
+        {Tool::pick, "Pick", "Click: the pigments that lie there become an ink of their own, in the proportions they have (I)"},
+        {Tool::mask, "Mask", "Says where strokes and fills may leave ink (M)"}};
+    const float third = (ImGui::GetContentRegionAvail().x / s.ui.settings().scale - 10) / 3;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(2), s.ui.px(5)));
+    for (std::size_t i = 0; i < std::size(entries); ++i) {
+        if (i % 3) ImGui::SameLine(0, s.ui.px(5));
+        if (s.ui.choice(entries[i].name, s.tool == entries[i].tool, entries[i].hint, third)) s.tool = entries[i].tool;
+    }
+    ImGui::PopStyleVar();
+}
+
+void fill_section(Session& s) {
+    if (s.tool != Tool::fill) return;
+    Ui& ui = s.ui;
+    ui.heading("Fill");
+    static constexpr std::pair<stroke::Region, const char*> regions[] = {
+        {stroke::Region::all, "All"}, {stroke::Region::part, "Part"}, {stroke::Region::chart, "Chart"}};
+    const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
+    for (const auto& [region, name] : regions) {
+        if (region != stroke::Region::all) ImGui::SameLine();
+        if (ui.choice(name, s.fill.region == region, "What the ink is laid over where you click", third)) s.fill.region = region;
+    }
+    if (ui.slider("Thickness", s.fill.film, 0.05, 5, "%.1f \xce\xbcm", "Of the wet coat", 0.1)) s.fill.to_film = s.fill.film;
+}
+
+void writing_section(Session& s) {
+    if (s.tool != Tool::writing) return;
+    Ui& ui = s.ui;
+    ui.heading("Place");
+    if (ui.button("Writing or drawing...", "InkML or SVG", 0)) s.files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
+    if (s.writing.empty()) return;
+    Writing& w = s.writing;
+    ImGui::TextUnformatted(w.file.filename().c_str());
+    double width = w.width * w.scale;
+    if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", "Wheel over the model", kMillimetre)) w.scale = width / w.width;
+    ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
+    const std::tuple<stroke::Laying, const char*, const char*> layings[] = {
+        {stroke::Laying::drape, "Drape", "Bent round the surface, over its grooves, relief and gaps"},
+        {stroke::Laying::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
+        {stroke::Laying::project, "Straight", "Straight through the picture plane"}};
+    const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
+    for (const auto& [laying, name, hint] : layings) {
+        if (laying != stroke::Laying::drape) ImGui::SameLine();
+        if (ui.choice(name, w.laying == laying, hint, third)) w.laying = laying;
+    }
+    ImGui::PopStyleVar();
+    const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
+    if (names) ui.toggle("Brush and ink of the file", w.own_ink);
+    if (has_widths(w)) ui.toggle("Line widths of the drawing", w.own_width);
+    ui.note(ui.tr("Wheel: size    Shift + wheel: turn    Click: lay it down"));
+}
+
+// How the hand goes along lines and curves.
+void curve_section(Session& s) {
+    if (s.tool != Tool::line && s.tool != Tool::curve) return;
+    Ui& ui = s.ui;
+    ui.heading("Along the line");
+    CurveSettings& c = s.curve_settings;
+    bool changed = ui.slider("Press down in", c.taper_in, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
+    changed |= ui.slider("Lift in", c.taper_out, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
+    changed |= ui.slider("Pace", c.speed, 0.01, 0.4, "%.0f mm/s", "Of the hand", kMillimetre);
+    if (changed) s.curve.changed = true;
+    if (s.tool == Tool::curve) ui.note(ui.tr("Click to set points, Enter to paint, Esc to drop them."));
+}
+
+}  // namespace
+
+void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom) {
+    ImGui::SetNextWindowPos(ImVec2(left, top));
+    ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), bottom - top));
+    // The window is cleared to the panels' colour; to blend it over that again costs a software driver milliseconds.
+    ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::GetBackgroundDrawList()->AddRect(ImVec2(left, top), ImVec2(left + s.ui.px(width), bottom), ImGui::GetColorU32(ImGuiCol_Border));
+}
+
+void tool_panel(Session& s, float top, float bottom, float left) {
+    begin_side_panel(s, "###tools", left, top, kToolWidth, bottom);
+    tool_buttons(s);
+    curve_section(s);
+    writing_section(s);
+    fill_section(s);
+    mask_section(s);
+    const bool brushes = s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask;
+    if (brushes) brush_rack(s);
+    if (s.tool != Tool::mask && s.tool != Tool::eraser) ink_section(s);
+    if (brushes) hand_section(s);
+    if (brushes) symmetry_section(s);
+    section_section(s);
+    ImGui::End();
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/input/events.h"
+#include "app/script/monkey.h"
+
+namespace tuft::app {
+
+class Studio;
+
+/// A place in the window: pixels, or parts of the model's view.
+struct ScriptPoint {
+    double x = 0, y = 0;
+    bool relative_x = false, relative_y = false;  ///< in [0, 1] of the view
+    double pressure = -1;                         ///< of a pen; below 0: a mouse
+};
+
+/// One line of a script.
+struct ScriptCommand {
+    int line = 0;
+    std::string name;
+    std::vector<std::string> words;        ///< arguments, quotes taken off
+    std::vector<ScriptPoint> points;       ///< of `move`, `stroke`
+};
+
+/// Reads a script; the format is described in script_parse.cpp. Throws `Error` with file
+/// and line for an unknown command or a wrong argument.
+std::vector<ScriptCommand> parse_script(const std::filesystem::path& path);
+
+/// Plays a script as if a person did it.
+class Script {
+  public:
+    explicit Script(const std::filesystem::path& path);
+
+    /// Before a frame: adds events. Throws `Error` where the script does not hold.
+    void before_frame(Studio& studio, EventQueue& events, double now);
+    /// After a frame: pictures.
+    void after_frame(Studio& studio, int width, int height);
+    /// Seconds that the next frame may wait: none while there is something to play.
+    double patience(const Studio& studio) const;
+    /// Whether the script wants the graphics to be lost now.
+    bool take_loss() { return std::exchange(lose_, false); }
+    /// The size in pixels that the script wants the window to have now.
+    std::optional<std::pair<int, int>> take_size() { return std::exchange(size_, std::nullopt); }
+    bool finished() const { return next_ >= commands_.size() && pending_.empty() && picture_.empty(); }
+
+  private:
+    bool perform(Studio& studio, const ScriptCommand& command, double now);
+    void expect(Studio& studio, const ScriptCommand& command) const;
+    void stroke(Studio& studio, const ScriptCommand& command);
+    void press_key(const std::string& chord, int line);
+    void hold(const std::string& chord, int line);
+    void click(double x, double y, int button = 0);
+    void add(Event event, double after);
+    void report(Studio& studio, double now);
+    [[noreturn]] void fail(const ScriptCommand& command, const std::string& why) const;
+
+    std::filesystem::path path_;
+    std::vector<ScriptCommand> commands_;
+    std::size_t next_ = 0;
+    std::deque<Event> pending_;        ///< to be played, by time on the script's clock
+    double sample_ = 0.004;       ///< seconds between two samples of a stroke
+    double clock_ = 0;                 ///< seconds, of the last event made
+    bool paced_ = false;               ///< events come when their time has come
+    double pace_start_ = 0, pace_from_ = 0;
+    double waiting_since_ = -1;
+    Event cursor_;
+    unsigned held_ = 0;                ///< modifiers
+    ScriptPoint last_place_;           ///< of the label a click waits for
+    std::string picture_;
+    bool lose_ = false;
+    std::optional<std::pair<int, int>> size_;
+    std::optional<Monkey> monkey_;     ///< while `random` plays
+    std::size_t quits_ = 0;            ///< times that it would have ended the program
+    bool waiting_ = false;             ///< the last command waits for something
+    std::size_t frames_ = 0, report_frames_ = 0;
+    double report_start_ = 0, report_cpu_ = 0;
+};
+
+}  // namespace tuft::app

@@ -1,0 +1,243 @@
+#include "app/view/texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/parallel.h"
+
+namespace tuft::app {
+namespace {
+
+using Rgba = std::array<std::uint8_t, 4>;
+
+constexpr int kVeil = 42;                            // percent of the veil's colour
+constexpr std::array<int, 3> kVeilColour{64, 104, 178};  // sRGB
+
+// Averages are of light, not of its code values.
+struct SrgbTable {
+    std::array<float, 256> decode{};
+    std::array<std::uint8_t, 4096> encode{};
+    SrgbTable() {
+        for (std::size_t i = 0; i < decode.size(); ++i) decode[i] = ink::srgb_decode(static_cast<float>(i) / 255.0f);
+        for (std::size_t i = 0; i < encode.size(); ++i)
+            encode[i] = static_cast<std::uint8_t>(std::lround(255.0f * ink::srgb_encode(static_cast<float>(i) / 4095.0f)));
+    }
+};
+
+const SrgbTable& srgb() {
+    static const SrgbTable table;
+    return table;
+}
+
+Rgba mean(const Rgba& a, const Rgba& b, const Rgba& c, const Rgba& d) {
+    const SrgbTable& t = srgb();
+    Rgba out;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const float light = 0.25f * (t.decode[a[k]] + t.decode[b[k]] + t.decode[c[k]] + t.decode[d[k]]);
+        out[k] = t.encode[static_cast<std::size_t>(std::lround(4095.0f * light))];
+    }
+    out[3] = static_cast<std::uint8_t>((a[3] + b[3] + c[3] + d[3] + 2) / 4);
+    return out;
+}
+
+void halve(const Rgba* from, Rgba* to, std::size_t side, std::size_t first_row, std::size_t last_row) {
+    for (std::size_t y = first_row; y < last_row; ++y)
+        for (std::size_t x = 0; x < side; ++x) {
+            const Rgba* p = from + 4 * side * y + 2 * x;
+            to[side * y + x] = mean(p[0], p[1], p[2 * side], p[2 * side + 1]);
+        }
+}
+
+std::uint8_t code_of(float micrometres) {
+    return static_cast<std::uint8_t>(std::lround(std::min(255.0, render::code_of_height(std::max(0.0, static_cast<double>(micrometres))))));
+}
+
+// Micrometres of liquid on and in the surface, of all layers.
+std::array<float, atlas::kTileTexels> liquid_of(const stroke::Painting& painting, std::uint32_t slot) {
+    std::array<float, atlas::kTileTexels> wet{};
+    for (const stroke::LayerTexels& layer : painting.canvases())
+        for (const ink::Liquid where : {ink::Liquid::film, ink::Liquid::pores})
+            if (const ink::Plane* plane = layer.canvas->liquid(slot, where))
+                for (std::size_t t = 0; t < atlas::kTileTexels; ++t) wet[t] += static_cast<float>(1e6 * ink::kFilmUnit) * (*plane)[t];
+    return wet;
+}
+
+}  // namespace
+
+void Texture::show_wetness(bool on, const stroke::Painting& painting) {
+    if (wetness_ == on) return;
+    wetness_ = on;
+    refresh_heights(painting.stack().touched_slots(), painting);
+}
+
+Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
+    const stroke::Model& model = painting.model();
+    report(progress, "picture of the ink", 0);
+    const ink::ComposeOptions options = painting.compose_options();
+    report(progress, "picture of the ink", 0.6);
+    colour_ = ink::compose_srgb8(painting.stack(), model.texels, painting.substrate(), options);
+    padded_ = model.texels.tiles_per_side * atlas::kTile;
+    height_.assign(static_cast<std::size_t>(colour_.size) * colour_.size, 0);
+    refresh_heights(painting.stack().touched_slots(), painting);
+    report(progress, "picture of the ink", 1);
+}
+
+void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
+    const atlas::TexelMap& map = painting.model().texels;
+    const ink::Stack stack = painting.stack();
+    const std::size_t size = colour_.size;
+    for (const std::uint32_t slot : slots) {
+        const std::size_t tile = map.tile_of_slot[slot];
+        const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
+        const bool inked = stack.touched(slot);
+        const ink::TileLook look = inked ? ink::look_of_tile(stack, slot, painting.substrate()) : ink::TileLook{};
+        const std::array<float, atlas::kTileTexels> wet = wetness_ ? liquid_of(painting, slot) : std::array<float, atlas::kTileTexels>{};
+        for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
+            const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
+            if (x < size && y < size && map.tiles[slot].piece[t] != atlas::kNoPiece)
+                height_[y * size + x] = code_of(wetness_ ? wet[t] : look.height[t]);
+        }
+    }
+    for (const std::uint32_t slot : slots) continue_over_seams(height_, slot, painting);
+}
+
+// Gutter texels that take something from the slot take it now.
+void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot, const stroke::Painting& painting) const {
+    const atlas::TexelMap& map = painting.model().texels;
+    const ink::GutterPlan& plan = *painting.compose_options().seams;
+    const std::size_t size = colour_.size;
+    for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
+        const std::uint32_t entry = plan.entries[e];
+        float sum = 0;
+        for (std::uint32_t k = plan.gutter.start[entry]; k < plan.gutter.start[entry + 1]; ++k) {
+            const atlas::GutterTap& tap = plan.gutter.taps[k];
+            const std::size_t tile = map.tile_of_slot[tap.texel / atlas::kTileTexels], t = tap.texel % atlas::kTileTexels;
+            const std::size_t x = tile % map.tiles_per_side * atlas::kTile + t % atlas::kTile;
+            const std::size_t y = tile / map.tiles_per_side * atlas::kTile + t / atlas::kTile;
+            sum += tap.weight * static_cast<float>(values[y * size + x]);
+        }
+        values[plan.gutter.texels[entry]] = static_cast<std::uint8_t>(std::clamp(sum, 0.0f, 255.0f));
+    }
+}
+
+void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Painting& painting) {
+    veil_.clear();
+    if (!mask) return;
+    const atlas::TexelMap& map = painting.model().texels;
+    const std::size_t size = colour_.size;
+    veil_.assign(size * size, 0);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        const std::size_t tile = map.tile_of_slot[slot];
+        const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            const std::size_t x = x0 + static_cast<std::size_t>(t % atlas::kTile), y = y0 + static_cast<std::size_t>(t / atlas::kTile);
+            if (x < size && y < size && map.tiles[slot].piece[static_cast<std::size_t>(t)] != atlas::kNoPiece)
+                veil_[y * size + x] = static_cast<std::uint8_t>(255 - mask->coverage(slot, t));
+        }
+    }
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) continue_over_seams(veil_, slot, painting);
+}
+
+void Texture::refresh_all(const stroke::Painting& painting) {
+    colour_ = ink::compose_srgb8(painting.stack(), painting.model().texels, painting.substrate(), painting.compose_options());
+    refresh_heights(painting.stack().touched_slots(), painting);
+}
+
+std::array<std::uint8_t, 4> Texture::texel(std::size_t x, std::size_t y) const {
+    const std::size_t at = y * colour_.size + x;
+    Rgba out{colour_.texels[3 * at], colour_.texels[3 * at + 1], colour_.texels[3 * at + 2], height_[at]};
+    if (veil_.empty() || veil_[at] == 0) return out;
+    for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(out[c] + veil_[at] * kVeil * (kVeilColour[c] - out[c]) / (255 * 100));
+    return out;
+}
+
+render::TilePixels Texture::tile(std::uint32_t index) const {
+    render::TilePixels out;
+    out.tile = index;
+    const std::size_t per_side = padded_ / atlas::kTile, size = colour_.size;
+    const std::size_t x0 = index % per_side * atlas::kTile, y0 = index / per_side * atlas::kTile;
+    for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
+        const std::size_t x = std::min(size - 1, x0 + t % atlas::kTile), y = std::min(size - 1, y0 + t / atlas::kTile);
+        out.rgba[t] = texel(x, y);
+    }
+    for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
+        const std::size_t side = static_cast<std::size_t>(atlas::kTile) >> level;
+        halve(&out.rgba[static_cast<std::size_t>(render::TilePixels::kStart[level - 1])],
+              &out.rgba[static_cast<std::size_t>(render::TilePixels::kStart[level])], side, 0, side);
+    }
+    return out;
+}
+
+render::MapPixels Texture::pixels() const {
+    render::MapPixels map;
+    map.size = padded_;
+    const std::size_t size = colour_.size, padded = padded_;
+    map.levels[0].resize(padded * padded);
+    parallel_for(padded, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y)
+            for (std::size_t x = 0; x < padded; ++x) map.levels[0][y * padded + x] = texel(std::min(size - 1, x), std::min(size - 1, y));
+    });
+    for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
+        const std::size_t side = padded >> level;
+        map.levels[level].resize(side * side);
+        parallel_for(side, 64, [&](std::size_t begin, std::size_t end) {
+            halve(map.levels[level - 1].data(), map.levels[level].data(), side, begin, end);
+        });
+    }
+    return map;
+}
+
+std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
+    std::vector<render::TilePixels> tiles;
+    if (slots.empty()) return tiles;
+    const stroke::Model& model = painting.model();
+    ink::refresh_srgb8(colour_, slots, painting.stack(), model.texels, painting.substrate(),
+                       painting.compose_options());
+    const ink::GutterPlan& plan = *painting.compose_options().seams;
+    refresh_heights(slots, painting);
+    std::set<std::uint32_t> changed;
+    for (const std::uint32_t slot : slots) {
+        changed.insert(model.texels.tile_of_slot[slot]);
+        for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
+            const std::uint32_t texel = plan.gutter.texels[plan.entries[e]];
+            changed.insert(texel / colour_.size / atlas::kTile * model.texels.tiles_per_side +
+                           texel % colour_.size / atlas::kTile);
+        }
+    }
+    for (const std::uint32_t index : changed) {
+        tiles.push_back(tile(index));
+        tiles.back().boxes = boxes_of(index, model.texels);
+    }
+    return tiles;
+}
+
+// The coarsest level has one texel per tile, and filtering reaches half a tile beyond it. What lies there need
+// not lie together on the model: parts far from each other get boxes of their own.
+const std::vector<render::GlBox>& Texture::boxes_of(std::uint32_t index, const atlas::TexelMap& map) {
+    const auto [at, is_new] = boxes_.try_emplace(index);
+    std::vector<render::GlBox>& boxes = at->second;
+    if (!is_new) return boxes;
+    constexpr int kReach = atlas::kTile / 2;
+    const auto texel = static_cast<float>(map.texel_size);
+    const float widest = 4 * atlas::kTile * texel;
+    const int per_side = static_cast<int>(map.tiles_per_side);
+    const int x0 = static_cast<int>(index) % per_side * atlas::kTile, y0 = static_cast<int>(index) / per_side * atlas::kTile;
+    const int most = per_side * atlas::kTile;
+    for (int y = std::max(0, y0 - kReach); y < std::min(most, y0 + atlas::kTile + kReach); ++y)
+        for (int x = std::max(0, x0 - kReach); x < std::min(most, x0 + atlas::kTile + kReach); ++x) {
+            const std::uint32_t slot = map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
+            const int t = y % atlas::kTile * atlas::kTile + x % atlas::kTile;
+            if (slot == kNone || map.tiles[slot].piece[static_cast<std::size_t>(t)] == atlas::kNoPiece) continue;
+            const Vec3f lo = map.position(slot, t) - 2 * texel, hi = map.position(slot, t) + 2 * texel;
+            const auto near = std::ranges::find_if(boxes, [&](const render::GlBox& b) {
+                const Vec3f size = glm::max(b.hi, hi) - glm::min(b.lo, lo);
+                return std::max({size.x, size.y, size.z}) <= widest;
+            });
+            if (near == boxes.end()) boxes.push_back({lo, hi});
+            else *near = {glm::min(near->lo, lo), glm::max(near->hi, hi)};
+        }
+    return boxes;
+}
+
+}  // namespace tuft::app
