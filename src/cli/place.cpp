@@ -11,6 +11,7 @@
 #include "brush/preset.h"
 #include "core/units.h"
 #include "stroke/line_width.h"
+#include "stroke/room.h"
 
 namespace tuft::cli {
 
@@ -94,25 +95,31 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
     // What lies flat, such as a sheet or a plate, is written on from above.
     const bool lies = box.size().z < 0.25 * std::min(box.size().x, box.size().y);
     const Vec3 look = lies ? Vec3{0, 0, -1} : Vec3{0, 1, 0}, before = box.centre() - box.diagonal() * look;
+    const double turn = a.place_turn_deg * kDegree, width = std::max(area.size().x, 0.05 * area.size().y);
+    double scale = a.place_width_mm > 0 && width > 0 ? a.place_width_mm * kMillimetre / width : 1;
     std::optional<mesh::SurfacePoint> at;
-    if (!a.place_mm.empty())
-        at = model.query->closest_point(kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]));
-    else if (at = model.query->ray(before, look); !at)
-        at = model.query->closest_point(before);
-    const auto [right, down] = upright(at->normal, a.place_turn_deg * kDegree);
-    const double width = std::max(area.size().x, 0.05 * area.size().y);
-    double scale = 1;
+    Vec3 normal;
     std::string note;
-    if (a.place_width_mm > 0 && width > 0) {
-        scale = a.place_width_mm * kMillimetre / width;
-    } else if (a.place_mm.empty() && width > 0) {
-        const double fill = std::max(area.size().x / extent_along(box, right), area.size().y / extent_along(box, down));
-        if (fill > 1 || fill < 0.01) {
-            scale = 0.6 / fill;
+    if (a.place_mm.empty()) {
+        const Vec2 size = std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);
+        const auto [right, down] = upright(-look, 0);
+        const double fill = std::max(size.x / extent_along(box, right), size.y / extent_along(box, down));
+        if (a.place_width_mm <= 0 && fill > 0 && (fill > 1 || fill < 0.01)) scale = 0.6 / fill;
+        if (const auto room = stroke::find_room(*model.query, look, scale * size)) {
+            at = room->at, normal = room->normal;
+            if (a.place_width_mm <= 0) scale *= room->scale;
+        } else {
+            if (at = model.query->ray(before, look); !at) at = model.query->closest_point(before);
+            normal = at->normal;
+        }
+        if (scale != 1 && a.place_width_mm <= 0)
             note = fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide{} (see --place-width, --brush)", area.size().x / kMillimetre,
                                scale * area.size().x / kMillimetre, a.brush.empty() ? " with brushes of that scale" : "");
-        }
+    } else {
+        at = model.query->closest_point(kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]));
+        normal = at->normal;
     }
+    const auto [right, down] = upright(normal, turn);
     if (a.place_mm.empty())
         console.note(fmt::format("the strokes name no place; they go to the {} of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",
                                  lies ? "top" : "front", at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre, note));

@@ -12,8 +12,8 @@ namespace tuft::cli {
 
 /// Puts flat strokes that have no place of their own, or all of them when a place is given,
 /// onto the model: as one drawing, upright, its middle at the nearest point to the place, else
-/// at the model's front (-y side). Without a width given, a drawing that has no place and is
-/// larger than the model or tiny beside it is scaled to fit, with a note. Scaling keeps the
+/// at the model's front (-y side) where there is room for it, as near to the middle as can be. Without a width
+/// given, a drawing that has no place and is larger than that room, or tiny beside the model, is scaled to fit, with a note. Scaling keeps the
 /// hand's speed; the brushes that the files name grow and shrink with the drawing. What had no place is draped; `--laying` says how all flat strokes lie.
 void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
                    const Paint& arguments, Console& console);
