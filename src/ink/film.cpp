@@ -77,6 +77,11 @@ bool load(Field& field, const std::vector<Sources>& sources, const std::array<st
     return any;
 }
 
+/// Of a tile's `others`.
+const Beyond* other_of(const Active& tile, std::uint32_t slot) {
+    return &*std::lower_bound(tile.others.begin(), tile.others.end(), slot, [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+}
+
 float at(const Plane* plane, int t) { return plane ? (*plane)[t] : 0; }
 
 bool all_zero(const Plane& plane) {
@@ -210,7 +215,7 @@ struct WetFilm::State : TileList {
         for (const atlas::SeamLink& l : tile.links) {
             if (slot != l.other_slot) {
                 slot = l.other_slot;
-                other = std::lower_bound(others[index].begin(), others[index].end(), std::pair(slot, 0u))->second;
+                other = other_of(tile, slot)->place;
             }
             const std::array<float, 2> here{at(mine.liquid[0], l.texel), at(mine.liquid[1], l.texel)};
             std::array<float, 2> there{};
@@ -239,7 +244,7 @@ struct WetFilm::State : TileList {
     void slopes_over_seams(std::size_t index, const Step& step, Work& work) const {
         const Active& tile = list[index];
         const Geometry& g = *geometry[tile.slot];
-        auto other = others[index].begin();
+        const Beyond* other = tile.others.data();
         for (std::size_t i = 0; i < tile.taps.size();) {
             const std::uint8_t texel = tile.taps[i].texel;
             const int k = field_of(texel), column = texel % kSide, row = texel / kSide;
@@ -253,9 +258,9 @@ struct WetFilm::State : TileList {
                     beyond[tap.side] += tap.weight * work.total[k + tap.other_texel % 3 - 1 + (tap.other_texel / 3 - 1) * kRow];
                     continue;
                 }
-                if (other->first != tap.other_slot) other = std::lower_bound(others[index].begin(), others[index].end(), std::pair(tap.other_slot, 0u));
-                if (other->second == kNone) continue;
-                const Sources& there = sources[other->second];
+                if (other->slot != tap.other_slot) other = other_of(tile, tap.other_slot);
+                if (other->place == kNone) continue;
+                const Sources& there = sources[other->place];
                 beyond[tap.side] += tap.weight * (at(there.liquid[0], tap.other_texel) + at(there.liquid[1], tap.other_texel));
             }
             if (!(here > 0)) continue;

@@ -8,6 +8,15 @@ namespace tuft::ink::wet {
 namespace {
 
 constexpr std::size_t kMostBeads = 256;
+/// Sides of a tile (`Outcome::sides`) that are all wet where the tiles around it may be reached.
+constexpr std::array<std::uint8_t, 9> kTowards{5, 1, 9, 4, 0, 8, 6, 2, 10};
+
+/// Calls fn(i) for the places around a tile that what is wet in it may reach.
+template <class Fn>
+void each_reached(const Active& tile, Fn&& fn) {
+    for (int i = 0; i < 9; ++i)
+        if (i != 4 && (tile.outcome.sides & kTowards[i]) == kTowards[i]) fn(i);
+}
 
 void look(const Canvas& canvas, Active& tile) {
     tile.outcome.sides = 15;
@@ -23,7 +32,24 @@ TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
     : map(m), seams(std::move(s)), geometry(m.n_slots()), mark_(m.n_slots(), 0), place_(m.n_slots(), kNone) {
     for (const atlas::SeamLink& l : seams.links) weights_.push_back(l.weight);
     taps_ = seams.taps;
+    find_near();
     limit_links();
+}
+
+void TileList::find_near() {
+    near_start_.assign(1, 0);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        const std::size_t first = near_.size();
+        const auto add = [&](std::uint32_t other, bool linked) {
+            if (other != kNone && (near_.size() == first || near_.back().slot != other)) near_.push_back({other, kNone, linked});
+        };
+        for (const atlas::SeamLink& l : links_of(slot)) add(l.other_slot, true);
+        for (std::uint32_t i = seams.tap_start[slot]; i < seams.tap_start[slot + 1]; ++i) add(seams.taps[i].other_slot, false);
+        const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
+        std::sort(begin, near_.end(), [](const Beyond& a, const Beyond& b) { return a.slot != b.slot ? a.slot < b.slot : a.linked > b.linked; });
+        near_.erase(std::unique(begin, near_.end(), [](const Beyond& a, const Beyond& b) { return a.slot == b.slot; }), near_.end());
+        near_start_.push_back(static_cast<std::uint32_t>(near_.size()));
+    }
 }
 
 void TileList::set_unevenness(double unevenness) {
@@ -134,9 +160,7 @@ void TileList::spread() {
         if (!tile.wet()) continue;
         want(tile.slot);
         const std::array<std::uint32_t, 9> near = around(tile.slot);
-        constexpr std::array<std::uint8_t, 9> sides{5, 1, 9, 4, 0, 8, 6, 2, 10};
-        for (int i = 0; i < 9; ++i)
-            if (i != 4 && (tile.outcome.sides & sides[i]) == sides[i]) want(near[i]);
+        each_reached(tile, [&](int i) { want(near[i]); });
         if (tile.seam_wet)
             for (const atlas::SeamLink& l : links_of(tile.slot)) want(l.other_slot);
     }
@@ -155,18 +179,23 @@ void TileList::spread() {
     list = std::move(next);
     for (Active& tile : list) {
         tile.around = around(tile.slot);
-        for (std::uint32_t& slot : tile.around) slot = slot == kNone ? kNone : place_[slot];
+        tile.absent = 0;
+        for (int i = 0; i < 9; ++i) {
+            std::uint32_t& at = tile.around[i];
+            if (at == kNone) continue;
+            at = place_[at];
+            if (at == kNone) tile.absent |= 1u << i;
+        }
     }
-    others.assign(list.size(), {});
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        for (const atlas::SeamLink& l : list[i].links)
-            if (others[i].empty() || others[i].back().first != l.other_slot)
-                others[i].push_back({l.other_slot, place_[l.other_slot]});
-        for (const atlas::SeamTap& t : list[i].taps)
-            if (t.other_slot != kNone && (others[i].empty() || others[i].back().first != t.other_slot))
-                others[i].push_back({t.other_slot, place_[t.other_slot]});
-        std::sort(others[i].begin(), others[i].end());
-        others[i].erase(std::unique(others[i].begin(), others[i].end()), others[i].end());
+    others_.clear();
+    for (const Active& tile : list)
+        for (std::uint32_t i = near_start_[tile.slot]; i < near_start_[tile.slot + 1]; ++i)
+            others_.push_back({near_[i].slot, place_[near_[i].slot], near_[i].linked});
+    std::size_t from = 0;
+    for (Active& tile : list) {
+        const std::size_t n = near_start_[tile.slot + 1] - near_start_[tile.slot];
+        tile.others = std::span<const Beyond>(others_).subspan(from, n);
+        from += n;
     }
     for (const Active& tile : list) place_[tile.slot] = kNone;
     readers = std::make_unique<std::atomic<std::uint32_t>[]>(list.size());
@@ -174,8 +203,26 @@ void TileList::spread() {
     for (std::size_t i = 0; i < list.size(); ++i) each_read(i, [&](std::uint32_t read) { ++n_readers[read]; });
 }
 
-bool TileList::changed() const {
-    return std::any_of(list.begin(), list.end(), [](const Active& tile) { return tile.spreads; });
+bool TileList::changed() {
+    if (std::none_of(list.begin(), list.end(), [](const Active& tile) { return tile.spreads; })) return false;
+    wanted_.assign(list.size(), 0);
+    bool more = false;
+    for (std::size_t at = 0; at < list.size() && !more; ++at) {
+        const Active& tile = list[at];
+        if (!tile.wet()) continue;
+        wanted_[at] = 1;
+        each_reached(tile, [&](int i) {
+            if (tile.around[i] != kNone) wanted_[tile.around[i]] = 1;
+            else more = more || (tile.absent >> i & 1);
+        });
+        if (!tile.seam_wet) continue;
+        for (const Beyond& other : tile.others) {
+            if (!other.linked) continue;
+            if (other.place != kNone) wanted_[other.place] = 1;
+            else more = true;
+        }
+    }
+    return more || std::find(wanted_.begin(), wanted_.end(), 0) != wanted_.end();
 }
 
 void TileList::look_at(const Canvas& canvas, std::span<const std::uint32_t> slots) {

@@ -24,11 +24,20 @@ struct alignas(64) Sources {
     std::array<const Plane*, kMaxPigments> open{};
 };
 
+/// A tile over a seam from another one.
+struct Beyond {
+    std::uint32_t slot = kNone;
+    std::uint32_t place = kNone;            ///< in the list
+    bool linked = false;                    ///< liquid goes there; else only slopes are taken from it
+};
+
 /// A tile in the list of a step.
 struct Active {
     std::uint32_t slot = kNone;
     std::array<std::uint32_t, 9> around{};  ///< places in the list, row by row, this one in the middle
+    std::uint32_t absent = 0;               ///< bits: tiles around it that there are, but not in the list
     std::uint32_t pigments = 0;             ///< bits: those computed
+    std::span<const Beyond> others;         ///< ascending slots
     std::span<const atlas::SeamLink> links;
     std::span<const atlas::SeamTap> taps;
     Outcome outcome;
@@ -48,8 +57,6 @@ struct TileList {
     atlas::SeamLinks seams;                 ///< scaled: what goes over seams stays within what a step allows
     std::vector<std::unique_ptr<Geometry>> geometry;  ///< [n_slots] null: never wet
     std::vector<Active> list;               ///< ascending slots
-    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> others;  ///< of the list: slots over seams,
-                                                                              ///< places in the list
     std::unique_ptr<std::atomic<std::uint32_t>[]> readers;  ///< of the list: tiles that still need this one's planes
 
     std::vector<std::uint32_t> n_readers;   ///< of the list: how many there are in a step
@@ -65,8 +72,8 @@ struct TileList {
     void begin(const Canvas& canvas);
     /// The list becomes the wet tiles and those that liquid may reach in the next step.
     void spread();
-    /// Whether other tiles may be reached after this step than before it.
-    bool changed() const;
+    /// Whether other tiles may be reached after this step than before it: whether `spread` would change the list.
+    bool changed();
     /// Looks at slots that something else wrote to, and takes them into the list.
     void look_at(const Canvas& canvas, std::span<const std::uint32_t> slots);
     /// Where beads may start: of each cube of a grain's length the place that gives way first, the
@@ -78,17 +85,22 @@ struct TileList {
     void each_read(std::size_t index, Fn&& fn) const {
         for (const std::uint32_t i : list[index].around)
             if (i != kNone) fn(i);
-        for (const auto& [slot, i] : others[index])
-            if (i != kNone) fn(i);
+        for (const Beyond& other : list[index].others)
+            if (other.place != kNone) fn(other.place);
     }
 
   private:
     std::vector<float> weights_;        ///< of the links as they came
     std::vector<atlas::SeamTap> taps_;  ///< as they came
     Ground ground_;
+    std::vector<std::uint32_t> near_start_;  ///< [n_slots + 1]
+    std::vector<Beyond> near_;          ///< over seams, by slot; places unknown
+    std::vector<Beyond> others_;        ///< of the list
+    std::vector<std::uint8_t> wanted_;  ///< of the list: scratch
     std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch
     std::vector<std::uint32_t> place_;  ///< [n_slots] scratch
 
+    void find_near();
     void look_anew();
     void limit_links();
     void close_taps();
