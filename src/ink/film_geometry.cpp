@@ -175,14 +175,14 @@ std::uint16_t packed(double g) {
 
 /// Σ conductances of a texel.
 float sum_at(const Geometry& g, int t) {
-    const int column = t % kSide, row = t / kSide, k = field_of(t);
+    const int column = t % kSide, row = t / kSide;
     const int straight = g.gx[Geometry::right_of(column, row)] + g.gx[Geometry::right_of(column - 1, row)] + g.gy[t] + g.gy[t + kSide];
     float sum = static_cast<float>(straight) * kConductanceUnit;
     if (!g.gd) return sum;
     const auto& d = *g.gd;
     const auto diagonal = [](int size) { return static_cast<float>(std::max(size, 0)) * kDiagonalUnit; };
-    for (const int low : {k, k - kRow - 1}) sum += diagonal(d[low]);
-    for (const int low : {k - 1, k - kRow}) sum += diagonal(-d[low]);
+    for (const int back : {0, 1}) sum += diagonal(d[Geometry::corner_of(column - back, row - back)]);
+    for (const int back : {0, 1}) sum += diagonal(-d[Geometry::corner_of(column - 1 + back, row - back)]);
     return sum;
 }
 
@@ -226,8 +226,10 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
             const double size = m > 0 ? conductance(m, s, n.at(column + 1, row + 1), mean)
                                       : conductance(-m, n.at(column + 1, row), n.at(column, row + 1), mean);
             const double units = std::min(std::round(size / static_cast<double>(kDiagonalUnit)), 32767.0);
-            diagonals[field_at(column, row)] = static_cast<std::int16_t>(m > 0 ? units : -units);
+            diagonals[Geometry::corner_of(column, row)] = static_cast<std::int16_t>(m > 0 ? units : -units);
             any |= m != 0;
+            g.ups |= m > 0 && units > 0;
+            g.downs |= m < 0 && units > 0;
         }
     if (any) g.gd = std::make_unique<Geometry::Diagonals>(diagonals);
     for (int t = 0; t < kTexels; ++t) g.stiffness = std::max(g.stiffness, g.inverse[t] * sum_at(g, t));

@@ -20,18 +20,24 @@ TUFT_INLINE float smaller(float a, float b) { return a < b ? a : b; }
 TUFT_INLINE float positive(float a) { return a > 0 ? a : 0; }
 TUFT_INLINE float rate_of(float total, float grip) { return total > 0 ? 1 / larger(larger(total, grip), kLeast) : 0; }
 
-/// One end of a face.
+/// One end of a face: what is there, and what of it counts.
 struct End {
-    float w, s, t, rate, grain;
+    float w, s, t, rate, grain, above, free, carrying;
 };
 /// Rows of them.
 struct Ends {
-    const float *w, *s, *t, *rate, *grain;
+    const float *w, *s, *t, *rate, *grain, *above, *free, *carrying;
 
-    TUFT_INLINE End at(int x) const { return {w[x], s[x], t[x], rate[x], grain[x]}; }
+    TUFT_INLINE End at(int x) const { return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x]}; }
 };
 TUFT_INLINE Ends ends(const Work& o, const Geometry& g, int k) {
-    return {&o.w[k], &o.s[k], &o.total[k], &o.rate[k], &g.grain[k]};
+    return {&o.w[k], &o.s[k], &o.total[k], &o.rate[k], &g.grain[k], &o.above[k], &o.free[k], &o.carrying[k]};
+}
+/// Fibres hold grains back from what seeps.
+TUFT_INLINE float passing_of(const Step& p) { return p.pores > 0 ? p.passing : 1; }
+TUFT_INLINE End end_of(float w, float s, float grain, const Step& p) {
+    const float t = w + s;
+    return {w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.hold), w + passing_of(p) * s};
 }
 
 /// What differs between tiles; all give the same numbers where they apply.
@@ -41,116 +47,107 @@ struct Law {
 
     /// Flux of liquid on the surface between two texels, film units · mean area.
     static TUFT_INLINE float film_flux(float g, const End& e0, const End& e1, const Step& p) {
-        float held = p.threshold;
+        float above = e0.above + e1.above;  // the mean's double
         if constexpr (kDry) {
             const float onto0 = e0.t > 0 ? 0 : p.pin * e0.grain, onto1 = e1.t > 0 ? 0 : p.pin * e1.grain;
-            held = held + (onto0 + onto1);
+            const float held = p.threshold + (onto0 + onto1);
+            above = positive(e0.w - held) + positive(e1.w - held);
         }
-        const float above = 0.5f * (positive(e0.w - held) + positive(e1.w - held));
-        const float free = 0.5f * (positive(e0.w - p.hold) + positive(e1.w - p.hold));
-        return g * smaller(p.flow * above + (above > 0 ? p.levelling * free : 0), p.limit) * (e0.w - e1.w);
+        const float level = (0.5f * p.levelling) * (e0.free + e1.free);
+        return g * smaller((0.5f * p.flow) * above + (above > 0 ? level : 0), p.limit) * (e0.w - e1.w);
     }
 
     static TUFT_INLINE float pore_flux(float g, const End& e0, const End& e1, const Step& p) {
-        return g * smaller(p.flow * (0.5f * (e0.s + e1.s)), p.limit) * (e0.s - e1.s);
+        return g * smaller((0.5f * p.flow) * (e0.s + e1.s), p.limit) * (e0.s - e1.s);
     }
 };
 
 struct Carriers {
     float a, b;
 };
-TUFT_INLINE Carriers carriers(float g, float flux, float t0, float t1, const Step& p) {
-    const float exchange = p.mixing * g * smaller(t0, t1);
-    return {positive(flux) + exchange, -positive(-flux) - exchange};
-}
-/// Fibres hold grains back from what seeps.
-TUFT_INLINE Carriers carriers(float g, float fw, float fs, const End& e0, const End& e1, const Step& p) {
-    return carriers(g, fw + p.passing * fs, e0.w + p.passing * e0.s, e1.w + p.passing * e1.s, p);
+TUFT_INLINE Carriers carriers(float g, float flux, const End& e0, const End& e1, const Step& p) {
+    const float exchange = p.mixing * g * smaller(e0.carrying, e1.carrying);
+    return {positive(flux) + exchange, smaller(flux, 0) - exchange};
 }
 
 /// Faces side by side.
 template <class Law, int kFaces>
-TUFT_INLINE void faces(float* w, float* s, float* a, float* b, const float* g, const Ends& from, const Ends& to, const Step& p) {
+TUFT_INLINE void faces(Faces& f, int k, const float* g, const Ends& from, const Ends& to, const Step& p) {
+    float *w = &f.w[k], *s = &f.s[k], *a = &f.a[k], *b = &f.b[k];
 #pragma GCC ivdep
     for (int x = 0; x < kFaces; ++x) {
         const End e0 = from.at(x), e1 = to.at(x);
         const float fw = Law::film_flux(g[x], e0, e1, p);
-        Carriers c;
+        float flux = fw;
         if constexpr (Law::pores) {
             const float fs = Law::pore_flux(g[x], e0, e1, p);
             s[x] = fs;
-            c = carriers(g[x], fw, fs, e0, e1, p);
-        } else c = carriers(g[x], fw, e0.t, e1.t, p);
+            flux = fw + p.passing * fs;
+        }
+        const Carriers c = carriers(g[x], flux, e0, e1, p);
         w[x] = fw;
         a[x] = c.a * e0.rate;
         b[x] = c.b * e1.rate;
     }
 }
 
-TUFT_INLINE void unpack(Work& o, const Geometry& g) {
-    float* x = &o.gx[field_at(-8, 0)];
-    for (int i = 0; i < kSide * kRow; ++i) x[i] = static_cast<float>(g.gx[i]) * kConductanceUnit;
-    for (int row = -1; row < kSide; ++row)
-        for (int c = 0; c < kSide; ++c)
-            o.gy[field_at(c, row)] = static_cast<float>(g.gy[(row + 1) * kSide + c]) * kConductanceUnit;
-    if (!g.gd) return;
-    const std::int16_t* d = g.gd->data();
-    for (int k = 0; k < kField; ++k) o.gd[k] = static_cast<float>(d[k]) * kDiagonalUnit;
-}
-
-template <class Law>
-TUFT_INLINE void straight_faces(Work& o, const Geometry& g, const Step& p) {
-    for (int row = 0; row < kSide; ++row) {
-        const int k = field_at(-8, row);
-        faces<Law, kRow>(&o.x.w[k], &o.x.s[k], &o.x.a[k], &o.x.b[k], &o.gx[k], ends(o, g, k), ends(o, g, k + 1), p);
-    }
-    for (int row = -1; row < kSide; ++row) {
-        const int k = field_at(0, row);
-        faces<Law, kSide>(&o.y.w[k], &o.y.s[k], &o.y.a[k], &o.y.b[k], &o.gy[k], ends(o, g, k), ends(o, g, k + kRow), p);
-    }
-}
-
-/// A square has one diagonal at most: from k to k + 25 where gd > 0, else from k + 1 to k + 24.
-template <class Law>
-TUFT_INLINE void diagonal_faces(Work& o, const Geometry& g, const Step& p) {
-    const float* gd = o.gd.data();
-    for (int row = -1; row < kSide; ++row) {
-        const int k0 = field_at(-1, row);
-        const Ends low = ends(o, g, k0), right = ends(o, g, k0 + 1), left = ends(o, g, k0 + kRow),
-                   high = ends(o, g, k0 + kRow + 1);
+/// What faces need of the texels from k on.
+template <int kWide>
+TUFT_INLINE void levels(Work& o, int k, const Step& p) {
+    const float *w = &o.w[k], *s = &o.s[k], passing = passing_of(p);
+    float *total = &o.total[k], *rate = &o.rate[k], *above = &o.above[k], *free = &o.free[k], *carrying = &o.carrying[k];
 #pragma GCC ivdep
-        for (int x = 0; x < kRow; ++x) {
-            const float d = gd[k0 + x];
-            const bool up = d > 0;
-            const auto one = [up](float a, float b) __attribute__((always_inline)) { return up ? a : b; };
-            const End l = low.at(x), r = right.at(x), u = left.at(x), h = high.at(x);
-            const End e0{one(l.w, r.w), one(l.s, r.s), one(l.t, r.t), one(l.rate, r.rate), one(l.grain, r.grain)};
-            const End e1{one(h.w, u.w), one(h.s, u.s), one(h.t, u.t), one(h.rate, u.rate), one(h.grain, u.grain)};
-            const float size = up ? d : -d;
-            const float fw = Law::film_flux(size, e0, e1, p);
-            Carriers c;
-            if constexpr (Law::pores) {
-                const float fs = Law::pore_flux(size, e0, e1, p);
-                o.up.s[k0 + x] = up ? fs : 0;
-                o.down.s[k0 + x] = up ? 0 : fs;
-                c = carriers(size, fw, fs, e0, e1, p);
-            } else c = carriers(size, fw, e0.t, e1.t, p);
-            const float a = c.a * e0.rate, b = c.b * e1.rate;
-            o.up.w[k0 + x] = up ? fw : 0;
-            o.down.w[k0 + x] = up ? 0 : fw;
-            o.up.a[k0 + x] = up ? a : 0;
-            o.down.a[k0 + x] = up ? 0 : a;
-            o.up.b[k0 + x] = up ? b : 0;
-            o.down.b[k0 + x] = up ? 0 : b;
-        }
+    for (int x = 0; x < kWide; ++x) {
+        const float t = w[x] + s[x];
+        total[x] = t;
+        rate[x] = rate_of(t, p.grip);
+        above[x] = positive(w[x] - p.threshold);
+        free[x] = positive(w[x] - p.hold);
+        carrying[x] = w[x] + passing * s[x];
     }
 }
 
+TUFT_INLINE void unpack(Work& o, const Geometry& g) {
+    for (std::size_t i = 0; i < o.gx.size(); ++i) o.gx[i] = static_cast<float>(g.gx[i]) * kConductanceUnit;
+    for (std::size_t i = 0; i < o.gy.size(); ++i) o.gy[i] = static_cast<float>(g.gy[i]) * kConductanceUnit;
+    if (!g.gd) return;
+    for (std::size_t i = 0; i < o.gup.size(); ++i) {
+        const float d = static_cast<float>((*g.gd)[i]) * kDiagonalUnit;
+        o.gup[i] = positive(d);
+        o.gdown[i] = positive(-d);
+    }
+}
+
+/// Faces right of texels.
 template <class Law>
-TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& p) {
+TUFT_INLINE void across(Work& o, const Geometry& g, int row, const Step& p) {
+    const int k = field_at(-8, row);
+    faces<Law, kRow>(o.x, k, &o.gx[Geometry::right_of(-8, row)], ends(o, g, k), ends(o, g, k + 1), p);
+}
+
+/// Faces above texels, and diagonals. A square has one at most.
+template <class Law>
+TUFT_INLINE void upwards(Work& o, const Geometry& g, int row, const Step& p) {
+    const int k0 = field_at(0, row), k = field_at(-8, row), corner = Geometry::corner_of(-8, row);
+    faces<Law, kSide>(o.y, k0, &o.gy[(row + 1) * kSide], ends(o, g, k0), ends(o, g, k0 + kRow), p);
+    if (g.ups) faces<Law, kRow>(o.up, k, &o.gup[corner], ends(o, g, k), ends(o, g, k + kRow + 1), p);
+    if (g.downs) faces<Law, kRow>(o.down, k, &o.gdown[corner], ends(o, g, k + 1), ends(o, g, k + kRow), p);
+}
+
+/// Row by row, so that the processor divides for one while it multiplies for another.
+template <class Law>
+TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
+    const Step p = step;  // where nothing that is written could change it
     unpack(o, g);
-    straight_faces<Law>(o, g, p);
-    if (g.gd) diagonal_faces<Law>(o, g, p);
+    levels<kRow>(o, field_at(-8, -1), p);
+    levels<kRow>(o, field_at(-8, 0), p);
+    for (int row = 0; row < kSide; ++row) {
+        levels<kRow>(o, field_at(-8, row + 1), p);  // with the column right of the row before
+        upwards<Law>(o, g, row - 1, p);
+        across<Law>(o, g, row, p);
+    }
+    levels<8>(o, field_at(kSide, kSide), p);
+    upwards<Law>(o, g, kSide - 1, p);
 }
 TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) {
     if (p.pores > 0) all_faces<Law<true, false>>(o, g, p);
@@ -164,21 +161,28 @@ TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) {
 struct Least {
     bool dry, thin;  ///< a texel of a chart has no liquid, less than is over a rim
 };
-/// total and rate, and what there is least of.
-TUFT_CLONES Least totals(Work& o, const Geometry& g, float grip, float depth) {
-#pragma GCC ivdep
-    for (int k = 7; k < kField; ++k) {
-        const float t = o.w[k] + o.s[k];
-        o.total[k] = t;
-        o.rate[k] = rate_of(t, grip);
-    }
+/// Of all texels and those round them.
+TUFT_CLONES float least_total(const Work& o) {
+    const float *w = o.w.data(), *s = o.s.data();
+    alignas(64) float least[kLanes];
+    const auto total = [w, s](int column, int row) __attribute__((always_inline)) { return w[field_at(column, row)] + s[field_at(column, row)]; };
+    for (int x = 0; x < kLanes; ++x) least[x] = total(x, -1);
+    for (int row = 0; row <= kSide; ++row)
+        for (int x = 0; x < kLanes; ++x) least[x] = smaller(least[x], total(x, row));
+    float all = least[0];
+    for (const float l : least) all = smaller(all, l);
+    for (int row = -1; row <= kSide; ++row) all = smaller(all, smaller(total(-1, row), total(kSide, row)));
+    return all;
+}
+TUFT_CLONES Least look_for_rims(const Work& o, const Geometry& g, float depth) {
     std::uint32_t dry = 0, thin = 0;
     for (int row = -1; row <= kSide; ++row) {
         std::uint32_t none = 0, little = 0;
         const int k = field_at(-1, row);
         for (int x = 0; x < kSide + 2; ++x) {
-            none |= static_cast<std::uint32_t>(!(o.total[k + x] > 0)) << x;
-            little |= static_cast<std::uint32_t>(o.total[k + x] < depth) << x;
+            const float total = o.w[k + x] + o.s[k + x];
+            none |= static_cast<std::uint32_t>(!(total > 0)) << x;
+            little |= static_cast<std::uint32_t>(total < depth) << x;
         }
         dry |= g.valid[static_cast<std::size_t>(row + 1)] & none;
         thin |= g.valid[static_cast<std::size_t>(row + 1)] & little;
@@ -190,24 +194,29 @@ TUFT_CLONES Least totals(Work& o, const Geometry& g, float grip, float depth) {
 TUFT_INLINE float into(const float* x, const float* y, int k) {
     return (x[k - 1] - x[k]) + (y[k - kRow] - y[k]);
 }
-TUFT_INLINE float into_askew(const float* up, const float* down, int k) {
-    return (up[k - kRow - 1] - up[k]) + (down[k - kRow] - down[k - 1]);
-}
+TUFT_INLINE float into_up(const float* up, int k) { return up[k - kRow - 1] - up[k]; }
+TUFT_INLINE float into_down(const float* down, int k) { return down[k - kRow] - down[k - 1]; }
 
-TUFT_CLONES void divergence(float* __restrict d, const float* __restrict x, const float* __restrict y,
-                            const float* __restrict inverse) {
-    for (int row = 0; row < kSide; ++row)
-        for (int c = 0; c < kSide; ++c)
-            d[row * kSide + c] = into(x, y, field_at(c, row)) * inverse[row * kSide + c];
-}
-TUFT_CLONES void divergence_askew(float* __restrict d, const float* __restrict x, const float* __restrict y,
-                                  const float* __restrict up, const float* __restrict down,
-                                  const float* __restrict inverse) {
+template <bool kUp, bool kDown>
+TUFT_INLINE void diverge(float* __restrict d, const float* __restrict x, const float* __restrict y,
+                         const float* __restrict up, const float* __restrict down, const float* __restrict inverse) {
     for (int row = 0; row < kSide; ++row)
         for (int c = 0; c < kSide; ++c) {
             const int k = field_at(c, row);
-            d[row * kSide + c] = (into(x, y, k) + into_askew(up, down, k)) * inverse[row * kSide + c];
+            float sum = into(x, y, k);
+            if constexpr (kUp && kDown) sum += into_up(up, k) + into_down(down, k);
+            else if constexpr (kUp) sum += into_up(up, k);
+            else if constexpr (kDown) sum += into_down(down, k);
+            d[row * kSide + c] = sum * inverse[row * kSide + c];
         }
+}
+TUFT_CLONES void divergence(float* d, const Work& o, Field Faces::*f, const Geometry& g) {
+    const float *x = (o.x.*f).data(), *y = (o.y.*f).data(), *up = (o.up.*f).data(), *down = (o.down.*f).data();
+    const float* inverse = g.inverse.data();
+    if (g.ups && g.downs) diverge<true, true>(d, x, y, up, down, inverse);
+    else if (g.ups) diverge<true, false>(d, x, y, up, down, inverse);
+    else if (g.downs) diverge<false, true>(d, x, y, up, down, inverse);
+    else diverge<false, false>(d, x, y, up, down, inverse);
 }
 
 /// Slope, over a texel, of what stands over the rim: Σ of the sides that go down, both ways squared.
@@ -229,7 +238,7 @@ TUFT_CLONES void slope_to_rims(float* __restrict n, const float* __restrict t, c
 /// a + d, rounded up or down by chance; never below 0.
 TUFT_INLINE float sum_of(float a, float d, float noise) {
     const float scale = std::bit_cast<float>(std::bit_cast<std::uint32_t>(a) & 0x7f800000u);
-    return positive(a + (d + noise * (scale * 0x1p-23f)));
+    return positive(a + (d + noise * scale));
 }
 
 /// A texel's new liquid, soaking and drying; `air`: what went into the air; `closed`: 1 for texels
@@ -275,55 +284,53 @@ TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restr
     }
 }
 
+/// Σ air times area: in float over a column, whose sixteen numbers are alike.
 TUFT_CLONES double integral(const float* __restrict air, const float* __restrict inverse) {
-    double sums[kLanes] = {};
+    alignas(64) float sums[kLanes] = {};
     for (int t = 0; t < kTexels; t += kLanes)
         for (int lane = 0; lane < kLanes; ++lane) {
-            const float area = inverse[t + lane] > 0 ? 1 / inverse[t + lane] : 0;
-            sums[lane] += static_cast<double>(air[t + lane] * area);
+            const float in = inverse[t + lane];
+            sums[lane] += in > 0 ? air[t + lane] / in : 0;
         }
     double sum = 0;
-    for (const double g : sums) sum += g;
+    for (const float g : sums) sum += static_cast<double>(g);
     return sum;
 }
 
-TUFT_INLINE float carried(const float* a, const float* b, const float* p, int k, int from, int to) {
-    return a[k] * p[from] + b[k] * p[to];
+TUFT_INLINE float carried(const Faces& f, const float* p, int k, int from, int to) {
+    return f.a[k] * p[from] + f.b[k] * p[to];
 }
 
 /// Each flux is computed for both its texels, from the same numbers.
-template <bool kAskew, bool kSeams>
-TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse,
-                       const float* __restrict noise) {
+template <bool kUp, bool kDown, bool kSeams>
+TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse, const float* __restrict noise) {
     const float* p = o.p.data();
-    const auto side = [p](const Faces& f, int k, int from, int to) __attribute__((always_inline)) {
-        return carried(f.a.data(), f.b.data(), p, k, from, to);
-    };
     for (int row = 0; row < kSide; ++row) {
 #pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
             const int k = field_at(x, row), i = row * kSide + x;
-            float d = (side(o.x, k - 1, k - 1, k) - side(o.x, k, k, k + 1)) +
-                      (side(o.y, k - kRow, k - kRow, k) - side(o.y, k, k, k + kRow));
-            if constexpr (kAskew)
-                d += (side(o.up, k - kRow - 1, k - kRow - 1, k) - side(o.up, k, k, k + kRow + 1)) +
-                     (side(o.down, k - kRow, k - kRow + 1, k) - side(o.down, k - 1, k, k + kRow - 1));
+            float d = (carried(o.x, p, k - 1, k - 1, k) - carried(o.x, p, k, k, k + 1)) +
+                      (carried(o.y, p, k - kRow, k - kRow, k) - carried(o.y, p, k, k, k + kRow));
+            float askew = 0;
+            if constexpr (kUp) askew = carried(o.up, p, k - kRow - 1, k - kRow - 1, k) - carried(o.up, p, k, k, k + kRow + 1);
+            if constexpr (kDown) askew += carried(o.down, p, k - kRow, k - kRow + 1, k) - carried(o.down, p, k - 1, k, k + kRow - 1);
+            if constexpr (kUp || kDown) d += askew;
             d *= inverse[i];
             if constexpr (kSeams) d += o.dp[i];
             out[i] = sum_of(p[k], d, noise[i]);
         }
     }
 }
-TUFT_CLONES void carry_straight(float* __restrict out, const Work& o, const float* __restrict inverse,
-                                const float* __restrict noise, bool seams) {
-    if (seams) carry<false, true>(out, o, inverse, noise);
-    else carry<false, false>(out, o, inverse, noise);
+template <bool kSeams>
+TUFT_INLINE void carry_all(float* __restrict out, const Work& o, const Geometry& g, const float* __restrict noise) {
+    const float* inverse = g.inverse.data();
+    if (g.ups && g.downs) carry<true, true, kSeams>(out, o, inverse, noise);
+    else if (g.ups) carry<true, false, kSeams>(out, o, inverse, noise);
+    else if (g.downs) carry<false, true, kSeams>(out, o, inverse, noise);
+    else carry<false, false, kSeams>(out, o, inverse, noise);
 }
-TUFT_CLONES void carry_askew(float* __restrict out, const Work& o, const float* __restrict inverse,
-                             const float* __restrict noise, bool seams) {
-    if (seams) carry<true, true>(out, o, inverse, noise);
-    else carry<true, false>(out, o, inverse, noise);
-}
+TUFT_CLONES void carry_inside(float* out, const Work& o, const Geometry& g, const float* noise) { carry_all<false>(out, o, g, noise); }
+TUFT_CLONES void carry_over_seams(float* out, const Work& o, const Geometry& g, const float* noise) { carry_all<true>(out, o, g, noise); }
 
 TUFT_CLONES void gather_rows(float* __restrict to, const float* above, const float* __restrict here,
                              const float* below) {
@@ -351,28 +358,22 @@ void gather(Field& field, const std::array<const float*, 9>& planes) {
 }
 
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
-    const Least least = totals(work, g, step.grip, step.rim > 0 ? step.rim_depth : 0);
-    (least.dry ? faces_dry : faces_wet)(work, g, step);
-    if (least.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
+    const float depth = step.rim > 0 ? step.rim_depth : 0, least = least_total(work);
+    const Least rims = least > 0 && least >= depth ? Least{} : look_for_rims(work, g, depth);
+    (rims.dry ? faces_dry : faces_wet)(work, g, step);
+    if (rims.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
     else work.rim_slope.fill(0);
-    return least.thin;
+    return rims.thin;
 }
 
 void liquid_changes(Work& work, const Geometry& g, const Step& step) {
-    const float* inverse = g.inverse.data();
-    const auto change = [&](std::array<float, kTexels>& d, Field Faces::*f) {
-        if (g.gd)
-            divergence_askew(d.data(), (work.x.*f).data(), (work.y.*f).data(), (work.up.*f).data(),
-                             (work.down.*f).data(), inverse);
-        else divergence(d.data(), (work.x.*f).data(), (work.y.*f).data(), inverse);
-    };
-    change(work.dw, &Faces::w);
-    if (step.pores > 0) change(work.ds, &Faces::s);
+    divergence(work.dw.data(), work, &Faces::w, g);
+    if (step.pores > 0) divergence(work.ds.data(), work, &Faces::s, g);
     else work.ds.fill(0);
 }
 
 void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std::uint64_t seed) {
-    (g.gd ? carry_askew : carry_straight)(p, work, g.inverse.data(), dither(seed), seams);
+    (seams ? carry_over_seams : carry_inside)(p, work, g, dither(seed));
 }
 
 Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
@@ -414,7 +415,7 @@ const float* dither(std::uint64_t seed) {
         std::array<float, kOffsets + kTexels> t{};
         // Pairs of opposite numbers: no sum over a tile leans to a side.
         for (std::size_t i = 0; i < t.size(); i += 2) {
-            t[i] = static_cast<float>(uniform(0x646974, i) - 0.5);
+            t[i] = static_cast<float>(uniform(0x646974, i) - 0.5) * 0x1p-23f;
             t[i + 1] = -t[i];
         }
         return t;
@@ -424,16 +425,16 @@ const float* dither(std::uint64_t seed) {
 
 SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, const std::array<float, 2>& s,
                    const std::array<float, 2>& grain, const Step& step) {
-    const End e0{w[0], s[0], w[0] + s[0], 0, grain[0]}, e1{w[1], s[1], w[1] + s[1], 0, grain[1]};
+    const End e0 = end_of(w[0], s[0], grain[0], step), e1 = end_of(w[1], s[1], grain[1], step);
     SeamFlux out;
     out.w = Law<true, true>::film_flux(weight, e0, e1, step);
     if (step.pores > 0) out.s = Law<true, true>::pore_flux(weight, e0, e1, step);
-    Carriers c = carriers(weight, out.w, out.s, e0, e1, step);
+    Carriers c = carriers(weight, out.w + step.passing * out.s, e0, e1, step);
     const float more = 0.5f * (smaller(larger(1 / larger(apart, kLeast), 1), 2) - 1) * std::abs(out.w + step.passing * out.s);
     c.a += more;
     c.b -= more;
-    out.a = c.a * rate_of(e0.t, step.grip);
-    out.b = c.b * rate_of(e1.t, step.grip);
+    out.a = c.a * e0.rate;
+    out.b = c.b * e1.rate;
     return out;
 }
 

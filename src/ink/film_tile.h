@@ -36,12 +36,15 @@ struct alignas(64) Geometry {
     std::array<float, kTexels> inverse{};  ///< mean texel's area over the texel's; 0 outside the charts
     std::array<std::uint32_t, kSide + 2> valid{};  ///< bit column + 1: a texel of a chart
     float stiffness = 0;                   ///< greatest Σ conductances over area
-    /// Of diagonals, over kDiagonalUnit: > 0 from k to k + 25, < 0 (its size) from k + 1 to k + 24; null: none.
-    struct alignas(64) Diagonals : std::array<std::int16_t, kField> {};
+    /// Of diagonals of the squares above and right of columns -8 to 15 of rows -1 to 15, over kDiagonalUnit: > 0 from
+    /// that texel, < 0 (its size) from the one to its right; null: none.
+    struct alignas(64) Diagonals : std::array<std::int16_t, (kSide + 1) * kRow> {};
     std::unique_ptr<Diagonals> gd;
+    bool ups = false, downs = false;       ///< whether there are any > 0, < 0
     Field grain{};                         ///< pin of the place, over the mean
 
     static constexpr int right_of(int column, int row) { return row * kRow + 8 + column; }
+    static constexpr int corner_of(int column, int row) { return right_of(column, row + 1); }
 };
 /// What lets liquid flow less or more easily, from place to place.
 struct Ground {
@@ -80,9 +83,13 @@ struct alignas(64) Faces {
 
 /// The fields of a tile in work.
 struct alignas(64) Work {
-    Field gx{}, gy{}, gd{};        ///< conductances: right of texels, above them, diagonals
+    alignas(64) std::array<float, kSide * kRow> gx;  ///< conductances as in `Geometry`
+    alignas(64) std::array<float, kTexels + kSide> gy;
+    alignas(64) std::array<float, (kSide + 1) * kRow> gup, gdown;
     Field w{}, s{}, total{};       ///< liquid
     Field rate{};                  ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
+    Field above{}, free{};         ///< liquid above threshold, above hold
+    Field carrying{};              ///< liquid in which pigments move, M
     Field p{};                     ///< one pigment
     Faces x, y, up, down;          ///< up: of diagonals k to k + 25, down: k + 1 to k + 24
     std::array<float, kTexels> dw, ds, rim_slope;  ///< the last: of liquid no higher than `rim_depth`, a texel
@@ -91,7 +98,7 @@ struct alignas(64) Work {
 
 /// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
 void gather(Field& field, const std::array<const float*, 9>& planes);
-/// total, rate, and what goes through the faces. Whether less than rim_depth stands on some texel.
+/// What follows from w and s, and what goes through the faces. Whether less than rim_depth stands on some texel.
 bool fluxes(Work& work, const Geometry& g, const Step& step);
 /// dw and ds of the texels from the fluxes.
 void liquid_changes(Work& work, const Geometry& g, const Step& step);
@@ -103,7 +110,7 @@ struct Outcome {
     double evaporated = 0;         ///< film · mean area
     std::uint8_t sides = 0;        ///< wet texels in the first, last row, first, last column: bits 0–3
 };
-/// Numbers from −½ to ½ for the 256 texels, another sequence for each seed. Sums are rounded
+/// Numbers from −½ to ½, over 2^23, for the 256 texels, another sequence for each seed. Sums are rounded
 /// after adding so many units of their last place: small changes are kept on average, where
 /// rounding to the nearest would favour, at each power of two, the side below it.
 const float* dither(std::uint64_t seed);

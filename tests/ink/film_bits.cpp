@@ -18,6 +18,8 @@ float chance(std::uint64_t a, std::uint64_t b) { return static_cast<float>(unifo
 void fill(Geometry& g, std::uint64_t seed) {
     g.valid.fill((1u << (kSide + 2)) - 1);
     if (seed % 2) g.gd = std::make_unique<Geometry::Diagonals>();
+    const bool upwards = seed % 100 < 51, downwards = seed % 200 > 1;
+    g.ups = g.gd && upwards, g.downs = g.gd && downwards;
     const auto size = [&](std::uint64_t k, int i) {
         return static_cast<std::uint16_t>((0.6f + 0.8f * chance(seed + k, i)) / kConductanceUnit);
     };
@@ -32,7 +34,7 @@ void fill(Geometry& g, std::uint64_t seed) {
             const int k = field_at(column, row);
             g.grain[k] = 0.6f + 0.8f * chance(seed + 7, k);
             if (g.gd && row < kSide && column < kSide)
-                (*g.gd)[k] = static_cast<std::int16_t>(0.4f * (chance(seed + 8, k) - 0.5f) / kDiagonalUnit);
+                (*g.gd)[Geometry::corner_of(column, row)] = static_cast<std::int16_t>(0.4f * (chance(seed + 8, k) - 0.5f) / kDiagonalUnit);
         }
 }
 
