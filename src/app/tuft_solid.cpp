@@ -7,6 +7,7 @@
 #include "app/panels/panels.h"
 #include "app/studio.h"
 #include "brush/skin.h"
+#include "core/ease.h"
 #include "ink/composite.h"
 
 namespace tuft::app {
@@ -53,7 +54,7 @@ unsigned colour_in_tuft(const Session& s) {
 // Wet hair is dark: of the ink's light a part stays in it. The root keeps its own colour.
 Vec3f hair_colour(double from_tip, unsigned ink) {
     const auto inked = static_cast<float>(1 - std::clamp((from_tip - 0.35) / 0.5, 0.0, 1.0));
-    return glm::mix(kHair, 0.85f * linear_of(ink), inked * inked * (3 - 2 * inked));
+    return glm::mix(kHair, 0.85f * linear_of(ink), smooth_step(inked));
 }
 
 render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink) {

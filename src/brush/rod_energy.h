@@ -8,6 +8,8 @@
 /// Inside of the rod solver: Π and its derivatives for frozen friction and multipliers.
 namespace tuft::brush::rod {
 
+inline Mat3 clamp_frame(const Clamp& c) { return {c.tangent, c.side, glm::cross(c.tangent, c.side)}; }
+
 /// Where contact point p lies: x = (1 - s) x_j + s x_{j+1}.
 struct PointPlace {
     int node = 0;

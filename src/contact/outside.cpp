@@ -4,13 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "core/ease.h"
+
 namespace tuft::contact {
 namespace {
-
-double smooth(double x) {
-    x = std::clamp(x, 0.0, 1.0);
-    return x * x * (3 - 2 * x);
-}
 
 /// Normal of the plane under a point that stands `off` from its closest point q: the smooth
 /// normal, and over a crease, where the two differ by more than shading does, the direction of
@@ -23,7 +20,7 @@ Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, dou
     const double cosine = glm::dot(direction, n);
     constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°
     const double w =
-        smooth((kAlike - cosine) / (kAlike - kApart)) * smooth((d - lift) / (4 * lift));
+        smooth_step((kAlike - cosine) / (kAlike - kApart)) * smooth_step((d - lift) / (4 * lift));
     if (w <= 0 || cosine < -0.5) return n;
     return glm::normalize((1 - w) * n + w * direction);
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <pugixml.hpp>
 
+#include "core/ease.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/units.h"
@@ -414,15 +415,11 @@ class Reader : InkmlText {
             along[i] = along[i - 1] + glm::length(s[i].position - s[i - 1].position);
         const double length = along.back(), duration = s.back().time;
         const double swell = std::min(0.25 * length, 4e-3), taper = std::min(0.25 * length, 3e-3);
-        const auto smooth = [](double x) {
-            x = std::clamp(x, 0.0, 1.0);
-            return x * x * (3 - 2 * x);
-        };
         for (std::size_t i = 0; i < n; ++i) {
             double p = options_.flat_pressure;
             if (length > 0) {
-                p *= 0.25 + 0.75 * smooth(along[i] / swell);
-                p *= 0.25 + 0.75 * smooth((length - along[i]) / taper);
+                p *= 0.25 + 0.75 * smooth_step(along[i] / swell);
+                p *= 0.25 + 0.75 * smooth_step((length - along[i]) / taper);
                 const std::size_t a = i > 3 ? i - 3 : 0, b = std::min(i + 3, n - 1);
                 const double dt = s[b].time - s[a].time;
                 if (dt > 0 && duration > 0) {

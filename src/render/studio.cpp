@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/ease.h"
 #include "render/sampling.h"
 
 namespace tuft::render {
@@ -11,15 +12,10 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-float smooth(float x) {
-    x = std::clamp(x, 0.0f, 1.0f);
-    return x * x * (3 - 2 * x);
-}
-
 /// Brightness over a box at (s, t) in units of its half axes.
 float profile(float s, float t, float edge) {
-    const float a = smooth((1 + edge - std::abs(s)) / (2 * edge));
-    const float b = smooth((1 + edge - std::abs(t)) / (2 * edge));
+    const float a = smooth_step((1 + edge - std::abs(s)) / (2 * edge));
+    const float b = smooth_step((1 + edge - std::abs(t)) / (2 * edge));
     return a * b * (1 - 0.18f * std::min(s * s + t * t, 2.0f));
 }
 
@@ -92,7 +88,7 @@ Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up
 
 Vec3f dome_radiance(const Studio& studio, const Vec3f& d) {
     // Grey walls that grow lighter towards a white ceiling, a little darker behind the object.
-    const float h = smooth(0.5f + 0.5f * d.z);
+    const float h = smooth_step(0.5f + 0.5f * d.z);
     const Vec3f low{0.19f, 0.194f, 0.20f}, high{0.52f, 0.53f, 0.545f};
     return studio.scale * studio.dome * glm::mix(low, high, h);
 }
@@ -116,8 +112,8 @@ Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direc
         // A blur wider than the box dims it: keep the area under the profile.
         const float dim = 1 / (std::max(1.0f, edge_u) * std::max(1.0f, edge_v));
         const float inside = (1 - 0.18f * std::min(su * su + sv * sv, 2.0f));
-        sum += box.radiance * (dim * inside * smooth((1 + edge_u - su) / (2 * edge_u)) *
-                               smooth((1 + edge_v - sv) / (2 * edge_v)));
+        sum += box.radiance * (dim * inside * smooth_step((1 + edge_u - su) / (2 * edge_u)) *
+                               smooth_step((1 + edge_v - sv) / (2 * edge_v)));
     }
     return sum;
 }
@@ -155,7 +151,7 @@ Vec3f backdrop(float x, float y) {
     const float glow =
         std::exp(-1.6f * ((x - 0.5f) * (x - 0.5f) * 1.6f + (y - 0.42f) * (y - 0.42f) * 1.2f));
     const Vec3f dark{0.235f, 0.24f, 0.25f}, light{0.50f, 0.505f, 0.51f};
-    return glm::mix(dark, light, glow * (0.75f + 0.25f * smooth(y)));
+    return glm::mix(dark, light, glow * (0.75f + 0.25f * smooth_step(y)));
 }
 
 }  // namespace tuft::render

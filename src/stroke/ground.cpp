@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/ease.h"
 #include "stroke/laying.h"
 
 namespace tuft::stroke {

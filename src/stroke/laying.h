@@ -32,12 +32,6 @@ std::vector<double> travelled(std::span<const Sample> samples) {
     return along;
 }
 
-/// 3x² − 2x³ between 0 and 1, flat beyond.
-inline double smooth_step(double x) {
-    x = std::clamp(x, 0.0, 1.0);
-    return x * x * (3 - 2 * x);
-}
-
 /// What a sample brings with it from the hand.
 LaidSample hand_data(const TraceSample& sample);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "brush/sweep.h"
+#include "core/ease.h"
 
 namespace tuft::stroke {
 namespace {
@@ -40,8 +41,8 @@ Vec2 LeanedLead::of_node(std::size_t i, std::size_t j, double depth) {
 }
 
 Vec2 LeanedLead::at(double depth, const Vec2& lean) {
-    const double s = std::clamp((glm::length(lean) - kUpright) / (kLeans - kUpright), 0.0, 1.0);
-    if (s <= 0 || depth <= 0) return Vec2{0};
+    const double part = smooth_step((glm::length(lean) - kUpright) / (kLeans - kUpright));
+    if (part <= 0 || depth <= 0) return Vec2{0};
     const auto [i, f] = cell_of(kAlong, lean.x);
     const auto [j, g] = cell_of(kAcross, std::abs(lean.y));
     Vec2 leaned{0};
@@ -52,7 +53,7 @@ Vec2 LeanedLead::at(double depth, const Vec2& lean) {
     if (lean.y < 0) leaned.y = -leaned.y;
     constexpr std::size_t kUprightNode = 3;
     static_assert(kAlong[kUprightNode] == 0 && kAcross[0] == 0);
-    return s * s * (3 - 2 * s) * (leaned - of_node(kUprightNode, 0, depth));
+    return part * (leaned - of_node(kUprightNode, 0, depth));
 }
 
 std::vector<Lead> drag_lead(const brush::Preset& preset) {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "brush/sweep.h"
+#include "core/ease.h"
 #include "stroke/laying.h"
 #include "stroke/placement.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/ease.h"
 #include "stroke/laying.h"
 #include "stroke/lead.h"
 
@@ -51,8 +52,8 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
     std::vector<stroke::LaidSample> samples;
     for (std::size_t i = 0; i <= n; ++i) {
         const double part = static_cast<double>(i) / static_cast<double>(n), s = curve.front().along + part * length;
-        const double press = hand.pressure * at_length(curve, s).pressure * stroke::smooth_step(part / std::max(1e-3, hand.settings.taper_in)) *
-                             stroke::smooth_step((1 - part) / std::max(1e-3, hand.settings.taper_out));
+        const double press = hand.pressure * at_length(curve, s).pressure * smooth_step(part / std::max(1e-3, hand.settings.taper_in)) *
+                             smooth_step((1 - part) / std::max(1e-3, hand.settings.taper_out));
         const CurvePlace place = at_length(curve, s);
         // The hand runs straight ahead, and under a lean aside: the tuft is dragged behind it, along the curve.
         const Vec3 way = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;

@@ -1,0 +1,153 @@
+#include "brush/rod_points.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "core/ease.h"
+
+namespace tuft::brush::rod {
+
+namespace {
+
+struct Layer {
+    const Rod& rod;
+    const Law& law;
+    std::span<const Obstacle> obstacles;
+    const std::vector<Vec3>& node;
+    Frozen& frozen;
+    std::vector<Obstacle> fine = {};
+
+    int n() const { return rod.segments(); }
+
+    /// Without the edge where x lies so far from it over one face that it feels only that one.
+    Obstacle within_reach(const Obstacle& o, const Vec3& x) const {
+        if (!o.at_edge()) return o;
+        const double own = glm::dot(x - o.origin, o.normal), beyond = glm::dot(x - o.beyond_origin, o.beyond_normal);
+        constexpr double kRoundings = 3;  // more than hair goes in one solve beside the edge's own rounding
+        if (std::min(own, beyond) > -kRoundings * law.edge) return o;
+        return own >= beyond ? Obstacle{o.origin, o.normal, o.radius} : Obstacle{o.beyond_origin, o.beyond_normal, o.radius};
+    }
+
+    /// The two planes of a point over a crease: those of an edge near the nodes beside it, or of
+    /// the nodes themselves.
+    void lay_crease(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
+        const bool inner = at.s > 0 && at.s < 1;
+        const bool near_first = at.s < 1 && from.at_edge(), near_last = at.s > 0 && to.at_edge();
+        if (near_first || near_last) {
+            const bool both = near_first && near_last;
+            const Obstacle &edge = near_first ? from : to, &other = near_first ? to : from;
+            const double part = !inner ? 0 : near_first ? at.s : 1 - at.s;
+            if (lay_edge(p, edge, other, both, part)) return;
+            // The other node is nearer, and on a third face.
+            if (both) lay_edge(p, other, edge, false, 0);
+            else std::tie(fine[p].origin, fine[p].normal) = std::tie(other.origin, other.normal);
+            return;
+        }
+        lay_parted(p, at, from, to);
+    }
+
+    /// The planes of the edge near node `a`, those that node `b` has too interpolated towards
+    /// it by `part`; false when b's plane is neither of them and b nearer.
+    bool lay_edge(std::size_t p, const Obstacle& a, const Obstacle& b, bool both, double part) {
+        Wedge w{{a.origin, a.beyond_origin}, {a.normal, a.beyond_normal}};
+        const double straight = glm::dot(b.normal, w.normal[0]), turned = glm::dot(b.normal, w.normal[1]);
+        constexpr double kSame = 0.9;  // cos 26°
+        if (std::max(straight, turned) < kSame) {
+            if (part > 0.5) return false;
+            part = 0;
+        }
+        const auto towards = [&](int i, const Vec3& other_origin, const Vec3& other_normal) {
+            if (part == 0 || glm::dot(w.normal[i], other_normal) < kSame) return;
+            w.origin[i] += part * (other_origin - w.origin[i]);
+            w.normal[i] = glm::normalize(w.normal[i] + part * (other_normal - w.normal[i]));
+        };
+        const int first = straight >= turned ? 0 : 1;
+        towards(first, b.origin, b.normal);
+        if (both) towards(1 - first, b.beyond_origin, b.beyond_normal);
+        frozen.crease[p] = {1, true, w};
+        return true;
+    }
+
+    /// A node's plane, or the one beyond the edge near it where that is more like n: which of the
+    /// two is its own may change from step to step where it hangs over the edge.
+    static Obstacle facing(const Obstacle& o, const Vec3& n) {
+        if (!o.at_edge() || glm::dot(o.beyond_normal, n) <= glm::dot(o.normal, n)) return o;
+        return {o.beyond_origin, o.beyond_normal, o.radius, o.origin, o.normal};
+    }
+
+    /// The planes of the nodes beside a point, or a node's own and the one next to it that
+    /// differs most, where they part.
+    void lay_parted(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
+        Obstacle a = from, b = to;
+        if (at.s == 0 || at.s == 1) {
+            const int i = at.s == 0 ? at.node : at.node + 1;
+            if (at.s == 1) a = to;
+            b = facing(obstacles[i + 1 <= n() ? i + 1 : i - 1], a.normal);
+            if (i > 1 && i < n()) {
+                const Obstacle before = facing(obstacles[i - 1], a.normal);
+                if (glm::dot(a.normal, before.normal) < glm::dot(a.normal, b.normal)) b = before;
+            }
+        }
+        const double alike = glm::dot(a.normal, b.normal);
+        constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°, as over smooth surfaces
+        const double share = smooth_step((kAlike - alike) / (kAlike - kApart));
+        if (share <= 0) return;
+        Crease& c = frozen.crease[p];
+        c.share = share;
+        // Closest points that coincide are of an edge.
+        c.convex = glm::dot(b.origin - a.origin, a.normal - b.normal) < 1e-9;
+        c.wedge = {{a.origin, b.origin}, {a.normal, b.normal}};
+    }
+
+    /// Planes, radii and tributary lengths of the contact points.
+    void lay_points() {
+        if (obstacles.empty()) return;
+        frozen.crease.assign(static_cast<std::size_t>(law.points_per_segment) * n() + 1, {});
+        const int per = law.points_per_segment;
+        fine.resize(static_cast<std::size_t>(per) * n() + 1);
+        frozen.weight.assign(fine.size(), 0);
+        for (std::size_t p = 0; p < fine.size(); ++p) {
+            const PointPlace at = point_place(static_cast<int>(p), per, n());
+            const Vec3 x = point_at(at, node);
+            const Obstacle a = within_reach(obstacles[at.node], x), b = within_reach(obstacles[at.node + 1], x);
+            const Vec3 normal_sum = (1 - at.s) * a.normal + at.s * b.normal;
+            const double size = glm::length(normal_sum);
+            fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
+            fine[p].normal = size > 1e-6 ? normal_sum / size : a.normal;
+            fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
+            if (law.edge > 0) lay_crease(p, at, a, b);
+            if (p + 1 < fine.size()) {
+                const double half = 0.5 * rod.length[at.node] / per;
+                frozen.weight[p] += half;
+                frozen.weight[p + 1] += half;
+            }
+        }
+    }
+
+    /// How much the hair's ends give at each contact point: 1/k_e, k_e = 2 P s_e^-2 per length
+    /// so that a straight end takes the buckling load P at s_e.
+    void lay_give() {
+        frozen.give.assign(fine.size(), 0);
+        if (law.end_give <= 0 || law.hard || rod.buckling <= 0) return;
+        const double soft = law.end_give * law.end_give / (2 * rod.buckling);
+        double from_tip = 0;
+        for (std::size_t p = fine.size(); p-- > 1;) {
+            const double window = 1 - from_tip / (4 * law.end_give);
+            if (window <= 0) break;
+            frozen.give[p] = soft * window * window / frozen.weight[p];
+            from_tip += rod.length[point_place(static_cast<int>(p) - 1, law.points_per_segment, n()).node] / law.points_per_segment;
+        }
+    }
+};
+
+}  // namespace
+
+std::vector<Obstacle> lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen) {
+    Layer layer{*frozen.rod, *frozen.law, obstacles, node, frozen};
+    layer.lay_points();
+    layer.lay_give();
+    return std::move(layer.fine);
+}
+
+}  // namespace tuft::brush::rod
