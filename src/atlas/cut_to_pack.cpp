@@ -36,6 +36,21 @@ double use_of(const Packing& packing, double area) {
            (static_cast<double>(packing.size) * packing.size * packing.pages);
 }
 
+/// A layout of the charts, as good as `goal` asks for where that is near: with many charts, small
+/// ones fill the gaps whichever way they are turned.
+Packing pack_well(const std::vector<std::vector<Vec2>>& borders, double area, PackOptions options,
+                  double goal) {
+    constexpr std::size_t kMany = 128;
+    constexpr double kNear = 0.94;  // of what is good enough
+    options.search = Search::full;
+    Packing packing = pack(borders, options);
+    const double use = use_of(packing, area);
+    if (use >= goal || use < kNear * kGoodUse || borders.size() > kMany) return packing;
+    options.search = Search::patient;
+    Packing better = pack(borders, options);
+    return use_of(better, area) > use ? better : packing;
+}
+
 /// A chart in parts.
 struct Halves {
     std::vector<FlatChart> parts;
@@ -169,15 +184,18 @@ std::vector<std::vector<Vec2>> chart_borders(const CutMesh& cut) {
 
 namespace {
 
+/// Where cutting starts from, of which coarse masks show `use`.
+struct Start {
+    double area, use;
+};
+
 /// Cuts while coarse masks show that it gains, until they show the goal or nothing helps; the
 /// number of cuts.
-int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
-                       double goal, int most) {
-    double area = 0;
-    for (const FlatChart& chart : cut.charts) area += chart.mesh.area;
-    options.search = Search::coarse;
+int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap,
+                       const PackOptions& options, const Start& start, double goal, int most) {
+    const double area = start.area;
+    double use = start.use;
     std::vector<std::vector<Vec2>> borders = chart_borders(cut);
-    double use = use_of(pack(borders, options), area);
     int cuts = 0;
     for (; cuts < most && use < goal; borders = chart_borders(cut)) {
         const std::vector<Proposal> all = proposals(mesh, cut, gap);
@@ -206,8 +224,8 @@ CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, 
     CutToPack result;
     double area = 0;
     for (const FlatChart& chart : cut.charts) area += chart.mesh.area;
-    result.packing = pack(chart_borders(cut), options);
-    double use = use_of(*result.packing, area);
+    result.packing = pack_well(chart_borders(cut), area, options, goal);
+    double use = use_of(result.packing, area);
     if (use >= goal) return result;
     const ProgressFn progress = std::exchange(options.progress, {});
     PackOptions coarse = options;
@@ -216,21 +234,19 @@ CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, 
     int cuts = 0;
     for (double now = use; cuts < kMostCuts && now < goal && tried.charts.size() <= kMostCharts;) {
         report(progress, "cut to pack", double(cuts) / kMostCuts);
-        // What coarse masks will show of the goal.
-        const double shown = use_of(pack(chart_borders(tried), coarse), area) / now;
-        const int more = cut_while_it_gains(mesh, tried, gap, coarse, kBeyond * shown * goal,
-                                            kMostCuts - cuts);
+        const Start start{area, use_of(pack(chart_borders(tried), coarse), area)};
+        const double shown = kBeyond * start.use / now * goal;  // by coarse masks
+        const int more = cut_while_it_gains(mesh, tried, gap, coarse, start, shown, kMostCuts - cuts);
         if (more == 0) break;
         cuts += more;
-        std::optional<Packing> packing = pack(chart_borders(tried), options);
-        now = use_of(*packing, area);
+        Packing packing = pack_well(chart_borders(tried), area, options, goal);
+        now = use_of(packing, area);
         if (now < goal && now < std::pow(kCutGain, cuts - result.cuts) * use) continue;
         use = now;
         cut = tried;
         result.cuts = cuts;
         result.packing = std::move(packing);
     }
-    if (use < goal) result.packing.reset();
     return result;
 }
 

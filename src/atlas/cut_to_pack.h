@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "atlas/charts.h"
 #include "atlas/pack.h"
 
@@ -9,7 +7,7 @@ namespace tuft::atlas {
 
 struct CutToPack {
     int cuts = 0;
-    std::optional<Packing> packing;  ///< of the charts as they are, when it reaches the goal
+    Packing packing;  ///< of the charts as they are, the best that was found
 };
 
 /// Halves large charts across their length where the page is then covered better: rings, long

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -28,11 +29,12 @@ constexpr double kFinerFall = 0.996;         // steps down from there
 constexpr double kOverhang = 1.3;  // height of the strip while searching, over the page's
 constexpr int kSecondShare = 3;              // of the trials, that the second search gets
 constexpr double kTrials = 8000;             // charts placed while searching, about
-constexpr double kCoarseTrials = 1100;        // the same when layouts are only compared
+constexpr double kCoarseTrials = 800;        // the same when layouts are only compared
 constexpr int kStarts = 3;                   // searches, of which the best counts
-constexpr int kMostRounds = 4;         // of such searches, for as long as less than this part
-constexpr double kGoodEnough = 0.667;  // of the page is covered,
+constexpr int kMostRounds = 2;         // of patient searches, for as long as less than this part
+constexpr double kGoodEnough = 0.655;  // of the page is covered,
 constexpr double kWithinReach = 0.96;  // but not less than this part of that
+constexpr int kFineTurns = 4;  // parts of a right angle by which a patient search turns charts
 
 constexpr double kAllOrNothing = -1;   // excess with which the first chart that finds no place ends it
 
@@ -146,7 +148,7 @@ class Packer {
         std::vector<Filling>& filled = filling_;
         if (page.cell != last_.target.cell || page.size != last_.target.size) filled.clear();
         std::uint32_t n_filled = 0;
-        const Filled::Target target{page.size, page.cell, scale, limit, pages};
+        const Filled::Target target{page.size, page.cell, scale, limit, pages, turns_};
         bool as_before = target == last_.target;  // the plan up to here
         last_.target = target;
         for (std::size_t at = 0; at < plan_.order.size(); ++at) {
@@ -227,7 +229,9 @@ class Packer {
         Random random(shapes_.size());
         const Layout first = best;
         const Plan first_plan = plan_;
-        for (int round = 0; round < (search == Search::patient ? kMostRounds : 1); ++round) {
+        const bool patient = search == Search::patient;
+        turns_ = patient ? kFineTurns : 1;
+        for (int round = 0; round < (patient ? kMostRounds : 1); ++round) {
             plan_ = first_plan;
             Layout found = search_once(first, {coarse, pages, kStep}, search, random);
             if (found.scale > best.scale) best = std::move(found);
@@ -235,6 +239,7 @@ class Packer {
             const double use = best.scale * best.scale / (full * full);
             if (use > kGoodEnough || use < kWithinReach * kGoodEnough) break;
         }
+        turns_ = 1;
         report(progress_, "pack", 1);
         return best;
     }
@@ -351,6 +356,7 @@ class Packer {
             std::uint32_t size = 0, cell = 0;
             double scale = 0, limit = 0;
             std::uint32_t pages = 0;
+            int turns = 1;
             bool operator==(const Target&) const = default;
         };
         struct Step {
@@ -364,9 +370,10 @@ class Packer {
         std::vector<Step> steps;
     };
 
-    /// The masks of one chart in four directions, for one scale and turn.
+    /// The masks of one chart in four directions times `turns`, for one scale and turn.
     struct Masks {
         double scale = 0, cell = 0, turn = 0, chart_scale = 0;
+        int turns = 0;
         std::vector<Mask> turned;
     };
 
@@ -380,7 +387,7 @@ class Packer {
 
     const Masks& masks_of(std::uint32_t i, double scale, double cell) {
         const auto known = [&](const Masks& m) {
-            return m.scale == scale && m.cell == cell && m.turn == plan_.turn[i];
+            return m.scale == scale && m.cell == cell && m.turn == plan_.turn[i] && m.turns == turns_;
         };
         auto& [m, former] = cache_[i];
         const Shape& shape = shapes_[i];
@@ -390,9 +397,15 @@ class Packer {
         m.scale = scale;
         m.cell = cell;
         m.turn = plan_.turn[i];
+        m.turns = turns_;
         m.chart_scale = std::max(scale, shape.extent > 0 ? kSmallest / shape.extent : scale);
-        m.turned = make_masks(shape, m.chart_scale, shape.angle + m.turn, cell,
-                              shape.extent * m.chart_scale >= 2 * cell);
+        const bool all = shape.extent * m.chart_scale >= 2 * cell;
+        m.turned.clear();
+        for (int k = 0; k < (all ? turns_ : 1); ++k) {
+            const double turn = m.turn + k * std::numbers::pi / (2 * turns_);
+            std::vector<Mask> masks = make_masks(shape, m.chart_scale, shape.angle + turn, cell, all);
+            std::move(masks.begin(), masks.end(), std::back_inserter(m.turned));
+        }
         return m;
     }
 
@@ -440,6 +453,7 @@ class Packer {
     Filled last_;
     std::vector<Filling> filling_;  // kept from one filling to the next
     Plan plan_;
+    int turns_ = 1;  // of a right angle that each place is tried with
     double area_ = 0;
 };
 
