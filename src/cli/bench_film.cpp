@@ -101,7 +101,7 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
         const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
         for (std::uint32_t slot = 0; slot < tiles; ++slot) {
             ink::tents_of(tents, places, coverage);
-            ink::transfer(canvas, slot, coverage, tents, model.texels.tiles[slot].area, 1e-4, p, given);
+            ink::transfer(canvas, slot, coverage, places, tents, model.texels.tiles[slot].area, 1e-4, p, given);
         }
         runs.push_back(seconds(CLOCK_THREAD_CPUTIME_ID) - start);
     }

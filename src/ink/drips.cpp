@@ -24,6 +24,9 @@ constexpr double kLeastGrain = 0.8, kGrainPart = 0.5;
 constexpr double kHopeful = 0.3;             // of what runs: less about a place will not come together
 constexpr double kFastest = 1.5;             // bead_speed
 constexpr double kAtRest = 1.01;             // of the critical radius
+constexpr double kStops = 1.06;              // of the critical radius: a moving one comes to rest
+constexpr double kThinnest = 0.5;            // of the trail: what stays behind the slowest bead
+constexpr double kTail = 3;                  // radii that a bead at rest is drawn out upwards
 
 double critical_radius(double angle, double steepness) {
     return 2 * kCapillaryLength * std::sqrt(angle / (kPi * std::max(steepness, kLeastSteepness)));
@@ -152,8 +155,7 @@ class Drips::Run {
         bead.amount = 0;
         if (inside < runs) draw_in(bead, ground, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
         else draw_in(bead, ground, reach, std::min(p_.drain * seconds, 1.0), kBead * p_.hold);  // leaves other beads whole
-        move(bead, grain, seconds);
-        lay_down(bead);
+        lay_down(bead, move(bead, grain, seconds));
         seen_.push_back({bead.at, radius_of(bead.amount, p_.bead_angle)});
     }
 
@@ -211,20 +213,24 @@ class Drips::Run {
     /// The trail of a bead whose middle is here: round in front, and straight where it came from.
     struct Trail {
         Vec3 at{0}, down{0};
-        double half = 0;
+        double half = 0, film = 0;
     };
     Trail trail_of(const Bead& bead, double radius) const {
         const Vec3 down = downhill(bead.place);
         // Fast drops are pointed behind.
         const double steep = glm::length(down), critical = critical_radius(p_.bead_angle, steep);
-        return {bead.at, down / steep, std::min(radius, std::sqrt(radius * critical))};
+        const double ratio = radius / critical, pace = std::clamp(ratio * ratio - 1, 0.0, kFastest);
+        return {bead.at, down / steep, std::min(radius, std::sqrt(radius * critical)),
+                p_.trail * std::clamp(std::cbrt(pace * pace), kThinnest, 1.0)};
     }
     double trail(const Near& n, const Trail& t) const {
         const Vec3 d = n.at - t.at;
         const double along = std::min(0.0, glm::dot(d, t.down)), square = glm::dot(d, d) - along * along;
-        return p_.trail * std::sqrt(std::max(0.0, 1 - square / (t.half * t.half)));
+        // Texels at its edge are covered in part.
+        const double covered = std::clamp((t.half - std::sqrt(square)) / d_.map_.texel_size + 0.5, 0.0, 1.0);
+        const double inner = 0.5 * d_.map_.texel_size, profile = 1 - square / (t.half * t.half);
+        return t.film * covered * std::sqrt(std::max(profile, inner / t.half));
     }
-
 
     /// The film a bead stands on, from what lies round it: `hold` at most.
     struct Ground {
@@ -337,7 +343,8 @@ class Drips::Run {
         book(bead);
     }
 
-    void move(Bead& bead, double grain, double seconds) {
+    /// Whether it came to rest where the surface holds it.
+    bool move(Bead& bead, double grain, double seconds) {
         double radius = radius_of(bead.amount, p_.bead_angle);
         d_.gather(bead.place, bead.at, radius);
         leave_trail(bead, radius);
@@ -345,24 +352,32 @@ class Drips::Run {
         while (seconds > 0) {
             const Vec3 down = downhill(bead.place);
             const double steep = glm::length(down), ratio = radius / critical(bead, grain);
-            if (steep < kLeastSteepness || ratio < kAtRest) return;
+            if (steep < kLeastSteepness) return false;
+            if (ratio < kStops) return true;
             const double speed = p_.bead_speed * std::min(ratio * ratio - 1, kFastest);
             const double step = std::min(std::max(least_step, 0.08 * radius), speed * seconds);
             seconds -= step / speed;
             d_.gather(bead.place, bead.at, radius);
             const Vec3 was = bead.at;
             put_at(bead, bead.at + down * (step / steep));
-            if (glm::distance(was, bead.at) < 0.1 * step) return;  // an edge of the model
+            if (glm::distance(was, bead.at) < 0.1 * step) return false;  // an edge of the model
             d_.gather(bead.place, bead.at, radius);
             take_up(bead, radius);
             leave_trail(bead, radius);
             radius = radius_of(bead.amount, p_.bead_angle);
         }
+        return radius < kStops * critical(bead, grain);
     }
 
-    /// As a cap whose middle is the bead's; what rounding leaves over goes to the texel there.
-    void lay_down(Bead& bead) {
+    /// As a cap whose middle is the bead's; what rounding leaves over goes to the texel there. At rest it is blunt in
+    /// front, where it meets dry surface, and drawn out behind, where its own trail holds it at a lower angle.
+    void lay_down(Bead& bead, bool rests) {
         const double radius = radius_of(bead.amount, p_.bead_angle), square = radius * radius;
+        if (rests) {
+            d_.gather(bead.place, bead.at, kTail * radius);
+            hang(bead, radius);
+            return;
+        }
         d_.gather(bead.place, bead.at, radius);
         // Texels lie unevenly at seams: without the tilt a bead would creep to one side, step by step.
         Vec3 tilt{0};
@@ -376,6 +391,25 @@ class Drips::Run {
             for (const Near& n : d_.disc_) sum += height(n), moment += height(n) * (n.at - bead.at);
             if (sum > 0 && i + 1 < kTilts) tilt += moment / sum * (6 / square);  // a cap's mean square is R²/6 each way
         }
+        spread(bead, sum, height);
+    }
+    void hang(Bead& bead, double radius) {
+        const Vec3 down = glm::normalize(downhill(bead.place));
+        const auto height = [&](const Near& n) {
+            const Vec3 d = n.at - bead.at;
+            const double along = glm::dot(d, down), across = std::max(0.0, glm::dot(d, d) - along * along);
+            const double behind = std::max(0.0, -along) / radius, front = std::max(0.0, along) / radius;
+            const double cap = std::max(0.0, 1 - across / (radius * radius) - front * front - behind * behind / (kTail * kTail));
+            // A cap before its middle; behind, it runs out flat into the trail.
+            return (cap * (1 - std::min(behind, 1.0)) + cap * cap * std::min(behind, 1.0)) * n.area;
+        };
+        double sum = 0;
+        for (const Near& n : d_.disc_) sum += height(n);
+        spread(bead, sum, height);
+    }
+    /// In parts of `height`, which sum to `sum`.
+    template <class Fn>
+    void spread(Bead& bead, double sum, Fn height) {
         if (sum > 0)
             for (const Near& n : d_.disc_) give(bead, n, height(n) / sum);
         book(bead);

@@ -21,14 +21,15 @@ TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, fl
 
 /// What stays of each texel's film, as a factor.
 TUFT_CLONES void keep(float* __restrict factor, const float* __restrict film, const float* __restrict start,
-                      const float* __restrict hides, const float* __restrict coverage, float rate) {
+                      const float* __restrict hides, const float* __restrict coverage, const float* __restrict liquid,
+                      float rate) {
     for (int t = 0; t < kN; ++t) {
         const float f = coverage[t], e = hides[t];
         const float sum = f + exp_minus(e), x = sum < 1 ? sum : 1;
         const float goal = -log_of(x > 1e-30f ? x : 1e-30f) / (e > 1e-3f ? e : 1e-3f);
         const float left = start[t] > film[t] ? film[t] / start[t] : 1;
         const float more = left - goal;
-        const float after = left - (more > 0 ? more : 0) * rate;
+        const float after = left - (more > 0 ? more : 0) * (liquid[t] > 0 ? 1 : rate);
         const float part = left > 0 ? after / left : 0;
         const float stays = film[t] * part < kNothing ? 0 : part;
         factor[t] = f > 0 ? stays : 1;
@@ -89,9 +90,11 @@ Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
     Amounts gone;
     if (!canvas.touched(slot) || !(ds > 0) || !(params.strength > 0)) return gone;
     const Plane film = erase_start(canvas, slot).film;
-    alignas(64) std::array<float, kN> factor;
+    alignas(64) std::array<float, kN> factor, liquid{};
+    for (const Liquid where : {Liquid::film, Liquid::pores})
+        if (const Plane* w = canvas.liquid(slot, where)) add_scaled(liquid.data(), w->data(), 1);
     const auto rate = static_cast<float>(-std::expm1(-params.strength * ds / params.transfer_length));
-    keep(factor.data(), film.data(), start.film.data(), start.hides.data(), coverage.data(), rate);
+    keep(factor.data(), film.data(), start.film.data(), start.hides.data(), coverage.data(), liquid.data(), rate);
     if (std::all_of(factor.begin(), factor.end(), [](float f) { return f == 1; })) return gone;
     for (int film_place = 0; film_place < kFilms; ++film_place)
         for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)

@@ -35,6 +35,7 @@ struct EraseParams {
 ///     dρ = −max(0, ρ − q(f)) (1 − exp(−strength ds / s0))
 ///     q(f) = −ln(min(1, f + exp(−ε W₀))) / ε W₀
 ///
+/// at once where there is liquid, which hair draws up without rubbing;
 /// f the texel's coverage: under full coverage all goes, in whatever steps the eraser passes. A texel that looks
 /// covered by c = 1 − exp(−ε W₀) (see `deposit`) looks covered by c − f in the end: edges through ink are smooth,
 /// and at the rim of what is erased by its own stroke, where c = f, nothing is left.

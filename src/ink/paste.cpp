@@ -17,6 +17,7 @@ constexpr double kTine = 0.35;       // half width of a furrow over the mean dis
 constexpr double kRimWidth = 1.5;    // of what is pushed out, over the film's thickness
 constexpr double kHeld = 0.02;       // of its height: finer waves than those held so far are rounded off
 constexpr double kLeastFilm = 0.15;  // of the mean: hair never scrapes to the ground
+constexpr double kRub = 0.6;         // of what bundles rub goes by where they lie, the rest is the liquid's
 
 using Texels = std::array<float, kN>;
 
@@ -24,17 +25,6 @@ inline float positive(float a) { return a > 0 ? a : 0; }
 
 TUFT_CLONES void add(float* __restrict sum, const float* __restrict w) {
     for (int t = 0; t < kN; ++t) sum[t] += w[t];
-}
-
-/// out = film of the comb at each place across.
-TUFT_CLONES void comb_at(float* __restrict out, const float* __restrict across, const float* __restrict comb,
-                         float scale) {
-    for (int t = 0; t < kN; ++t) {
-        const float x = across[t] * scale;
-        int i = static_cast<int>(x);
-        i = i < kTines - 2 ? i : kTines - 2;
-        out[t] = comb[i] + (x - static_cast<float>(i)) * (comb[i + 1] - comb[i]);
-    }
 }
 
 struct Volumes {
@@ -97,19 +87,27 @@ std::array<double, 2 * (kTines - 1)> make_wave() {
     return wave;
 }
 
-/// Furrows and rims before they level, over the mean.
-std::array<double, kTines> ploughed(std::span<const Tine> tines, const CombOptions& o) {
-    std::array<double, kTines> film;
+/// How much of the firmest bundle lies at each place, 0–1.
+std::array<double, kTines> pushed_by(std::span<const Tine> tines) {
+    std::array<double, kTines> out;
     double firm = 0;
     for (const Tine& tine : tines) firm += tine.weight;
     const double half = firm > 0 ? kTine / firm : 1;  // of the width: firm bundles lie 1 / firm apart
+    for (int i = 0; i < kTines; ++i) {
+        double pushed = 0;
+        for (const Tine& tine : tines) pushed += tine.weight * bump((double(i) / (kTines - 1) - tine.at) / half);
+        out[i] = std::min(pushed, 1.0);
+    }
+    return out;
+}
+
+/// Furrows and rims before they level, over the mean.
+std::array<double, kTines> ploughed(std::span<const Tine> tines, const CombOptions& o) {
+    std::array<double, kTines> film = pushed_by(tines);
     const double rim = std::max(kRimWidth * o.film / o.width, 1.5 / kTines);
     for (int i = 0; i < kTines; ++i) {
         const double u = double(i) / (kTines - 1);
-        double pushed = 0;
-        for (const Tine& tine : tines)
-            pushed += tine.weight * bump((u - tine.at) / half);
-        film[i] = std::max(1 - o.depth * std::min(pushed, 1.0), kLeastFilm) + o.rim * bump(std::min(u, 1 - u) / rim);
+        film[i] = std::max(1 - o.depth * film[i], kLeastFilm) + o.rim * bump(std::min(u, 1 - u) / rim);
     }
     return film;
 }
@@ -135,6 +133,15 @@ Comb comb_of(std::span<const Tine> tines, const CombOptions& o) {
         for (int i = 0; i < kTines; ++i) levelled[i] += held * wave[n * i % (2 * kLast)];
     }
     for (int i = 0; i < kTines; ++i) out[i] = static_cast<float>(std::max(1 + levelled[i], 0.0));
+    return out;
+}
+
+Comb rub_of(std::span<const Tine> tines) {
+    const std::array<double, kTines> lies = pushed_by(tines);
+    double mean = 0;
+    for (const double l : lies) mean += l / kTines;
+    Comb out;
+    for (int i = 0; i < kTines; ++i) out[i] = static_cast<float>(mean > 0 ? 1 + kRub * (lies[i] / mean - 1) : 1);
     return out;
 }
 
@@ -165,7 +172,7 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         interpolate(mix[p], tents, mixes[p]);
         add(strength.data(), mix[p].data());
     }
-    comb_at(full.data(), places.across.data(), params.comb.data(), float(kTines - 1) / (kAcross - 1));
+    comb_at(full, places, params.comb);
     for (int t = 0; t < kN; ++t) full[t] *= static_cast<float>(params.target) * strength[t];
     const Plane here = open_pigment(canvas, slot);
     Volumes v;

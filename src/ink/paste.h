@@ -10,11 +10,7 @@
 /// Ink that stands as it was put: thick paint, and the furrows that the hair leaves in it.
 namespace tuft::ink {
 
-/// Film across the contact patch, over its mean. Value i lies at i / (kTines − 1) of the width.
-inline constexpr int kTines = 129;
-using Comb = std::array<float, kTines>;
-
-/// A bundle of hair as it ploughs through paste.
+/// A bundle of hair as it ploughs through paste or rubs in liquid.
 struct Tine {
     double at = 0;      ///< over the width, 0–1
     double weight = 1;  ///< how firmly it lies on the surface, over the firmest
@@ -37,6 +33,10 @@ struct CombOptions {
 /// in each mode of the cosine series over the width. Without yield stress the film is even. The
 /// mean is 1 whatever the options say: nothing is made or lost by furrows. About 30 µs.
 Comb comb_of(std::span<const Tine> tines, const CombOptions& options);
+
+/// How firmly the bundles rub across the patch, over the mean: 1 + 0.6 (n − 1), n what lies there of them over its
+/// mean.
+Comb rub_of(std::span<const Tine> tines);
 
 /// Film units of a paste that stay on a wall: τ / ρ g.
 double standing_film(double yield);

@@ -30,6 +30,16 @@ TUFT_CLONES void place(float* __restrict along, float* __restrict across, const 
     }
 }
 
+TUFT_CLONES void values_at(float* __restrict out, const float* __restrict across, const float* __restrict comb,
+                           float scale) {
+    for (int t = 0; t < kN; ++t) {
+        const float x = across[t] * scale;
+        int i = static_cast<int>(x);
+        i = i < kTines - 2 ? i : kTines - 2;
+        out[t] = comb[i] + (x - static_cast<float>(i)) * (comb[i + 1] - comb[i]);
+    }
+}
+
 TUFT_CLONES void hat(float* __restrict out, const float* __restrict at, const float* __restrict coverage, float node) {
     for (int t = 0; t < kN; ++t) {
         const float d = at[t] - node, w = 1 - (d < 0 ? -d : d);
@@ -103,6 +113,10 @@ void place_texels(TexelPlaces& out, const TouchGrid& grid, const Frame& frame, c
     place(out.along.data(), out.across.data(), shape.px.data(), shape.py.data(), shape.pz.data(), Vec3f(frame.origin),
           Vec3f(along), Vec3f(across), static_cast<float>(-grid.lo.x / grid.step.x),
           static_cast<float>(-grid.lo.y / grid.step.y));
+}
+
+void comb_at(std::span<float, kN> out, const TexelPlaces& places, const Comb& comb) {
+    values_at(out.data(), places.across.data(), comb.data(), float(kTines - 1) / (kAcross - 1));
 }
 
 void tents_of(Tents& out, const TexelPlaces& places, std::span<const float, kN> coverage) {

@@ -39,6 +39,14 @@ struct TexelPlaces {
 /// The same from the surface points, seen along the normal of the stamp's frame.
 void place_texels(TexelPlaces& out, const TouchGrid& grid, const Frame& frame, const atlas::TexelShape& shape);
 
+/// A figure across the contact patch, over its mean: finer than the nodes, as its bundles of hair are. Value i lies at
+/// i / (kTines − 1) of the width.
+inline constexpr int kTines = 129;
+using Comb = std::array<float, kTines>;
+
+/// The comb at the texels of a tile, linear between its values.
+void comb_at(std::span<float, atlas::kTileTexels> out, const TexelPlaces& places, const Comb& comb);
+
 /// The tents of the nodes that reach a tile's covered texels: w = ⟨1 − |i − along|⟩ ⟨1 − |j − across|⟩,
 /// which sum to one on each; zero on uncovered ones.
 struct Tents {

@@ -29,18 +29,27 @@ inline float larger(float a, float b) { return a > b ? a : b; }
 inline float smaller(float a, float b) { return a < b ? a : b; }
 inline float positive(float a) { return a > 0 ? a : 0; }
 
+/// a = a b, 1 at most.
+TUFT_CLONES void scale(float* __restrict a, const float* __restrict b) {
+    for (int t = 0; t < kN; ++t) {
+        const float x = a[t] * b[t];
+        a[t] = x < 1 ? x : 1;
+    }
+}
+
 struct Volumes {
     alignas(64) Texels down, up;
 };
 
 TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict goal,
                          const float* __restrict w, const float* __restrict total,
-                         const float* __restrict film, const TransferParams& p, float rate) {
+                         const float* __restrict film, const float* __restrict exchange, const TransferParams& p,
+                         float rate) {
     for (int t = 0; t < kN; ++t) {
         const float touched = coverage[t] > 0 ? 1.0f : 0.0f;
         const float lack = positive(smaller(goal[t] - w[t], p.deposit.capacity - total[t])) * rate;
         const float n = smaller(lack + coverage[t] * p.pour, film[t] * touched);
-        const float part = coverage[t] * p.exchange;
+        const float part = coverage[t] * exchange[t];
         const float x = part * smaller(w[t], film[t] - n);
         const float over = positive(w[t] - larger(goal[t], p.deposit.target)) * part * p.thirst;
         const float lift = smaller(over, smaller(p.room, w[t] - x));
@@ -140,6 +149,18 @@ void pass_on(Skin& skin, NodeContents& back, const std::array<double, kNodes>& w
 
 }  // namespace
 
+std::array<double, kAlong> firmness(const NodeAreas& areas) {
+    std::array<double, kAlong> width{};
+    double widest = 0;
+    for (int i = 0; i < kAlong; ++i) {
+        for (int j = 0; j < kAcross; ++j) width[i] += areas[i * kAcross + j];
+        if (i == 0 || i == kAlong - 1) width[i] *= 2;  // of an outer row's tent half is there
+        widest = std::max(widest, width[i]);
+    }
+    for (double& w : width) w = widest > 0 ? w / widest : 1;
+    return width;
+}
+
 double Skin::volume(int node) const { return sum_of(content[node]); }
 
 void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes) {
@@ -180,8 +201,12 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
                                double dt, double stress) {
     TransferParams out;
     out.deposit = deposit;
+    out.rub.fill(1);
     const double way = ds / kExchangeLength + std::max(dt, 0.0) / kExchangeTime;
-    out.exchange = static_cast<float>(-std::expm1(-way * (kGentle + (1 - kGentle) * std::clamp(stress, 0.0, 1.0))));
+    const double most = way * (kGentle + (1 - kGentle) * std::clamp(stress, 0.0, 1.0));
+    const std::array<double, kAlong> firm = firmness(areas);
+    for (int node = 0; node < kNodes; ++node)
+        out.exchange[node] = static_cast<float>(-std::expm1(-most * firm[node / kAcross]));
     out.thirst = static_cast<float>(std::clamp(1 - saturation_at(tuft, touch), 0.0, 1.0));
     double area = 0;
     for (const double a : areas) area += a;
@@ -195,21 +220,24 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
     return out;
 }
 
-void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const Tents& tents,
-              std::span<const float, kN> area, double ds, const TransferParams& params, NodeContents& given) {
+void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,
+              const Tents& tents, std::span<const float, kN> area, double ds, const TransferParams& params, NodeContents& given) {
     if (tents.count == 0) return;
     std::array<float, kNodes> over{};  // film units of all planes
     for (int k = 0; k < tents.count; ++k)
         for (int p = 0; p < Reservoir::kPlanes; ++p) over[tents.node[k]] += params.film[p][tents.node[k]];
-    alignas(64) Texels film, goal, total, dense{}, part, up, before;
+    alignas(64) Texels film, exchange, goal, total, dense{}, part, up, before;
     interpolate(film, tents, over);
+    interpolate(exchange, tents, params.exchange);
+    comb_at(part, places, params.rub);
+    scale(exchange.data(), part.data());
     film_goals(goal, coverage, params.deposit);
     Plane& w = canvas.touch_liquid(slot, Liquid::film);
     const Plane* s = canvas.liquid(slot, Liquid::pores);
     for (int t = 0; t < kN; ++t) total[t] = s ? w[t] + (*s)[t] : w[t];
     Volumes v;
     const auto rate = static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
-    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), params, rate);
+    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), exchange.data(), params, rate);
     given_part(part.data(), v.down.data(), film.data());
     Booked booked;
     for (int k = 0; k < tents.count; ++k) {

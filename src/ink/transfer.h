@@ -34,7 +34,8 @@ void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& 
 
 struct TransferParams {
     DepositParams deposit;        ///< target, transfer_length, capacity, extinction; not its mix
-    float exchange = 0;           ///< part of the liquid that a touch renews: 1 − exp(−...)
+    std::array<float, kNodes> exchange{};  ///< part of the liquid that a touch renews at each node: 1 − exp(−...)
+    std::array<float, kTines> rub{};       ///< how firmly the bundles rub across the patch, over the mean: `rub_of`
     float thirst = 0;             ///< 0–1: how much of what stands above the target is drawn up
     float room = 0;               ///< film units that the hair can take beyond what it gives
     float pour = 0;               ///< film units that run off the tuft, however thick the film is already
@@ -42,8 +43,14 @@ struct TransferParams {
     std::array<std::array<float, kNodes>, Reservoir::kPlanes> film{};
 };
 
+/// How firmly the rows of nodes along the patch lie on the surface, over the firmest: hair presses by how much of it
+/// is above, which is as wide as the patch is there.
+std::array<double, kAlong> firmness(const NodeAreas& areas);
+
 /// From skin and tuft, for a touch over `ds` metres and `dt` seconds pressed by `stress` (0–1):
-/// exchange = 1 − exp(−(ds / 4 mm + dt / 0.5 s) (0.3 + 0.7 stress)).
+/// exchange = 1 − exp(−(ds / 4 mm + dt / 0.5 s) (0.3 + 0.7 stress) p), where p is how firmly a node lies on:
+/// as wide as the patch is there over its widest place. The tip only grazes what the belly has left, however long it
+/// trails: else the middle of a stroke, where it passes, would be rubbed clean along a line.
 TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const Touch& touch,
                                const NodeAreas& areas, const DepositParams& deposit, double ds,
                                double dt, double stress);
@@ -53,7 +60,7 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
 ///
 ///     n = min(⟨g(f) − w⟩ (1 − exp(−ds/s0)) + f pour, q)   laid down until the film is as thick as it
 ///                                                   shall be, and what drips
-///     x = f R min(w, q − n)                         renewed: as much up as down
+///     x = f R min(w, q − n)                         renewed: as much up as down, R by the nodes and the rub
 ///     l = min(f R ⟨w − c⟩ thirst, room)             drawn up by hair that is not full
 ///     down = (n + x) of the skin's mixture there,  up = (x + l) of the surface's
 ///
@@ -64,7 +71,7 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
 /// what was stored, plane by plane, and no node gives more than it has. Different slots may be done
 /// by different threads; same bits on every instruction set.
 void transfer(Canvas& canvas, std::uint32_t slot,
-              std::span<const float, atlas::kTileTexels> coverage, const Tents& tents,
+              std::span<const float, atlas::kTileTexels> coverage, const TexelPlaces& places, const Tents& tents,
               std::span<const float, atlas::kTileTexels> area, double ds,
               const TransferParams& params, NodeContents& given);
 

@@ -301,7 +301,7 @@ void Painting::draw_poses() {
             continue;
         }
         if (h.wet) {
-            h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, h.nodes, touch.moment_factor,
+            h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, h.nodes, h.comb(), touch.moment_factor,
                                                 h.drain(pose, contact.frame.origin));
             continue;
         }
@@ -320,11 +320,13 @@ StrokeReport Painting::finish_hand() {
     h.resampler.finish(h.poses);
     draw_poses();
     h.flush();
-    if (h.paste) {
-        const bool here = h.model == model_;
-        h.stamper.level(here ? seams() : atlas::build_seam_links(*h.model->mesh, h.model->atlas, h.model->texels),
-                        ink::levelling_length(h.ink.yield, h.ink.film * ink::kFilmUnit));
-    }
+    atlas::SeamLinks of_palette;
+    const auto links = [&]() -> const atlas::SeamLinks& {
+        if (h.model == model_) return seams();
+        return of_palette = atlas::build_seam_links(*h.model->mesh, h.model->atlas, h.model->texels);
+    };
+    if (h.paste) h.stamper.level(links(), ink::levelling_length(h.ink.yield, h.ink.film * ink::kFilmUnit));
+    if (h.stroke.trace.erases && this->canvas(h.stroke.layer).wet()) h.stamper.blot(links());
     if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched, h.nodes, h.film_progress);
     h.report.ink_left = h.reservoir.remaining();
     if (h.report.touched()) h.report.nearest = 0;

@@ -194,7 +194,7 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
         closed_area = marks.closed_area;
     }
     if (wet || mixed || paste) place_nodes(stamp, trails, outlines);
-    if (paste && !trails.empty()) {
+    if ((paste || wet) && !trails.empty()) {
         const Vec2 e(trails.front().cuts[trails.front().cuts.size() / 2].e);
         turned = axis.x * e.y - axis.y * e.x < 0 ? -1 : 1;
     }

@@ -187,7 +187,7 @@ ink::NodeContents Stamper::act_on_exposed(F act) {
 
 ink::NodeContents Stamper::exchange(const ink::TransferParams& params, double ds) {
     return act_on_exposed([&](Exposed& e, const ink::Tents& tents) {
-        ink::transfer(canvas_, e.slot, e.exposure, tents, model_.texels.tiles[e.slot].area, ds, params, e.given);
+        ink::transfer(canvas_, e.slot, e.exposure, e.places, tents, model_.texels.tiles[e.slot].area, ds, params, e.given);
     });
 }
 
@@ -215,6 +215,12 @@ Stamper::Passed Stamper::plough(const ink::PasteParams& params, const ink::NodeM
 
 void Stamper::level(const atlas::SeamLinks& seams, double length) {
     ink::level_paste(canvas_, model_.texels, seams, pastes_, length);
+}
+
+void Stamper::blot(const atlas::SeamLinks& seams) {
+    std::function<bool(std::uint32_t, int)> free;
+    if (mask_) free = [this](std::uint32_t slot, int texel) { return mask_->coverage(slot, texel) == 255; };
+    erased_ += ink::blot(canvas_, model_.texels, seams, starts_, free, [this](std::uint32_t slot) { keep(slot); });
 }
 
 std::vector<ink::TileSnapshot> Stamper::take_before() {

@@ -7,8 +7,8 @@
 
 #include "core/progress.h"
 #include "footprint/stamp.h"
+#include "ink/blot.h"
 #include "ink/deposit_mixed.h"
-#include "ink/erase.h"
 #include "ink/level.h"
 #include "ink/paste.h"
 #include "ink/transfer.h"
@@ -68,6 +68,9 @@ class Stamper {
     /// Rounds the paste that was laid over `length` metres.
     void level(const atlas::SeamLinks& seams, double length);
 
+    /// After erasing: draws off what of wet ink stayed round what was erased.
+    void blot(const atlas::SeamLinks& seams);
+
     /// Notes a tile as it is, for `take_before`, unless it was noted already.
     void keep(std::uint32_t slot);
 
@@ -109,7 +112,7 @@ class Stamper {
     std::vector<Exposed> exposed_;                 ///< by the stamp in work, as many as it reached
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
     ink::OpenBefore pastes_;  ///< `before` of lay_paste
-    std::unordered_map<std::uint32_t, ink::EraseStart> starts_;  ///< of tiles an eraser came to
+    ink::EraseStarts starts_;                      ///< of tiles an eraser came to
     ink::Amounts erased_;
     const MaskTexels* mask_ = nullptr;
 };

@@ -23,13 +23,14 @@ void WetHand::pass(Stamper& stamper, double seconds, const ProgressFn& progress)
 }
 
 double WetHand::lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
-                    const ink::NodeTouch& nodes, double stress, const ink::Drain& drain) {
+                    const ink::NodeTouch& nodes, std::span<const ink::Tine> tines, double stress, const ink::Drain& drain) {
     const ink::NodeAreas areas = stamper.expose(stamp);
     const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
     const double pour = area > 0 ? ink::shed(tuft, drain, step_) / area : 0;
     ink::refresh(skin_, tuft, touch, nodes, areas, since_, pour);
     ink::TransferParams params =
         ink::transfer_params(skin_, tuft, touch, areas, stamp.ink, stamp.ds, since_, stress);
+    params.rub = ink::rub_of(tines);
     params.pour = static_cast<float>(pour);
     since_ = 0;
     const ink::NodeContents given = stamper.exchange(params, stamp.ds);

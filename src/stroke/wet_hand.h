@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ink/film.h"
+#include "ink/paste.h"
 #include "ink/transfer.h"
 #include "stroke/stamper.h"
 
@@ -16,10 +17,10 @@ class WetHand {
 
     /// Time goes by, touching or not.
     void pass(Stamper& stamper, double seconds, const ProgressFn& progress);
-    /// One stamp, pressed by `stress` (0–1): ink goes both ways, and what the hair does not hold runs
+    /// One stamp of a tuft whose bundles lie at `tines`, pressed by `stress` (0–1): ink goes both ways, and what the hair does not hold runs
     /// down. Returns the liquid given less what was taken, film·m².
     double lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
-               const ink::NodeTouch& nodes, double stress, const ink::Drain& drain);
+               const ink::NodeTouch& nodes, std::span<const ink::Tine> tines, double stress, const ink::Drain& drain);
     /// The tuft is lifted for good: what is on the hair goes into it.
     void end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes,
              const ProgressFn& progress);

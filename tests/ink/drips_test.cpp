@@ -126,20 +126,23 @@ TEST(Drips, ADropRunsInANarrowTrailUntilTheTrailHasUsedItUpAndEndsInABead) {
     EXPECT_GT(end, -18e-3) << "or else the wall ends before the trail";
     thick.film.advance(thick.canvas, 5, porcelain());
     EXPECT_NEAR(thick.lowest(), end, 0.3e-3);
-    // A cap of critical radius 1.2 mm, wider by what is left over, and its trail.
-    double bead = 0, trail = 0, most_bead = 0, most_trail = 0;
+    // A drop of critical radius 1.2 mm, drawn out by three of them behind, and its trail, that got thinner with its pace.
+    double bead = 0, trail = 0, most_bead = 0, most_trail = 0, most_early = 0;
     thick.each([&](std::uint32_t slot, int t, const Vec3& p) {
-        const double above = p.z - end, amount = thick.ink(slot, t);
-        if (above < 2.2e-3) most_bead = std::max(most_bead, amount);
-        if (above < 2.2e-3 && amount > 0.01) bead += static_cast<double>(thick.map.tiles[slot].area[t]);
-        if (above > 3e-3 && above < 4e-3) most_trail = std::max(most_trail, amount);
-        if (above > 3e-3 && above < 4e-3 && amount > 0.01) trail += static_cast<double>(thick.map.tiles[slot].area[t]) / 1e-3;
+        const double above = p.z - end, amount = thick.ink(slot, t), area = static_cast<double>(thick.map.tiles[slot].area[t]);
+        if (above < 4e-3) most_bead = std::max(most_bead, amount);
+        if (above < 4e-3 && amount > 0.08) bead += area;
+        if (above > 5e-3 && above < 6e-3) most_trail = std::max(most_trail, amount);
+        if (above > 5e-3 && above < 6e-3 && amount > 0.01) trail += area / 1e-3;
+        if (p.z > 8e-3 && p.z < 9e-3) most_early = std::max(most_early, amount);
     });
     EXPECT_GT(trail, 2e-3);
     EXPECT_LT(trail, 4e-3);
     EXPECT_GT(bead, 3e-6);
     EXPECT_LT(bead, 9e-6);
     EXPECT_GT(most_bead, 4 * most_trail);
+    EXPECT_LT(most_trail / most_early, 0.65) << "half of it under the slowest, as measured 0.5";
+    EXPECT_GT(most_trail / most_early, 0.45);
 }
 
 // Texels lie otherwise at the edges of the squares, but the trail gets thin towards its edges.
@@ -166,37 +169,43 @@ TEST(Drips, BeadsCrossASeamAsIfThereWereNone) {
     EXPECT_NEAR(whole.lowest(), cut.lowest(), kRoughness);
 }
 
-TEST(Drips, ABeadDriesRoundWhereItStopped) {
+TEST(Drips, ABeadDriesBluntInFrontAndRunsOutIntoItsTrail) {
     for (const double angle : {0.0, 0.4}) {
         Wall w(angle);
         drop(w);
         w.film.dry(w.canvas, porcelain());
-        // The head: darkest of all, and as dark in all directions. Its upper side lies on the trail.
+        // Means over squares of 0.3 mm from the middle of the head on; a texel is 0.125 mm.
+        constexpr double kSquare = 0.3e-3;
         Vec3 middle{0};
         double sum = 0;
         w.each([&](std::uint32_t slot, int t, const Vec3& p) {
-            if (const double ink = w.ink(slot, t); ink > 0.2) sum += ink, middle += ink * p;
+            if (const double ink = w.ink(slot, t); ink > 0.5) sum += ink, middle += ink * p;
         });
+        ASSERT_GT(sum, 0);
         middle /= sum;
-        const auto mean_at = [&](int sector, double r0, double r1) {
+        const auto at = [&](double x, double z) {
             double mean = 0, n = 0;
             w.each([&](std::uint32_t slot, int t, const Vec3& p) {
-                const Vec3 d = p - middle;
-                const double r = glm::length(d), turn = (std::atan2(d.z, d.x) / std::numbers::pi + 2) * 8 + 0.5;
-                if (r >= r0 && r < r1 && static_cast<int>(turn) % 16 == sector) mean += w.ink(slot, t), n += 1;
+                if (std::abs(p.x - middle.x - x) < 0.5 * kSquare && std::abs(p.z - middle.z - z) < 0.5 * kSquare)
+                    mean += w.ink(slot, t), n += 1;
             });
             return mean / n;
         };
-        for (const double r : {0.25e-3, 0.45e-3, 0.65e-3}) {
-            double least = 1e9, most = 0;
-            for (int sector = 0; sector < 16; ++sector) {
-                const double mean = mean_at(sector, r, r + 0.2e-3);
-                least = std::min(least, mean);
-                most = std::max(most, mean);
-            }
-            EXPECT_LT(most / least, 1.1) << "6 % as measured, " << r << " m, turned by " << angle;
-            EXPECT_GT(least, 0.35) << "the trail has 0.08";
+        const double head = at(0, 0);
+        EXPECT_LT(head, 0.75) << "a round cap of its volume has 0.1 R θ / 2 = 0.88";
+        for (const double z : {-0.3e-3, 0.0, 0.6e-3, 1.2e-3})
+            EXPECT_NEAR(at(0.5e-3, z) / at(-0.5e-3, z), 1, 0.1) << "its two sides, turned by " << angle;
+        double behind = 0, front = 0, above = at(0, 0.3e-3);
+        for (double z = 0.6e-3; z < 4e-3; z += kSquare) {
+            const double ink = at(0, z);
+            EXPECT_LT(ink, 1.02 * above) << "thinner and thinner; texels under a square vary";
+            if (ink > 0.5 * head) behind = z;
+            above = ink;
         }
+        EXPECT_LT(above, 0.07) << "the trail has 0.04";
+        for (double z = -kSquare; z > -2e-3; z -= kSquare)
+            if (at(0, z) > 0.5 * head) front = -z;
+        EXPECT_GT(behind, 1.3 * front);
     }
 }
 

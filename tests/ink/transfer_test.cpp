@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "ink/paste.h"
 
 namespace tuft::ink {
 namespace {
@@ -49,7 +50,7 @@ struct Touching {
         refresh(skin, tuft, touch, nodes(), areas(), dt);
         const TransferParams p = transfer_params(skin, tuft, touch, areas(), deposit, ds, dt, 1);
         NodeContents given{};
-        transfer(canvas, 0, coverage, tents, area, ds, p, given);
+        transfer(canvas, 0, coverage, places, tents, area, ds, p, given);
         for (int node = 0; node < kNodes; ++node)
             for (int k = 0; k < Reservoir::kPlanes; ++k) skin.content[node][k] -= given[node][k];
     }
@@ -115,6 +116,47 @@ TEST(Transfer, ACleanWetTuftLiftsAndADampOneDries) {
     damp.wash(4, damp.purple);
     for (int i = 0; i < 200; ++i) damp.move(0.1e-3, 2e-3);
     EXPECT_LT((*damp.canvas.liquid(0, Liquid::film))[0], 1.5) << "thirsty hair";
+}
+
+/// Areas of the nodes under a patch whose width falls from 1 to `end` over its length.
+NodeAreas tapered(double end) {
+    NodeAreas areas{};
+    constexpr int kParts = 3000;
+    for (int k = 0; k < kParts; ++k) {
+        const double at = (k + 0.5) / kParts * (kAlong - 1), width = 1 + (end - 1) * at / (kAlong - 1);
+        for (int i = 0; i < kAlong; ++i)
+            areas[i * kAcross] += std::max(0.0, 1 - std::abs(i - at)) * width / kParts;
+    }
+    return areas;
+}
+
+TEST(Transfer, TheTipOnlyGrazesWhatTheBellyRubs) {
+    for (const double f : firmness(tapered(1))) EXPECT_NEAR(f, 1, 1e-6) << "of one width it lies evenly";
+    for (const double f : firmness(NodeAreas{})) EXPECT_EQ(f, 1);
+    // A leaf that runs out to a point, by its closed form: tents over 1 − x / 3, the outer halves doubled.
+    const std::array<double, kAlong> leaf = firmness(tapered(0));
+    const double first = 1 - 1.0 / 9, expected[] = {1, 2.0 / 3 / first, 1.0 / 3 / first, 1.0 / 9 / first};
+    for (int i = 0; i < kAlong; ++i) EXPECT_NEAR(leaf[i], expected[i], 1e-5) << i;
+    // So where all its length passes it rubs little more than half as much as a patch that is as long and wide all over.
+    const auto along = [](const std::array<double, kAlong>& f) { return (0.5 * f[0] + f[1] + f[2] + 0.5 * f[3]) / 3; };
+    EXPECT_LT(along(leaf), 0.6);
+    EXPECT_NEAR(along(firmness(tapered(1))), 1, 1e-6);
+}
+
+TEST(Transfer, BundlesRubInStreaksAndNoMoreInTheMean) {
+    std::vector<Tine> tines;
+    for (int k = 0; k < 12; ++k) tines.push_back({(k + 0.3 + 0.4 * uniform(3, k)) / 12, 0.3 + 0.7 * uniform(4, k)});
+    const Comb rub = rub_of(tines);
+    double mean = 0, least = 9, most = 0;
+    for (const float r : rub) {
+        mean += static_cast<double>(r) / kTines;
+        least = std::min(least, static_cast<double>(r));
+        most = std::max(most, static_cast<double>(r));
+    }
+    EXPECT_NEAR(mean, 1, 1e-6);
+    EXPECT_GE(least, 0.4 - 1e-6) << "liquid between the bundles is moved along, too";
+    EXPECT_GT(most, 1.2);
+    for (const float r : rub_of({})) EXPECT_EQ(r, 1);
 }
 
 TEST(Transfer, YellowThroughWetPurpleTakesPurpleAlong) {

@@ -110,6 +110,50 @@ TEST(WetInk, ReplaysToTheBitOnAnyNumberOfThreads) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+Stroke erasing(Stroke s) {
+    s.trace.erases = true;
+    return s;
+}
+
+TEST(WetInk, NothingStaysOfAStrokeThatTheSameStrokeErases) {
+    const Model model = sheet();
+    Painting painting(model, {.substrate = "porcelain"});
+    Stroke s = wet_line("carbon");
+    s.settings.spacing = 1;
+    s.settings.dip = "each";  // with the same hair
+    painting.paint(s);
+    const double painted = painting.canvas().total(model.texels, 0);
+    const std::uint64_t before = painting.canvas().hash();
+    const StrokeReport report = painting.paint(erasing(s));
+    double most = 0;
+    for (const std::uint32_t slot : painting.canvas().touched_slots())
+        if (const ink::Plane* w = painting.canvas().plane(slot, 0))
+            for (const float v : *w) most = std::max(most, static_cast<double>(v));
+    EXPECT_LT(most, 0.02) << "of 1.8: a reflectance less by 8 %, on single texels; 0.3 on a rim where the ink had run on";
+    EXPECT_LT(painting.canvas().total(model.texels, 0), 1e-4 * painted);
+    EXPECT_NEAR((report.removed.pigment[0] + painting.canvas().total(model.texels, 0)) / painted, 1, 1e-6);
+    painting.undo();
+    EXPECT_EQ(painting.canvas().hash(), before);
+}
+
+TEST(WetInk, AnEraserThroughAWashLeavesItsEdgesAsDryOnesAre) {
+    const Model model = sheet();
+    std::vector<double> ink;
+    for (const bool wet : {false, true}) {
+        Painting painting(model, {.substrate = "porcelain"});
+        Stroke s = wet_line("carbon");
+        if (!wet) s.settings.film = "still";
+        painting.paint(s);
+        const double painted = painting.canvas().total(model.texels, 0);
+        Stroke across = erasing(wet_line("carbon", true));
+        across.settings.film = s.settings.film;
+        painting.paint(across);
+        ink.push_back(painting.canvas().total(model.texels, 0) / painted);
+    }
+    EXPECT_LT(ink[0], 0.95) << "it did erase";
+    EXPECT_NEAR(ink[1], ink[0], 0.01);
+}
+
 TEST(WetInk, YellowThroughWetPurplePicksItUpAndNotWhenItIsDry) {
     const Model model = sheet();
     double picked[2];
