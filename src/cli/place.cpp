@@ -88,8 +88,7 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
         if (const auto laying = stroke::laying_named(a.laying)) s.trace.placement.laying = *laying;
         if (!s.trace.flat || (a.place_mm.empty() && s.trace.placed)) continue;
         drawing.push_back(&s.trace);
-        const Vec3 beside = 0.5 * s.trace.line_width * Vec3(1, 1, 0);
-        for (const stroke::TraceSample& sample : s.trace.samples) area.add(sample.position - beside), area.add(sample.position + beside);
+        stroke::add_extent(area, s.trace);
     }
     if (area.empty()) return;
     const Box& box = model.mesh->bounds;

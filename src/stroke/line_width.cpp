@@ -80,6 +80,11 @@ void overlap(Trace& trace, double more) {
 
 }  // namespace
 
+void add_extent(Box& box, const Trace& trace) {
+    const Vec3 beside = 0.5 * trace.line_width * Vec3(1, 1, 0);
+    for (const TraceSample& sample : trace.samples) box.add(sample.position - beside), box.add(sample.position + beside);
+}
+
 void draw_to_width(Trace& trace, const LineWidths& widths) {
     if (trace.samples.empty()) return;
     const double whole = travelled<TraceSample>(trace.samples).back();

@@ -46,6 +46,10 @@ class WidthTables {
 /// what brushes have.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
+/// Adds what the ink of a line takes up to a box: its samples, with half of its width beside them where it has one;
+/// metres, in its own frame.
+void add_extent(Box& box, const Trace& trace);
+
 /// Lays out the pressures of a trace with made-up ones so that it draws its `line_width`, or as much less of it as they
 /// are below 0.5: the hand sets down and
 /// lifts within one and a half widths each, or a quarter of the line if that is less. A line that ends where it began

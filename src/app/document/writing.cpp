@@ -25,7 +25,7 @@ void set_side_by_side(std::vector<stroke::Trace>& traces) {
         std::size_t end = i;
         Box box;
         for (; end < traces.size() && same_place(traces[end].placement, traces[i].placement); ++end)
-            for (const stroke::TraceSample& s : traces[end].samples) box.add(s.position);
+            stroke::add_extent(box, traces[end]);
         const Vec3 shift = i == 0 ? Vec3(0) : Vec3(edge - box.lo.x + 0.15 * std::max(box.size().x, box.size().y), 0, 0);
         for (; i < end; ++i)
             for (stroke::TraceSample& s : traces[i].samples) s.position += shift;
@@ -41,8 +41,7 @@ Writing read_writing(const std::filesystem::path& file, const std::function<void
     if (out.traces.empty()) throw Error(file.string(), "its strokes lie in space already; only flat writing can be placed");
     set_side_by_side(out.traces);
     Box box;
-    for (const stroke::Trace& trace : out.traces)
-        for (const stroke::TraceSample& s : trace.samples) box.add(s.position);
+    for (const stroke::Trace& trace : out.traces) stroke::add_extent(box, trace);
     for (stroke::Trace& trace : out.traces)
         for (stroke::TraceSample& s : trace.samples) s.position -= box.centre();
     out.width = box.size().x;
