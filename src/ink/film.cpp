@@ -48,7 +48,8 @@ struct Ahead {
             lines[n++] = static_cast<const char*>(from) + i;
     }
     void fetch(std::size_t count) {
-        for (const std::size_t end = std::min(n, at + count); at < end; ++at) __builtin_prefetch(lines[at]);
+        // Into the second cache: the first is full of what is being worked on.
+        for (const std::size_t end = std::min(n, at + count); at < end; ++at) __builtin_prefetch(lines[at], 0, 2);
     }
 };
 
@@ -163,6 +164,8 @@ struct WetFilm::State : TileList {
                 auto& g = geometry[list[i].slot];
                 if (!g) g = std::make_unique<Geometry>(make_geometry(map, seams, list[i].slot, ground()));
                 list[i].stiffness = g->stiffness;
+                list[i].geometry = g.get();
+                list[i].diagonals = g->gd.get();
                 find_planes(canvas, i);
             }
         });
@@ -348,7 +351,7 @@ struct WetFilm::State : TileList {
         }
     }
 
-    /// Lists the memory of a tile that this thread comes to next: nobody takes its planes away before.
+    /// Lists the memory of a tile that this thread comes to soon: nobody takes its planes away before.
     void look_ahead(std::size_t index, Ahead& ahead) const {
         ahead.clear();
         const auto planes_of = [&](std::uint32_t at, std::size_t begin, std::size_t end) {
@@ -357,12 +360,11 @@ struct WetFilm::State : TileList {
             for (const Plane* plane : sources[at].open) ahead.add(plane, begin, end);
         };
         const Active& tile = list[index];
-        const Geometry* g = geometry[tile.slot].get();
         planes_of(static_cast<std::uint32_t>(index), 0, sizeof(Plane));
         for (const int above : {0, 1, 2}) planes_of(tile.around[above], sizeof(Plane) - 64, sizeof(Plane));
         for (const int below : {6, 7, 8}) planes_of(tile.around[below], 0, 64);
-        ahead.add(g, 0, offsetof(Geometry, grain));
-        ahead.add(g->gd.get(), 0, sizeof(Geometry::Diagonals));
+        ahead.add(tile.geometry, 0, offsetof(Geometry, grain));
+        ahead.add(tile.diagonals, 0, sizeof(Geometry::Diagonals));
     }
 
     void find_planes(const Canvas& canvas, std::size_t index) {
@@ -376,10 +378,14 @@ struct WetFilm::State : TileList {
     void commit(Canvas& canvas, std::size_t index, float stain, std::deque<PlanePtr>& spare) {
         Active& tile = list[index];
         if (tile.idle) return;
+        Sources& from = sources[index];
         const auto put_liquid = [&](Liquid where, PlanePtr& plane, float most) {
+            const Plane*& known = from.liquid[static_cast<std::size_t>(where)];
             if (most > 0) {
+                known = plane.get();
                 canvas.swap_liquid(tile.slot, where, plane);
-            } else if (canvas.liquid(tile.slot, where)) {
+            } else if (known) {
+                known = nullptr;
                 PlanePtr none;
                 canvas.swap_liquid(tile.slot, where, none);
             }
@@ -389,10 +395,14 @@ struct WetFilm::State : TileList {
         put_liquid(Liquid::pores, tile.s, tile.outcome.most_s);
         for (int p = 0; p < kMaxPigments; ++p) {
             if (!(tile.pigments >> p & 1)) continue;
-            if (canvas.plane(tile.slot, p) || !all_zero(*tile.p[p])) canvas.swap_open(tile.slot, p, tile.p[p]);
+            if (from.open[p] || !all_zero(*tile.p[p])) {
+                from.open[p] = tile.p[p].get();
+                canvas.swap_open(tile.slot, p, tile.p[p]);
+            }
             if (tile.p[p]) spare.push_back(std::move(tile.p[p]));
         }
-        if (tile.outcome.closing) close_films(canvas, tile.slot, *tile.closing, stain);
+        if (!tile.outcome.closing) return;
+        close_films(canvas, tile.slot, *tile.closing, stain);
         find_planes(canvas, index);
     }
 
@@ -411,7 +421,9 @@ struct WetFilm::State : TileList {
             std::unique_ptr<Worker> worker = take_worker();
             worker->ahead.clear();
             for (std::size_t i = begin; i < end; ++i) {
-                if (i + 1 < end) look_ahead(i + 1, worker->ahead);
+                // The tile after the next: the next one's side is read already with this one.
+                if (i + 2 < end) look_ahead(i + 2, worker->ahead);
+                else worker->ahead.clear();
                 compute(i, pigments, rates, report.steps, *worker);
                 each_read(i, [&](std::uint32_t read) {
                     if (last_reader(readers[read], alone))

@@ -42,6 +42,8 @@ struct Active {
     std::span<const atlas::SeamTap> taps;
     Outcome outcome;
     float stiffness = 0;
+    const Geometry* geometry = nullptr;     ///< null: not looked up yet
+    const Geometry::Diagonals* diagonals = nullptr;  ///< its own; to be asked for before it is there
     bool seam_wet = false;
     bool spreads = true;                    ///< wet in other places than before the step
     bool idle = false;                      ///< nothing wet in sight

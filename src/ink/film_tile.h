@@ -29,6 +29,9 @@ inline constexpr int field_of(int texel) { return field_at(texel % kSide, texel 
 
 /// What the metric says of a tile: made once, never changed.
 struct alignas(64) Geometry {
+    static void* operator new(std::size_t bytes);  ///< as planes (plane_pool.cpp)
+    static void operator delete(void* geometry, std::size_t bytes);
+
     /// Length over distance of faces, at most 4 times the smaller area, over kConductanceUnit: of texels'
     /// right sides, rows of columns -8 to 15, 0 before -1; and of the sides below rows 0 to 16.
     std::array<std::uint16_t, kSide * kRow> gx{};
@@ -38,7 +41,10 @@ struct alignas(64) Geometry {
     float stiffness = 0;                   ///< greatest Σ conductances over area
     /// Of diagonals of the squares above and right of columns -8 to 15 of rows -1 to 15, over kDiagonalUnit: > 0 from
     /// that texel, < 0 (its size) from the one to its right; null: none.
-    struct alignas(64) Diagonals : std::array<std::int16_t, (kSide + 1) * kRow> {};
+    struct alignas(64) Diagonals : std::array<std::int16_t, (kSide + 1) * kRow> {
+        static void* operator new(std::size_t bytes);
+        static void operator delete(void* diagonals, std::size_t bytes);
+    };
     std::unique_ptr<Diagonals> gd;
     bool ups = false, downs = false;       ///< whether there are any > 0, < 0
     Field grain{};                         ///< pin of the place, over the mean

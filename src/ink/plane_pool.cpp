@@ -5,14 +5,15 @@
 #include <new>
 
 #include "ink/canvas.h"
+#include "ink/film_tile.h"
 
-// Planes come from blocks of 2 MiB, which the system may map as one page each: a film's step goes
-// through twelve planes a tile, and looking up their pages takes longer than a tenth of its sums.
+// Planes, and the metric of tiles that get wet, come from blocks of 2 MiB, which the system may map as one page
+// each: a film's step goes through twelve planes a tile, and looking up their pages takes longer than a tenth of
+// its sums.
 namespace tuft::ink {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{2} << 20;
-constexpr std::size_t kCell = sizeof(Plane), kCells = kBlock / kCell - 1;  // the first holds the block's head
 
 struct Cell {
     Cell* next;
@@ -22,9 +23,13 @@ struct Block {
     Cell* free = nullptr;
     std::size_t used = 0, made = 0;  ///< cells given, and cells ever given: those beyond are untouched
 };
-static_assert(sizeof(Block) <= kCell);
 
+/// Of cells of one size.
+template <std::size_t kCell>
 struct Pool {
+    static constexpr std::size_t kCells = kBlock / kCell - 1;  // the first holds the block's head
+    static_assert(sizeof(Block) <= kCell && kCell % 64 == 0);
+
     std::mutex mutex;
     Block* with_room = nullptr;
 
@@ -65,22 +70,35 @@ struct Pool {
     }
 };
 
-Pool& pool() {
-    static auto* p = new Pool;  // never destroyed: planes may outlive whatever is
+template <class T>
+auto& pool_of() {
+    static auto* p = new Pool<sizeof(T)>;  // never destroyed: planes may outlive whatever is
     return *p;
+}
+
+template <class T>
+void* take(std::size_t bytes) {
+    if (bytes != sizeof(T)) return ::operator new(bytes, std::align_val_t{alignof(T)});
+    return pool_of<T>().take();
+}
+template <class T>
+void give(void* cell, std::size_t bytes) {
+    if (!cell) return;
+    if (bytes != sizeof(T)) ::operator delete(cell, std::align_val_t{alignof(T)});
+    else pool_of<T>().give(cell);
 }
 
 }  // namespace
 
-void* Plane::operator new(std::size_t bytes) {
-    if (bytes != kCell) return ::operator new(bytes, std::align_val_t{alignof(Plane)});
-    return pool().take();
-}
+void* Plane::operator new(std::size_t bytes) { return take<Plane>(bytes); }
+void Plane::operator delete(void* plane, std::size_t bytes) { give<Plane>(plane, bytes); }
 
-void Plane::operator delete(void* plane, std::size_t bytes) {
-    if (!plane) return;
-    if (bytes != kCell) ::operator delete(plane, std::align_val_t{alignof(Plane)});
-    else pool().give(plane);
-}
+namespace wet {
 
+void* Geometry::operator new(std::size_t bytes) { return take<Geometry>(bytes); }
+void Geometry::operator delete(void* geometry, std::size_t bytes) { give<Geometry>(geometry, bytes); }
+void* Geometry::Diagonals::operator new(std::size_t bytes) { return take<Diagonals>(bytes); }
+void Geometry::Diagonals::operator delete(void* diagonals, std::size_t bytes) { give<Diagonals>(diagonals, bytes); }
+
+}  // namespace wet
 }  // namespace tuft::ink
