@@ -17,6 +17,7 @@ constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
 constexpr double kLeastSaved = 0.02;  // of a seam's length, for which charts are laid anew
 constexpr int kIterations = 8;         // from where a chart lies, most of it well
 constexpr double kLeastValue = 0.05;  // saved, over the unit, for laying all of the mesh anew
+constexpr double kLeastValueDear = 0.1;  // the same where that takes many seconds
 constexpr double kMostWork = 8;       // triangles laid flat, over those of the mesh
 
 struct Trial {
@@ -36,6 +37,7 @@ class Mover {
         : mesh_(mesh),
           cut_(cut),
           options_(options),
+          least_value_(mesh.n_triangles() < kDearMesh ? kLeastValue : kLeastValueDear),
           budget_(cut, options.l2_all),
           patch_(whole_patch(mesh, cut)),
           paths_(patch_, seam_flags(cut), chart_of(mesh, cut)) {
@@ -97,7 +99,7 @@ class Mover {
             double length = 0;
             for (const std::uint32_t g : chain) length += patch_.length[g];
             const double work = double(n_triangles(t)) / double(mesh_.n_triangles());
-            const double least = std::max(kLeastSaved * length, kLeastValue * work);
+            const double least = std::max(kLeastSaved * length, least_value_ * work);
             t.change = {h, cut_.charts[t.chart[0]].version, cut_.charts[t.chart[1]].version};
             int& refused = cut_.refused.moved[t.change];
             for (; refused < kReaches; ++refused) {
@@ -197,6 +199,7 @@ class Mover {
     const mesh::TriangleMesh& mesh_;
     CutMesh& cut_;
     const ChartOptions& options_;
+    double least_value_;
     StretchBudget budget_;
     Patch patch_;
     SeamPaths paths_;

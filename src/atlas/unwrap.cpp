@@ -20,7 +20,6 @@ namespace {
 
 constexpr int kMostRepairs = 24;
 constexpr int kImprovements = 2;  // rounds of moving seams and merging charts anew
-constexpr std::size_t kDear = 500000;  // triangles of a mesh that gets one such round
 
 // Part of the stretch allowed that is left: with less, which charts grow hangs on roundings.
 constexpr double kWorthMerging = 0.4;
@@ -230,7 +229,7 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     watch.lap(out.report, "charts");
     merge_charts(mesh, cut, chart_options, merge_options, options.progress);
     watch.lap(out.report, "merge");
-    const bool dear = mesh.n_triangles() >= kDear;
+    const bool dear = mesh.n_triangles() >= kDearMesh;
     for (int round = 0; round < (dear ? 1 : kImprovements); ++round) {
         const bool moved = move_seams(mesh, cut, chart_options, options.progress);
         watch.lap(out.report, "move");
