@@ -58,6 +58,12 @@ ATLAS=1400 paint paper-writing sheet qi-shang-ba-xia "--place 0,0,0 --place-widt
   --view 0,89 --size 740x740 --zoom 1.75
 oiiotool "$out/paper-writing.png" "$out/paper-sheet.png" --create 1480x740 3 --paste +740+0 --paste +0+0 -d uint8 -o "$out/paper.png"
 
+# Eight pigments, and the same strokes shown in other inks on bisque.
+paint plum vase vase-plum "" --view 0,4 --size 740x740 --zoom 3 --target 0,-60,115
+"$tuft" render "$out/plum.tuft" -o "$out/plum-blue.png" --recolour cinnabar=indigo --recolour iron-red=carbon --substrate bisque \
+  --view 0,4 --size 740x740 --zoom 3 --target 0,-60,115
+oiiotool "$out/plum-blue.png" "$out/plum.png" --create 1480x740 3 --paste +0+0 --paste +740+0 -d uint8 -o "$out/vase-plum.png"
+
 paint impasto sheet impasto "--substrate bisque" --raking --view 0,89 --size 1400x1000 --zoom 2.6
 
 say "colour chart"

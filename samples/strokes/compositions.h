@@ -23,6 +23,8 @@ std::vector<stroke::Trace> wet_bowl();
 std::vector<stroke::Trace> backrun();
 /// A dripping stroke round the shoulder of the vase.
 std::vector<stroke::Trace> wet_vase();
+/// A plum branch in blossom, a rock and bamboo on the belly of the vase, in eight pigments.
+std::vector<stroke::Trace> vase_plum();
 /// A flower of thick paint on thick paint, on the flat sheet.
 std::vector<stroke::Trace> impasto();
 /// Pinstripes along the right flank of the car.

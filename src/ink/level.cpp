@@ -4,23 +4,20 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "ink/halo.h"
 #include "ink/paste.h"
 #include "ink/simd.h"
 
 namespace tuft::ink {
 namespace {
 
-constexpr int kSide = atlas::kTile, kN = atlas::kTileTexels, kWide = kSide + 2;
+constexpr int kSide = atlas::kTile, kN = atlas::kTileTexels, kWide = kHaloRow;
 constexpr double kStep = 0.2;  // of what two neighbours differ by, at most
 constexpr int kMostSteps = 64;
 
 using Texels = std::array<float, kN>;
-using Halo = std::array<float, kWide * kWide>;  ///< a tile with the texels round it
 
-struct Tile {
-    std::uint32_t slot = kNone;
-    std::array<std::uint32_t, 4> beside;  ///< places in the list: left, right, below, above; kNone
-    std::vector<std::pair<std::uint32_t, atlas::SeamLink>> links;  ///< place of the other end
+struct Tile : HaloTile {
     alignas(64) Texels area;              ///< m² of texels that take part; else 0
     alignas(64) Halo reach;               ///< the same with those round it
     alignas(64) Texels now, next;         ///< of the pigment in work
@@ -43,52 +40,17 @@ TUFT_CLONES void step(float* __restrict next, const float* __restrict now, const
         }
 }
 
-/// A field of the tiles with what lies beside it.
-template <class Field>
-void fill_halo(Halo& out, const std::vector<Tile>& tiles, const Tile& tile, Field field) {
-    out.fill(0);
-    const Texels& here = field(tile);
-    for (int y = 0; y < kSide; ++y) std::copy_n(here.data() + y * kSide, kSide, out.data() + (y + 1) * kWide + 1);
-    for (int side = 0; side < 4; ++side) {
-        if (tile.beside[side] == kNone) continue;
-        const Texels& from = field(tiles[tile.beside[side]]);
-        for (int k = 0; k < kSide; ++k) {
-            const int at[] = {(k + 1) * kWide, (k + 1) * kWide + kWide - 1, k + 1, (kWide - 1) * kWide + k + 1};
-            const int of[] = {k * kSide + kSide - 1, k * kSide, (kSide - 1) * kSide + k, k};
-            out[at[side]] = from[of[side]];
-        }
-    }
-}
-
 std::vector<Tile> tiles_of(const Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks& seams,
                            const OpenBefore& before) {
     std::vector<std::uint32_t> slots;
     for (const auto& [slot, plane] : before) slots.push_back(slot);
     std::sort(slots.begin(), slots.end());
-    const auto place_of = [&](std::uint32_t slot) {
-        const auto found = std::lower_bound(slots.begin(), slots.end(), slot);
-        return found != slots.end() && *found == slot ? static_cast<std::uint32_t>(found - slots.begin()) : kNone;
-    };
-    std::vector<Tile> tiles(slots.size());
-    const auto n = static_cast<std::int64_t>(map.tiles_per_side);
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-        Tile& tile = tiles[i];
-        tile.slot = slots[i];
+    std::vector<Tile> tiles = halo_tiles<Tile>(map, seams, slots);
+    for (Tile& tile : tiles) {
         const Plane now = open_pigment(canvas, tile.slot);
         const Plane& was = *before.at(tile.slot);
         for (int t = 0; t < kN; ++t)
             tile.area[t] = now[t] > 0 && now[t] != was[t] ? map.tiles[tile.slot].area[t] : 0;
-        const std::int64_t x = map.tile_of_slot[tile.slot] % n, y = map.tile_of_slot[tile.slot] / n;
-        const std::int64_t beside[4][2] = {{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}};
-        for (int side = 0; side < 4; ++side) {
-            const auto [bx, by] = beside[side];
-            const bool in = bx >= 0 && by >= 0 && bx < n && by < n;
-            const std::uint32_t slot = in ? map.slot_of_tile[static_cast<std::size_t>(by * n + bx)] : kNone;
-            tile.beside[side] = slot == kNone ? kNone : place_of(slot);
-        }
-        for (std::uint32_t k = seams.start[tile.slot]; k < seams.start[tile.slot + 1]; ++k)
-            if (const std::uint32_t other = place_of(seams.links[k].other_slot); other != kNone)
-                tile.links.emplace_back(other, seams.links[k]);
     }
     for (Tile& tile : tiles) fill_halo(tile.reach, tiles, tile, [](const Tile& t) -> const Texels& { return t.area; });
     return tiles;

@@ -326,6 +326,7 @@ StrokeReport Painting::finish_hand() {
         return of_palette = atlas::build_seam_links(*h.model->mesh, h.model->atlas, h.model->texels);
     };
     if (h.paste) h.stamper.level(links(), ink::levelling_length(h.ink.yield, h.ink.film * ink::kFilmUnit));
+    else if (!h.wet && !h.stroke.trace.erases && h.stamper.on_relief()) h.stamper.pool(links(), h.ink.film, h.ink.strength());
     if (h.stroke.trace.erases && this->canvas(h.stroke.layer).wet()) h.stamper.blot(links());
     if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched, h.nodes, h.film_progress);
     h.report.ink_left = h.reservoir.remaining();

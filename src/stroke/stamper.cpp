@@ -4,9 +4,16 @@
 #include <array>
 
 #include "core/parallel.h"
+#include "ink/pool.h"
 #include "ink/relief.h"
 
 namespace tuft::stroke {
+
+namespace {
+
+constexpr double kHeldByRidges = 0.35;  // of the film that is laid
+
+}  // namespace
 
 Stamper::Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options,
                  const ink::Substrate& substrate)
@@ -215,6 +222,21 @@ Stamper::Passed Stamper::plough(const ink::PasteParams& params, const ink::NodeM
 
 void Stamper::level(const atlas::SeamLinks& seams, double length) {
     ink::level_paste(canvas_, model_.texels, seams, pastes_, length);
+}
+
+bool Stamper::on_relief() const {
+    return std::any_of(before_.begin(), before_.end(), [&](const auto& tile) {
+        if (!canvas_.has_film(tile.first, ink::kFirstDryFilm)) return false;
+        const ink::Plane z = ink::dry_relief(canvas_, tile.first);
+        return *std::max_element(z.begin(), z.end()) > static_cast<float>(ink::kPlain);
+    });
+}
+
+void Stamper::pool(const atlas::SeamLinks& seams, double film, double strength) {
+    std::vector<const ink::TileSnapshot*> before;
+    for (const auto& [slot, tile] : before_) before.push_back(&tile);
+    std::sort(before.begin(), before.end(), [](const auto* a, const auto* b) { return a->slot < b->slot; });
+    ink::pool(canvas_, model_.texels, seams, before, {.hold = kHeldByRidges * film, .strength = strength});
 }
 
 void Stamper::blot(const atlas::SeamLinks& seams) {

@@ -68,6 +68,11 @@ class Stamper {
     /// Rounds the paste that was laid over `length` metres.
     void level(const atlas::SeamLinks& seams, double length);
 
+    /// Whether thick dry paint lies on some tile that was written to.
+    bool on_relief() const;
+    /// Lets thin ink that was laid settle on thick paint; `film` units of an ink of that strength.
+    void pool(const atlas::SeamLinks& seams, double film, double strength);
+
     /// After erasing: draws off what of wet ink stayed round what was erased.
     void blot(const atlas::SeamLinks& seams);
 

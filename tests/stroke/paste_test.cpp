@@ -86,6 +86,42 @@ TEST(PasteStroke, EachPigmentIsKeptWhenItPloughsAnother) {
     EXPECT_EQ(painting.canvas().liquid(painting.canvas().touched_slots()[0], ink::Liquid::film), nullptr);
 }
 
+TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
+    const Model model = sheet();
+    Painting painting(model);
+    painting.paint(stroke_of(kWhite, {}));
+    Stroke wait;
+    wait.action = Action::dry;
+    wait.trace.brush = kBrush;
+    wait.trace.ink = kWhite;
+    painting.paint(wait);
+    const std::uint64_t before = painting.hash();
+    const std::vector<double> relief = heights_across(painting, 0);
+    Stroke glaze = stroke_of("carbon", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0}));
+    painting.paint(glaze);
+    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + painting.held(kBrush)->reservoir.pigment(1)) / capacity(), 1, 1e-6);
+    const ink::AtlasMap<float> amounts = ink::compose_amounts(painting.stack(), model.texels);
+    double ridges = 0, n_ridges = 0, furrows = 0, n_furrows = 0;
+    const double texel = model.texels.texel_size;
+    const auto reach = static_cast<std::size_t>(0.4e-3 / texel);  // half a furrow and more
+    for (std::size_t row = kSize / 2 - 40; row < kSize / 2 + 40; ++row) {
+        const auto [low, high] = std::minmax_element(relief.begin() + static_cast<std::ptrdiff_t>(row - reach),
+                                                     relief.begin() + static_cast<std::ptrdiff_t>(row + reach));
+        if (*high - *low < 30) continue;
+        const double ink = static_cast<double>(amounts.texels[(row * kSize + kSize / 2) * static_cast<std::size_t>(amounts.channels) + 1]);
+        if (relief[row] > *low + 0.8 * (*high - *low)) ridges += ink, n_ridges += 1;
+        if (relief[row] < *low + 0.2 * (*high - *low)) furrows += ink, n_furrows += 1;
+    }
+    ASSERT_GT(n_ridges, 5);
+    ASSERT_GT(n_furrows, 5);
+    EXPECT_GT(furrows / n_furrows, 2 * ridges / n_ridges) << "as laid they are alike";
+    const std::uint64_t after = painting.hash();
+    painting.undo();
+    EXPECT_EQ(painting.hash(), before);
+    painting.redo();
+    EXPECT_EQ(painting.hash(), after);
+}
+
 TEST(PasteStroke, ItReplaysAndIsTakenBackToTheBit) {
     const Model model = sheet();
     std::uint64_t hash = 0;

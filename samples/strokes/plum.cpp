@@ -1,0 +1,137 @@
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "brush/preset.h"
+#include "compositions.h"
+#include "core/units.h"
+#include "hand.h"
+
+// A plum branch in blossom beside a rock, and bamboo, on the vase's belly: eight pigments.
+namespace tuft::samples {
+
+namespace {
+
+using stroke::Action;
+using stroke::Care;
+
+constexpr double kPi = std::numbers::pi;
+
+const Care kTip(const char* ink, double depth) {
+    return {.action = Action::dip, .ink = ink, .extent = {.depth = depth}};
+}
+const Care kWipeTip(double depth) { return {.action = Action::wipe, .extent = {.depth = depth, .amount = 0.95}}; }
+const Care kFlank(const char* ink, double side) {
+    return {.action = Action::dip, .ink = ink, .extent = {.depth = 1, .side = side}};
+}
+const Care kDry{.action = Action::dry};
+const Care kWipe(double amount) { return {.action = Action::wipe, .extent = {.amount = amount}}; }
+
+/// Strokes with keys in millimetres from a place on the vase.
+struct Painter {
+    stroke::Placement place;
+    std::vector<stroke::Trace> out = {};
+
+    void add(const Stroke& s, const char* brush, const char* ink, double speed, std::vector<Care> before = {}) {
+        WriteOptions options;
+        options.size = 1;
+        options.centre = {0, 0};
+        options.speed = speed;
+        stroke::Trace t = write(s, WidthTable(brush::load_preset(brush)), options);
+        t.placement = place;
+        t.brush = brush;
+        t.ink = ink;
+        t.seed = out.size() + 1;
+        t.label = s.name;
+        t.before = std::move(before);
+        out.push_back(std::move(t));
+    }
+
+    /// A stroke along (x, y) places that swells from 0 to `width` at `swell` of its length and runs out.
+    static Stroke leaf(const char* name, const Vec2& from, double turn, double length, double width, double bend) {
+        const Vec2 u{std::cos(turn), std::sin(turn)}, v{-u.y, u.x};
+        const auto at = [&](double f, double w, double pace = 1) {
+            const Vec2 p = from + f * length * u + bend * length * f * f * v;
+            return Key{p.x, p.y, w, pace};
+        };
+        return {name, {at(0, 0), at(0.12, 0.45 * width), at(0.42, width), at(0.75, 0.55 * width), at(1, 0, 1.4)}};
+    }
+
+    /// Pressed with the tip outwards, drawn to the heart.
+    void blossom(const Vec2& heart, double size, double turn, double flat) {
+        for (int k = 0; k < 5; ++k) {
+            const double a = turn + 2 * kPi * k / 5;
+            const Vec2 u{std::cos(a), flat * std::sin(a)};
+            const auto at = [&](double f, double side, double w, double pace) {
+                const Vec2 p = heart + size * (1 - f) * u + side * size * Vec2{-u.y, u.x};
+                return Key{p.x, p.y, w, pace};
+            };
+            add({"petal", {at(0.08, 0, 0, 0.5), at(0.14, 0.04, 0.8 * size, 0.4), at(0.4, 0.06, 1.1 * size, 0.6), at(0.72, 0.02, 0.55 * size, 0.8), at(0.93, 0, 0, 1)}},
+                "mixed-medium", "titanium-white", 0.03, {kWipeTip(0.14), kTip("cinnabar", 0.14)});
+        }
+    }
+    void stamens(const Vec2& heart, double size, double turn, double flat) {
+        for (int k = 0; k < 7; ++k) {
+            const double a = turn + 2 * kPi * (k + 0.3 * std::sin(5.0 * k)) / 7, r = size * (0.5 + 0.1 * std::cos(3.0 * k));
+            const Vec2 end = heart + r * Vec2{std::cos(a), flat * std::sin(a)};
+            const Vec2 begin = heart + 0.12 * size * Vec2{std::cos(a), flat * std::sin(a)};
+            const std::vector<Care> care = k ? std::vector<Care>{} : std::vector<Care>{kDry};
+            add({"filament", {{begin.x, begin.y, 0}, {0.5 * (begin.x + end.x), 0.5 * (begin.y + end.y), 0.35}, {end.x, end.y, 0.15}}}, "wolf-small*0.6", "cinnabar", 0.05, care);
+            add({"anther", {{end.x, end.y, 0}, {end.x + 0.15, end.y + 0.05, 0.9, 0.5}, {end.x + 0.25, end.y, 0}}}, "wolf-small*0.6", "gamboge", 0.02);
+        }
+    }
+    void bud(const Vec2& at, double size, double turn, bool dry) {
+        std::vector<Care> care{kWipeTip(0.2), kTip("cinnabar", 0.2)};
+        if (dry) care.insert(care.begin(), kDry);
+        add(leaf("bud", at, turn, 1.3 * size, size, 0.05), "mixed-medium", "titanium-white", 0.03, care);
+        add(leaf("calyx", at - 0.15 * size * Vec2{std::cos(turn), std::sin(turn)}, turn + 0.2, 0.6 * size, 0.35 * size, 0.1), "wolf-small", "carbon", 0.04);
+    }
+};
+
+}  // namespace
+
+std::vector<stroke::Trace> vase_plum() {
+    Painter p{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::Laying::wrap}};
+    // The rock: cobalt with a flank of bone black, its faces dragged with a brush that is nearly dry.
+    const std::vector<Care> half_dry{kWipe(0.3), kFlank("bone-black", 0.3), kWipe(0.66)};
+    p.add({"rock", {{-46, 53, 0, 0.6}, {-47, 44, 8, 0.8}, {-43, 30, 10, 1}, {-38, 22, 8, 1}, {-33, 20, 0, 1.2}}}, "mixed-large", "cobalt", 0.16, half_dry);
+    p.add({"rock", {{-31, 22, 0, 0.6}, {-29, 27, 9, 0.8}, {-31, 40, 11, 1}, {-34, 52, 8, 1}, {-36, 56, 0, 1}}}, "mixed-large", "cobalt", 0.18, half_dry);
+    p.add({"rock", {{-21, 36, 0, 0.6}, {-18, 38, 7, 0.8}, {-17, 46, 9, 1}, {-19, 54, 6, 1}, {-20, 56, 0, 1}}}, "mixed-large", "cobalt", 0.18, half_dry);
+    const double contours[][8] = {{-50, 54, -50, 40, -45, 26, -36, 18}, {-36, 18, -30, 19, -26, 24, -24, 34}, {-24, 35, -19, 32, -13, 38, -12, 54}, {-38, 32, -37, 40, -40, 46, -40, 54}, {-25, 36, -24, 44, -26, 50, -27, 55}};
+    for (const auto& c : contours)
+        p.add({"rock's edge", {{c[0], c[1], 0, 0.7}, {c[2], c[3], 2.4, 1}, {c[4], c[5], 1.4, 1}, {c[6], c[7], 0, 1.2}}}, "wolf-medium", "bone-black", 0.09, {kWipe(0.45)});
+    // The trunk and its branches: iron red with bone black in one flank, faster where they are thin.
+    p.add({"trunk", {{-27, 46, 0, 0.5}, {-26, 40, 7, 0.6}, {-20, 22, 8.5, 0.9}, {-8, 12, 7, 1, 0.05}, {0, -2, 6, 1.1}, {14, -12, 4.5, 1.2, 0.04}, {24, -28, 3, 1.4}, {36, -38, 0, 1.6}}},
+          "mixed-large", "iron-red", 0.12, {kDry, kWipe(0.4), kFlank("bone-black", 0.5), kWipe(0.62)});
+    p.add({"branch", {{-11, 20, 0, 0.7}, {-15, 13, 4, 0.9}, {-20, -4, 3, 1, 0.04}, {-30, -16, 2.4, 1.2}, {-34, -30, 0, 1.4}}}, "mixed-medium", "iron-red", 0.09, {kFlank("bone-black", 0.4), kWipe(0.3)});
+    p.add({"branch", {{2, -3, 0}, {10, -3, 3.4, 0.9}, {22, 2, 2.6, 1.1, 0.04}, {36, -2, 0, 1.4}}}, "mixed-medium", "iron-red", 0.09, {kFlank("bone-black", 0.4), kWipe(0.3)});
+    const double twigs[][6] = {{-20, -4, -12, -14, -9, -27}, {-28, -14, -36, -16, -43, -22}, {14, -12, 10, -24, 14, -38}, {22, 2, 30, 9, 40, 12}, {24, -28, 32, -27, 42, -24}};
+    for (const auto& t : twigs)
+        p.add({"twig", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon", 0.1, {kWipe(0.3)});
+    // Moss on the trunk.
+    for (int k = 0; k < 9; ++k) {
+        const double x = -27 + 3.8 * k, y = 33 - 3.3 * k + 2.5 * std::sin(2.0 * k);
+        p.add({"moss", {{x, y - 3.4, 0}, {x + 0.4, y - 3.2, 1.8, 0.5}, {x + 0.7, y - 3.4, 0}}}, "wolf-medium", "carbon", 0.02);
+    }
+    // Bamboo behind the rock: indigo with gamboge in the tip.
+    const double leaves[][4] = {{5, 31, 0.75, 20}, {4, 32, 1.35, 19}, {6, 30, 0.2, 22}, {19, 35, 0.9, 17}, {20, 34, 0.35, 20}, {3, 32, 1.9, 15}, {20, 33, -0.15, 17}};
+    for (const auto& l : leaves)
+        p.add(Painter::leaf("bamboo", {l[0], l[1]}, l[2], l[3], 4.2, 0.06), "mixed-medium", "indigo", 0.07,
+              {kWipe(0.6), kTip("gamboge", 0.16)});
+    p.add({"stem", {{-4, 54, 0}, {-2, 46, 1.3}, {1, 36, 1.1, 1, 0.05}, {6, 30, 0}}}, "wolf-medium", "indigo", 0.07);
+    p.add({"stem", {{6, 54, 0}, {9, 46, 1.2}, {14, 40, 0.9}, {20, 34, 0}}}, "wolf-medium", "indigo", 0.07);
+    // Blossoms on what is dry, the open ones last.
+    bool first = true;
+    const double buds[][4] = {{-34, -30, 5, -1.9}, {36, -38, 5, -0.9}, {-43, -22, 4.5, 3.4}, {14, -38, 4.5, -1.4}, {40, 12, 4.5, 0.4}, {42, -24, 4.5, 0.2}, {-9, -27, 4.2, -1.2}};
+    for (const auto& b : buds) p.bud({b[0], b[1]}, b[2], b[3], std::exchange(first, false));
+    const double blossoms[][5] = {{-20, -12, 8.5, 0.4, 0.92}, {8, -8, 9.5, 1.1, 1}, {25, -20, 8.5, 0.2, 0.9}, {27, 3, 8, 0.7, 0.75}, {-9, 8, 7.5, 1.4, 0.85}};
+    for (const auto& b : blossoms) p.blossom({b[0], b[1]}, b[2], b[3], b[4]);
+    for (const auto& b : blossoms) p.stamens({b[0], b[1]}, b[2], b[3] + 0.3, b[4]);
+    // The seal.
+    const double seal[][4] = {{36, 33, 44, 33}, {36, 41, 44, 41}, {36, 33, 36, 41}, {44, 33, 44, 41}, {37.5, 35, 42.5, 35}, {37.5, 37, 42.5, 37}, {37.5, 39, 42.5, 39}, {40, 35, 40, 39}};
+    for (const auto& l : seal)
+        p.add({"seal", {{l[0], l[1], 0.5}, {0.5 * (l[0] + l[2]), 0.5 * (l[1] + l[3]), 0.8}, {l[2], l[3], 0.5}}}, "wolf-small", "cinnabar", 0.03);
+    return std::move(p.out);
+}
+
+}  // namespace tuft::samples

@@ -1,0 +1,149 @@
+#include "ink/pool.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "../atlas/analytic_surfaces.h"
+#include "core/parallel.h"
+
+// Thin ink over thick dry paint.
+namespace tuft::ink {
+namespace {
+
+constexpr int kN = atlas::kTileTexels;
+constexpr double kSideLength = 8e-3, kWave = 1e-3;  // metres
+
+/// A sheet of 8 mm in n × n charts, 20 texels a millimetre, with dry furrows `deep` micrometres deep across x, and 2 film
+/// units of ink in the open film.
+struct Furrowed {
+    testing::Unwrapped u;
+    atlas::TexelMap map;
+    atlas::SeamLinks seams;
+    Canvas canvas;
+    std::vector<TileSnapshot> before;
+
+    explicit Furrowed(double deep, int n = 1, double shift = 0)
+        : u(testing::sheet(kSideLength, n, 160.0 / n)),
+          map(atlas::build_texel_map(u.mesh, u.atlas)),
+          seams(atlas::build_seam_links(u.mesh, u.atlas, map)),
+          canvas(map.n_slots()) {
+        canvas.add_pigment({.name = "thick", .height = 5e-6f});
+        canvas.add_pigment({.name = "a", .height = 2e-6f});
+        canvas.add_pigment({.name = "b", .height = 2e-6f});
+        each([&](std::uint32_t slot, int t, const Vec3& p) {
+            canvas.touch_film(slot, kFirstDryFilm, 0)[t] = static_cast<float>((60 + deep * ridge(p.x + shift)) / 5);
+        });
+        for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) before.push_back(canvas.snapshot(slot));
+        each([&](std::uint32_t slot, int t, const Vec3& p) {
+            const double part = p.y > 0 ? 0.25 : 0.75;
+            canvas.touch(slot, 1)[t] = static_cast<float>(2 * part);
+            canvas.touch(slot, 2)[t] = static_cast<float>(2 * (1 - part));
+        });
+    }
+    /// 0 at the bottom of a furrow, 1 on the ridge.
+    static double ridge(double x) { return std::abs(2 * (x / kWave - std::floor(x / kWave)) - 1); }
+    template <class Fn>
+    void each(Fn&& fn) const {
+        for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+            for (int t = 0; t < kN; ++t)
+                if (map.tiles[slot].piece[t] != atlas::kNoPiece) fn(slot, t, Vec3(map.position(slot, t)));
+    }
+    double film(std::uint32_t slot, int t) const {
+        return static_cast<double>((*canvas.plane(slot, 1))[t]) + static_cast<double>((*canvas.plane(slot, 2))[t]);
+    }
+    void settle(const PoolOptions& options = {}) {
+        std::vector<const TileSnapshot*> tiles;
+        for (const TileSnapshot& b : before) tiles.push_back(&b);
+        pool(canvas, map, seams, tiles, options);
+    }
+};
+
+/// Where a film of 2 stands in furrows `deep` micrometres deep: max(hold, level − z) holds as much.
+double level_in(double deep, double hold) {
+    double low = 0, high = deep / 10 + 2;
+    for (int i = 0; i < 60; ++i) {
+        const double level = 0.5 * (low + high);
+        double sum = 0;
+        constexpr int kParts = 1000;
+        for (int k = 0; k < kParts; ++k) sum += std::max(hold, level - deep / 10 * (k + 0.5) / kParts) / kParts;
+        (sum < 2 ? low : high) = level;
+    }
+    return low;
+}
+
+TEST(Pool, StandsLevelInTheFurrowsAndThinOnTheRidges) {
+    const PoolOptions options;
+    for (const double deep : {60.0, 150.0}) {
+        Furrowed f(deep);
+        f.settle(options);
+        const double level = level_in(deep, options.hold);
+        double apart = 0, n = 0, thinnest = 9;
+        f.each([&](std::uint32_t slot, int t, const Vec3& p) {
+            if (std::abs(p.x) > 3e-3 || std::abs(p.y) > 3e-3) return;  // the sheet's ends stop what would flow on
+            const double z = deep / 10 * Furrowed::ridge(p.x), w = f.film(slot, t);
+            thinnest = std::min(thinnest, w);
+            apart += std::abs(w - std::max(options.hold, level - z));
+            n += 1;
+        });
+        EXPECT_LT(apart / n, 0.1) << "film units of 2 in the mean: a texel is a tenth of a furrow's side, deep " << deep;
+        EXPECT_NEAR(thinnest, options.hold, 0.05);
+    }
+}
+
+TEST(Pool, KeepsEachPigmentOverSeamsAndOnAnyNumberOfThreads) {
+    std::map<int, std::uint64_t> hashes;
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        Furrowed f(150, 2);
+        const double a = f.canvas.total(f.map, 1), b = f.canvas.total(f.map, 2), thick = f.canvas.total(f.map, 0);
+        f.settle();
+        EXPECT_NEAR(f.canvas.total(f.map, 1) / a, 1, 1e-6) << "floats";
+        EXPECT_NEAR(f.canvas.total(f.map, 2) / b, 1, 1e-6);
+        EXPECT_EQ(f.canvas.total(f.map, 0), thick);
+        hashes[threads] = f.canvas.hash();
+    }
+    set_thread_count(0);
+    EXPECT_EQ(hashes[1], hashes[3]);
+}
+
+TEST(Pool, ASeamDoesNotShow) {
+    // The seam at x = 0 runs half way down a furrow's side, that at y = 0 across all of them.
+    Furrowed whole(150, 1, 0.25e-3), cut(150, 2, 0.25e-3);
+    for (Furrowed* f : {&whole, &cut}) f->settle();
+    // Means about ridges and bottoms, 0.5 mm wide and 0.25 mm along: what is beside the seam too.
+    const auto means = [](const Furrowed& f) {
+        std::map<std::pair<int, int>, std::pair<double, double>> sums;
+        f.each([&](std::uint32_t slot, int t, const Vec3& p) {
+            if (std::abs(p.x) > 1e-3 || std::abs(p.y) > 1e-3) return;
+            auto& [sum, area] = sums[{static_cast<int>(std::floor(p.x / 0.5e-3)), static_cast<int>(std::floor(p.y / 0.25e-3))}];
+            sum += f.film(slot, t) * static_cast<double>(f.map.tiles[slot].area[t]);
+            area += static_cast<double>(f.map.tiles[slot].area[t]);
+        });
+        return sums;
+    };
+    const auto a = means(whole), b = means(cut);
+    double least = 9, most = 0;
+    for (const auto& [place, sum] : a) {
+        const auto& other = b.at(place);
+        const double film = sum.first / sum.second;
+        EXPECT_NEAR(film, other.first / other.second, 0.2) << "half a texel of ten, at an edge with 2 to 4";
+        least = std::min(least, film);
+        most = std::max(most, film);
+    }
+    EXPECT_LT(least, 0.8) << "it did run off the ridges";
+    EXPECT_GT(most, 3.2);
+}
+
+TEST(Pool, LeavesPlainGroundAsItIsPainted) {
+    Furrowed thin(0);  // 60 µm all over, level
+    thin.each([&](std::uint32_t slot, int t, const Vec3&) { thin.canvas.touch_film(slot, kFirstDryFilm, 0)[t] = 5.9f; });
+    thin.each([&](std::uint32_t slot, int t, const Vec3& p) { thin.canvas.touch(slot, 1)[t] = p.x > 0 ? 2 : 1; });
+    const std::uint64_t hash = thin.canvas.hash();
+    thin.settle();
+    EXPECT_EQ(thin.canvas.hash(), hash) << "29.5 µm are no relief";
+}
+
+}  // namespace
+}  // namespace tuft::ink
