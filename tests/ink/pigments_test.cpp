@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "core/error.h"
+#include "ink/colorimetry.h"
 #include "ink/composite.h"
 
 namespace tuft::ink {
@@ -89,6 +91,41 @@ TEST(Presets, InksLookLikeTheirNames) {
     EXPECT_GT(yellow[0], yellow[1]);
     const Rgb white = seen("titanium-white", "clay");
     EXPECT_GT(white[1], 0.6f) << "hides clay";
+}
+
+/// CIELAB of a thick film of a pigment, and of one part in ten of titanium white.
+Lab masstone(const char* pigment, double part = 1) {
+    Substrate matte;
+    std::array<Plane, 2> planes;
+    planes[0].fill(static_cast<float>(40 * part));
+    planes[1].fill(static_cast<float>(40 * (1 - part)));
+    const TileFilm film{.pigments = {&planes[0], &planes[1]}};
+    const std::vector<Pigment> pigments{load_pigment(pigment), load_pigment("titanium-white")};
+    const TileLook look = look_of_films(std::span(&film, 1), nullptr, pigments, matte);
+    return lab_of_rgb({look.colour[0][0], look.colour[1][0], look.colour[2][0]});
+}
+
+TEST(Presets, MasstonesAndTintsLieWherePublishedOnesDo) {
+    // Vermilion of A. Maerz, M. R. Paul, A Dictionary of Color, 1930: #E34234. Grinds of it differ by some 5 (coarse ones
+    // are darker and bluer).
+    const std::array<double, 3> encoded{0xE3, 0x42, 0x34};
+    std::array<double, 3> vermilion;
+    for (int c = 0; c < 3; ++c) vermilion[c] = srgb_decode(static_cast<float>(encoded[c] / 255));
+    EXPECT_LT(delta_e_2000(masstone("cinnabar"), lab_of_rgb(vermilion)), 6);
+    // By their closed forms from the measured spectra: R = 1 + K/S − √((K/S)² + 2 K/S) at 550 nm, where the eye is.
+    for (const char* name : {"bone-black", "titanium-white"}) {
+        const Coefficients at = coefficients_at(load_pigment(name).curve, 550);
+        const double ratio = at.k / at.s, reflectance = 1 + ratio - std::sqrt(ratio * ratio + 2 * ratio);
+        const Lab grey = lab_of_rgb({reflectance, reflectance, reflectance});
+        EXPECT_NEAR(masstone(name)[0], grey[0], 1.5) << name << ": L*, its spectrum is nearly level";
+    }
+    // Tints with white turn bluer than masstones, as finely divided pigments do: hue of red ones towards blue, blacks
+    // grey with a cold cast.
+    const auto hue = [](const Lab& lab) { return std::atan2(lab[2], lab[1]) * 180 / 3.14159265; };
+    for (const char* name : {"cinnabar", "iron-red"}) EXPECT_LT(hue(masstone(name, 0.1)), hue(masstone(name)) - 1) << name;
+    EXPECT_LT(masstone("bone-black", 0.1)[2], -1);
+    for (const char* name : {"cobalt-underglaze", "indigo"}) EXPECT_LT(hue(masstone(name, 0.1)), -60) << name << ": blue, not purple";
+    EXPECT_GT(hue(masstone("gamboge", 0.1)), hue(masstone("gamboge")) + 10) << "orange-brown in mass, lemon as a tint";
 }
 
 TEST(Presets, UnknownNamesAreAnsweredWithTheNearest) {
