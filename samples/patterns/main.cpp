@@ -172,12 +172,13 @@ void bowl(const std::filesystem::path& folder) {
 }  // namespace tuft::samples
 
 int main(int argc, char** argv) {
-    if (argc < 2) {
+    const std::string only = argc > 2 ? argv[2] : "";
+    if (argc < 2 || argv[1][0] == '-' ||
+        !(only.empty() || only == "car" || only == "bowl" || only == "plate")) {
         std::fprintf(stderr, "usage: tuft-patterns FOLDER [car | bowl | plate]\n");
         return 2;
     }
     const std::filesystem::path folder = argv[1];
-    const std::string only = argc > 2 ? argv[2] : "";
     try {
         std::filesystem::create_directories(folder);
         if (only.empty() || only == "car") tuft::samples::car(folder);
