@@ -158,6 +158,69 @@ LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings
     return out;
 }
 
+double stored_at_rest(const std::vector<double>& at, const LateralSprings& s, const LateralSide& side,
+                      const std::vector<double>& u) {
+    double sum = 0;
+    for (std::size_t i = 1; i < at.size(); ++i) {
+        double twice = side.push[i] * u[i];
+        if (u[i] > side.clear[i]) twice -= s.wall * s.stretch * (u[i] - side.clear[i]) * side.clear[i];
+        sum += 0.5 * tributary(at, i) * twice;
+    }
+    return sum;
+}
+
+LateralShift drag_lateral(const std::vector<double>& at, const LateralSprings& s, const LateralFriction& friction) {
+    const std::size_t count = at.size();
+    LateralShift out;
+    out.shift = friction.stuck;
+    out.shift[0] = 0;
+    bool still = true;
+    for (const double d : out.shift) still = still && d == 0;
+    if (still) return out;
+    // Of both sides, in v = δ over the taper.
+    Band both = spring_band(at, s);
+    for (std::size_t i = 1; i < count; ++i)
+        for (double& k : both[i]) k *= 2;
+    const auto force = [&](const std::vector<double>& v, std::size_t i) {
+        double f = 0;
+        for (std::size_t d = 0; d <= std::min<std::size_t>(i, 2); ++d) f += both[i][d] * v[i - d];
+        for (std::size_t d = 1; d <= 2 && i + d < count; ++d) f += both[i + d][d] * v[i + d];
+        return f;
+    };
+    std::vector<double> stuck(count), v(count);
+    for (std::size_t i = 0; i < count; ++i) v[i] = stuck[i] = out.shift[i] / taper(s, i);
+    std::vector<int> slips(count, 0);  // 0: sticks; else the sign of the force of the surface
+    for (int pass = 0; pass < kDragPasses; ++pass) {
+        bool same = true;
+        for (std::size_t i = 1; i < count; ++i) {
+            const double most = tributary(at, i) * friction.most[i] * taper(s, i);
+            int now = slips[i];
+            if (now == 0) {
+                const double f = force(v, i);
+                if (std::abs(f) > most) now = f > 0 ? 1 : -1;
+            } else if (now * (v[i] - stuck[i]) > 0) {
+                now = 0;  // no further than it is carried
+            }
+            same = same && now == slips[i];
+            slips[i] = now;
+        }
+        if (same) break;
+        Band m = both;
+        v[0] = 0;
+        for (std::size_t i = 1; i < count; ++i) {
+            constexpr double kHeld = 1e8;
+            v[i] = slips[i] * tributary(at, i) * friction.most[i] * taper(s, i);
+            if (slips[i] != 0) continue;
+            v[i] = kHeld * m[i][0] * stuck[i];
+            m[i][0] *= 1 + kHeld;
+        }
+        solve_band(m, v);
+    }
+    for (std::size_t i = 1; i < count; ++i) out.stored += 0.5 * force(v, i) * v[i];
+    for (std::size_t i = 1; i < count; ++i) out.shift[i] = v[i] * taper(s, i);
+    return out;
+}
+
 double half_width(double r, double u, double most) {
     if (r <= 0) return 0;
     const double v = u / r, room = v > 0 ? most - 1 : 0.6;

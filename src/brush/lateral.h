@@ -20,7 +20,7 @@
 /// Source: Chu and Tai 2002, 4.1.1 and 4.2.2 (lateral nodes, stretch and bend springs).
 namespace tuft::brush {
 
-inline constexpr int kWallPasses = 6;
+inline constexpr int kWallPasses = 6, kDragPasses = 12;
 
 struct LateralSprings {
     double stretch = 1e4;     ///< κ, N/m²: force per length of tuft per displacement
@@ -48,6 +48,31 @@ struct LateralEnergy {
 };
 LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& springs,
                              const LateralSide& side, const std::vector<double>& u);
+
+/// What the springs of one side store at the minimum u of E: E and the work of the push, joules;
+/// Σ w_i [½ q_i u_i - ½ κ_w ⟨u_i - c_i⟩ c_i] there.
+double stored_at_rest(const std::vector<double>& at, const LateralSprings& springs,
+                      const LateralSide& side, const std::vector<double>& u);
+
+/// Friction of the surface on the side nodes of both sides.
+struct LateralFriction {
+    std::vector<double> most;   ///< T >= 0, N/m on both sides together. [n+1]
+    std::vector<double> stuck;  ///< d, m, displacement at which they would stick to the surface. [n+1]
+};
+
+/// Displacements δ, metres, by which both side nodes of each pair shift to the same side while the
+/// surface drags them: they stick where the springs pull with less than T, and slip where not,
+///
+///   min S(δ) + Σ w_i T_i |δ_i - d_i|,
+///
+/// S what the springs of both sides store without walls. Slip loses w T |δ - d|, so that S grows by
+/// no more than friction brings. Passes over the set of nodes that stick, at most kDragPasses.
+struct LateralShift {
+    std::vector<double> shift;  ///< δ. [n+1]
+    double stored = 0;          ///< S, joules
+};
+LateralShift drag_lateral(const std::vector<double>& at, const LateralSprings& springs,
+                          const LateralFriction& friction);
 
 /// Half-width r (1 + v): v = u/r with the outward part bent over to stay below `most` - 1, the
 /// inward part to stay above -0.6: hair packs, and cannot pass through itself.

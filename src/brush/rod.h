@@ -144,11 +144,13 @@ struct Result {
     bool converged = false;
     int iterations = 0, passes = 0;
     double bend_energy = 0;            ///< stored in the joints
-    double contact_energy = 0;         ///< stored in indented and sticking contacts
+    double contact_energy = 0;         ///< stored in indented and sticking contacts and the wet film
+                                       ///< (which holds less than none while it draws)
     double dissipation = 0;            ///< by yielding, slip and damping, this solve
     std::vector<double> moment;        ///< [n] |m| at the joints
     std::vector<double> normal_force;  ///< [n+1], shares of the points beside each node
     std::vector<Vec3> contact_force;   ///< [n+1] on the rod, with friction
+    std::vector<Vec3> slip;            ///< [n+1] way of the slipping hair over the surface, mean by friction
     std::vector<Obstacle> met;         ///< [n+1] the one plane that each node meets where it came to
                                        ///< lie, or none
     Vec3 force{0};                     ///< sum of contact forces

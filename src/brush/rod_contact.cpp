@@ -300,6 +300,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
         for_pieces(frozen, p, out.node, [&](const Piece& piece, const Standing& standing) {
             energy += add_piece(frozen, p, piece, standing, out);
         });
+        out.contact += energy;
         Vec3 slope{0};
         Mat3 curvature(0.0);
         add_friction(frozen.friction[p], frozen.friction[p].normal, x, energy, slope, curvature);
@@ -317,6 +318,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     }
     const NormalForce pull = adhesion(law, frozen.weight[p], -depth);
     double energy = f.energy + pull.energy;
+    out.contact += energy;
     out.normal[p] = f.d;
     Vec3 slope = (pull.force - f.d) * n;
     Mat3 curvature = (f.dd + pull.stiffness) * outer(n);

@@ -199,6 +199,7 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     out.joint.resize(n);
 
     double value = 0;
+    out.contact = 0;
     const Vec2 moment = end_moment(frozen);
     Vec3 a = frozen.clamp.tangent, side = frozen.clamp.side;
     out.node[0] = frozen.clamp.position;

@@ -84,6 +84,7 @@ struct JointForce {
 /// Value of Π and what its derivatives are made of. Reused between calls.
 struct Evaluation {
     double value = 0;
+    double contact = 0;              ///< of it: indentation, ends that give, the film; no friction
     std::vector<Vec3> node;          ///< [n+1]
     std::vector<Vec3> slope;         ///< [n+1] ∂V/∂x_i of contact, friction and load
     std::vector<Mat3> curvature;     ///< [n+1] ∂²V/∂x_i²

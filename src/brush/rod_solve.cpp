@@ -69,6 +69,7 @@ struct Solver {
     std::vector<double> last_miss = {};    ///< of N̂ in the pass before
     double relaxation = 1;
     double recovered = 0;                  ///< energy lost by the set going back
+    std::vector<double> friction_sum = {}; ///< [n+1] most friction of the points beside each node
 
     int n() const { return rod.segments(); }
 
@@ -246,6 +247,9 @@ struct Solver {
         out.dissipation += recovered;
         out.normal_force.assign(n() + 1, 0);
         out.contact_force.assign(n() + 1, Vec3{0});
+        out.slip.assign(n() + 1, Vec3{0});
+        out.contact_energy = at.contact;
+        friction_sum.assign(n() + 1, 0);
         for (int j = 0; j < n(); ++j) {
             out.moment[j] = glm::length(at.joint[j].moment + end_moment(frozen));
             const Vec2 turn = at.joint[j].bend - memory.joint[j].bend;
@@ -262,6 +266,7 @@ struct Solver {
         }
         out.root_moment += glm::cross(at.node[n()] - at.node[0], frozen.load.tip_force);
         for (std::size_t p = 0; p < memory.contact.size(); ++p) finish_contact(p, out);
+        for (int i = 0; i <= n(); ++i) out.slip[i] /= std::max(friction_sum[i], 1e-300);
         for (std::size_t p = 0; p < fine.size(); p += law.points_per_segment) out.met.push_back(met_at(p, at.node));
         const Mat3 back = glm::transpose(clamp_frame(memory.clamp));
         memory.turn.resize(shape.tangent.size());
@@ -302,7 +307,11 @@ struct Solver {
         if (q > reach) {
             out.dissipation += f.cap * (q - reach);
             c.anchor = x - d * (reach / q);
+            out.slip[at.node] += (1 - at.s) * f.cap * (1 - reach / q) * d;
+            out.slip[at.node + 1] += at.s * f.cap * (1 - reach / q) * d;
         }
+        friction_sum[at.node] += (1 - at.s) * f.cap;
+        friction_sum[at.node + 1] += at.s * f.cap;
     }
 };
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kOnset = 5e-5;    ///< m, fuzz of the tuft's side
 constexpr double kStraight = 1e-4; ///< 1 - cos of a bend that is none yet, 0.8°
+constexpr double kSeed = 0.05;     ///< radians, bend that grows if the load is beyond buckling
 constexpr double kEndFriction = 0.2;  ///< of the fold of hair ends that carries the tip along
 constexpr int kContactPoints = 6;  ///< per segment: a patch then grows smoothly with depth
 
@@ -47,6 +48,17 @@ rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     return law;
 }
 
+/// Energy of the bend s² of a straight rod, B0/L.
+double unit_bend(const rod::Rod& rod) {
+    double s = 0, before = 0, sum = 0;
+    for (std::size_t j = 0; j < rod.length.size(); ++j) {
+        s += rod.length[j];
+        sum += 0.5 * rod.stiffness[j] * (s * s - before) * (s * s - before);
+        before = s * s;
+    }
+    return sum;
+}
+
 /// Nearly straight hair pressed along its axis could fall to any side: it falls behind the
 /// hand's motion, or to the ferrule's x-axis when the hand only presses.
 void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
@@ -67,8 +79,12 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
     aside = glm::length(aside) > 1e-3 * glm::length(to.position - from.position) + 1e-9
                 ? glm::normalize(back * aside)
                 : from.rotation * Vec3{1, 0, 0};
-    // Bend angle ε s² that takes the tip back up to the surface: the tip rises by L ε²/10.
-    const double angle = std::clamp(std::sqrt(10 * under / p.length), 0.02, 0.6);
+    // Bend angle ε s² that takes the tip back up to the surface: the tip rises by L ε²/10. But buckling
+    // makes no energy: it holds what the contact held and what the hand does in the step.
+    double angle = std::clamp(std::sqrt(10 * under / p.length), kSeed, 0.6);
+    const double needed = angle * angle * unit_bend(spine.rod);
+    const double there = 2 * std::max(0.0, spine.pressed);
+    if (needed > there) angle = std::max(kSeed, angle * std::sqrt(there / needed));
     double s = 0;
     for (std::size_t j = 0; j < spine.memory.tangent.size(); ++j) {
         s += spine.rod.length[j];
@@ -126,6 +142,10 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Qu
     SectionOutput sections = make_sections({p, spine, out.result, met, turn, wetness, share, walls});
     spine.side = std::move(sections.sides);
     spine.wide = sections.wide;
+    spine.aside = std::move(sections.aside);
+    out.spread_energy = sections.spread_energy;
+    out.aside_gain = sections.aside_energy - spine.aside_energy;
+    spine.aside_energy = sections.aside_energy;
     out.branch.sections = std::move(sections.sections);
     return out;
 }
@@ -134,10 +154,13 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Qu
 
 Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
                    std::span<const ContactPlane> planes, double wetness, double share,
-                   double dt, std::span<const ContactPlane> walls) {
+                   double dt, std::span<const ContactPlane> walls, const Passed& passed) {
     const rod::Law law = law_of(p, wetness, share, dt);
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
     rod::Result result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law);
+    spine.pressed = result.contact_energy;
+    result.dissipation += passed.dissipation;
+    for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
     return with_sections(p, spine, std::move(result), turn, obstacles, wetness, share, walls);
 }
 
@@ -157,10 +180,11 @@ Pose between(const Pose& a, const Pose& b, double t) {
 
 }  // namespace
 
-void approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
+Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
               std::span<const ContactPlane> planes, double wetness, double& dt) {
     rod::Law law = law_of(p, wetness, 1, 0);
-    if (planes.empty()) return;
+    Passed passed;
+    if (planes.empty()) return passed;
     const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
     const double moved = glm::length(to.position - from.position) / p.length + turned;
     const double bend = std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
@@ -177,11 +201,16 @@ void approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
         turn_with_splay(p, spine, last, pose, planes);
         break_symmetry(p, spine, last, pose, planes);
-        rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes), law);
+        const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes), law);
+        spine.pressed = r.contact_energy;
+        passed.dissipation += r.dissipation;
+        passed.slip.resize(r.slip.size(), Vec3{0});
+        for (std::size_t i = 0; i < r.slip.size(); ++i) passed.slip[i] += r.slip[i];
         last = pose;
     }
     turn_with_splay(p, spine, last, to, planes);
     break_symmetry(p, spine, last, to, planes);
+    return passed;
 }
 
 Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const rod::Clamp& clamp,

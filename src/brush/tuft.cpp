@@ -111,10 +111,11 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const std::size_t own = tuft.spine.rest_radius.size();
     const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
     double part = std::isfinite(dt) ? std::max(0.0, dt) : 0;
-    if (p.spine == SpineMethod::rod) approach(p, tuft.spine, tuft.pose, pose, main_planes, tuft.wetness, part);
+    Passed passed;
+    if (p.spine == SpineMethod::rod) passed = approach(p, tuft.spine, tuft.pose, pose, main_planes, tuft.wetness, part);
     Solved solved = p.spine == SpineMethod::table
                         ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness)
-                        : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part, walls);
+                        : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part, walls, passed);
     const double moved = glm::length(pose.position - tuft.pose.position);
     tuft.pose = pose;
 
@@ -126,6 +127,11 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     state.root_moment = r.moment.front() * newton_metre;
     for (const double f : r.normal_force) state.normal_force += f * newton;
     state.touching = state.normal_force > 0;
+    state.energy = {.bend = r.bend_energy * newton_metre,
+                    .contact = r.contact_energy * newton_metre,
+                    .aside = tuft.spine.aside_energy,
+                    .spread = solved.spread_energy,
+                    .lost = r.dissipation * newton_metre - solved.aside_gain};
     state.converged = r.converged;
     state.iterations = r.iterations;
     state.branches.push_back(std::move(solved.branch));
@@ -155,6 +161,8 @@ void reset(Tuft& tuft) {
 void reshape(Tuft& tuft) {
     const rod::Clamp clamp = tuft.spine.memory.clamp;
     tuft.spine.side.clear();
+    tuft.spine.aside.clear();
+    tuft.spine.aside_energy = 0;
     tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
     tuft.spine.one_sided = Vec2{0};
     tuft.split = false;

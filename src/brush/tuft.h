@@ -33,6 +33,9 @@ struct Spine {
     Vec2 one_sided{0};              ///< mean direction of splayed hair, across the clamp; see splay.h
     std::vector<Vec3> side;         ///< side nodes of the last step, metres from the root, ferrule
                                     ///< frame, tip first, two to a node; or none
+    std::vector<double> aside;      ///< [n+1] m, how far friction has shifted the side nodes along e, or none
+    double aside_energy = 0;        ///< J, that their springs hold by this
+    double pressed = 0;             ///< contact energy of the last solve, B0/L
 };
 
 /// The persistent state of one tuft. Make it with `make_tuft`; copying it is a snapshot.

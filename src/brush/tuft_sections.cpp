@@ -82,7 +82,8 @@ std::vector<double> squash(const SectionInput& in) {
 constexpr double kDry = 0.7;   ///< stretch springs of dry hair over those of wet hair
 constexpr double kReach = 0.045; ///< of the length, λ of the side nodes
 constexpr double kFinest = 1e-5; ///< m, radius of a tuft's point at least
-constexpr double kSideDrag = 0.5;  ///< share of the friction across a section that its side nodes take
+constexpr double kSides = 0.03;    ///< of k_c, the stretch springs: water holds hair together by some 0.3 N/m a millimetre
+constexpr double kSideDrag = 1.0;  ///< of kSides: share of the friction across a section that its side nodes take
 constexpr double kLying = 0.6;  ///< height over b at which wet hair lies by its own weight
 
 /// How far each centre comes down along its plane's normal, metres, root first. A flattened
@@ -126,6 +127,8 @@ namespace {
 /// Half-widths of the sections to the side of e and to the other, metres, root first.
 struct Widths {
     std::vector<double> plus, minus;
+    LateralShift shift;
+    double spread_energy = 0;
 };
 
 /// How far, beyond its rest radius, a side node may go out along `way` before it meets a wall;
@@ -139,7 +142,7 @@ double clearance(const SectionInput& in, std::size_t node, const ContactPlane& w
 }
 
 /// What pushes the side nodes out, as if it worked against the wet stretch springs alone:
-/// r (κ1 |m|/M_e0 + κ2 k_F + κ3 squash), and the friction of the surface along e.
+/// r (κ1 |m|/M_e0 + κ2 k_F + κ3 squash); and the shift by the friction of the surface along e.
 Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
     const Preset& p = in.preset;
     const std::size_t count = e.size();
@@ -147,7 +150,7 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
     const double newton = p.stiffness / (p.length * p.length);
     const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * newton / p.force_limit);
     const std::vector<double> squashed = squash(in);
-    const double wet = p.transverse_stiffness;
+    const double wet = kSides * p.transverse_stiffness;
     LateralSprings springs{.stretch = wet * (kDry + (1 - kDry) * in.wetness),
                            .bend = wet,
                            .reach = kReach * p.length};
@@ -156,6 +159,7 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
     LateralSide plus{std::vector<double>(count, 0),
                      std::vector<double>(count, std::numeric_limits<double>::infinity())};
     LateralSide minus = plus;
+    LateralFriction friction{std::vector<double>(count, 0), std::vector<double>(count, 0)};
     for (std::size_t i = 0; i < count; ++i) {
         if (i > 0) at[i] = at[i - 1] + in.spine.rod.length[i - 1] * p.length;
         const double moment = i + 1 < count ? in.result.moment[i] : 0;
@@ -164,21 +168,31 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
         const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
         const double widen = held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
                                      p.flatten_contact * squashed[i]);
-        const double drag = kSideDrag * glm::dot(in.result.contact_force[i], e[i]) * newton /
-                            (in.spine.rod.weight[i] * p.length);
+        friction.most[i] = kSides * kSideDrag * std::abs(glm::dot(in.result.contact_force[i], e[i])) * newton /
+                           (in.spine.rod.weight[i] * p.length);
+        if (i < in.spine.aside.size()) friction.stuck[i] = in.spine.aside[i];
+        if (i < in.result.slip.size()) friction.stuck[i] -= p.length * glm::dot(in.result.slip[i], e[i]);
         if (!in.walls.empty() && i > 0) {
             const std::size_t from_tip = 2 * (count - 1 - i);
             plus.clear[i] = clearance(in, i, in.walls[from_tip], e[i]);
             minus.clear[i] = clearance(in, i, in.walls[from_tip + 1], -e[i]);
         }
-        plus.push[i] = wet * in.spine.rest_radius[i] * widen + drag;
-        minus.push[i] = wet * in.spine.rest_radius[i] * widen - drag;
+        plus.push[i] = minus.push[i] = wet * in.spine.rest_radius[i] * widen;
     }
-    Widths out{solve_lateral(at, springs, plus), solve_lateral(at, springs, minus)};
+    Widths out;
+    out.shift = drag_lateral(at, springs, friction);
+    const std::vector<double>& shift = out.shift.shift;
+    for (std::size_t i = 0; i < count && !in.walls.empty(); ++i) {
+        plus.clear[i] -= shift[i];
+        minus.clear[i] += shift[i];
+    }
+    out.plus = solve_lateral(at, springs, plus);
+    out.minus = in.walls.empty() ? out.plus : solve_lateral(at, springs, minus);
+    out.spread_energy = stored_at_rest(at, springs, plus, out.plus) + stored_at_rest(at, springs, minus, out.minus);
     for (std::size_t i = 0; i < count; ++i) {
         const double r = in.spine.rest_radius[i];
-        out.plus[i] = half_width(r, out.plus[i], p.flatten_max);
-        out.minus[i] = half_width(r, out.minus[i], p.flatten_max);
+        out.plus[i] = half_width(r, out.plus[i] + shift[i], p.flatten_max);
+        out.minus[i] = half_width(r, out.minus[i] - shift[i], p.flatten_max);
     }
     return out;
 }
@@ -197,8 +211,11 @@ SectionOutput make_sections(const SectionInput& in) {
     for (std::size_t i = wide.node; i-- > 0;) e[i] = parallel_transport(e[i + 1], t[i + 1], t[i]);
     for (std::size_t i = 0; i < count; ++i) e[i] = glm::normalize(e[i] - glm::dot(e[i], t[i]) * t[i]);
 
-    const Widths widths = side_nodes(in, e);
+    Widths widths = side_nodes(in, e);
     SectionOutput out;
+    out.aside = std::move(widths.shift.shift);
+    out.aside_energy = widths.shift.stored;
+    out.spread_energy = widths.spread_energy;
     out.sections.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const double r = in.spine.rest_radius[i];

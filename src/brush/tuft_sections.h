@@ -23,13 +23,26 @@ struct SectionInput {
 struct SectionOutput {
     std::vector<Section> sections;    ///< tip first
     Vec3 wide{1, 0, 0};               ///< e at the root, ferrule frame
+    std::vector<double> aside;        ///< as in Spine
+    double aside_energy = 0, spread_energy = 0;  ///< J
     std::vector<Vec3> sides;          ///< side nodes from the root, metres, ferrule frame, tip
                                       ///< first: that of the side of e, that of the other
 };
 
 /// Half-widths to both sides from the side nodes (lateral.h), pushed by the bending moment, the
 /// force and the squash of the contact and dragged by its friction; a is their mean, the centre
-/// lies midway, b = r²/a. The wide axis e lies in the contact plane where the spine presses
+/// lies midway, b = r²/a.
+///
+/// Energy. The stiffnesses of a tuft, B and k_c, are those of hair that is free to spread: with the
+/// full potential A(x) - q(x)·u + ½ uᵀK u of spine x and side nodes u, the rod's is its minimum over
+/// u, so that the push takes from the hand what it brings to the side nodes, through the very
+/// forces -∂A/∂x + u ∂q/∂x = -∂Π/∂x that the rod has, and the springs hold ½ uᵀK u of the rod's own
+/// energy. What is to either side alike stays so. What friction shifts, δ, comes on top: S(δ)
+/// (`drag_lateral`); two sides that are pushed alike and shifted alike pull alike at the spine, and
+/// the force that drags them is of the friction that the rod has. The hand has worked for it on the
+/// way of the slip: δ grows by no more than the slip along e, and the slip loses so much less.
+/// A wall beside the tuft is the exception: it holds the side nodes, and the spine does not feel it.
+/// The wide axis e lies in the contact plane where the spine presses
 /// most, else along the axis of bending, else where it was; from there it is carried along
 /// the spine without spin.
 SectionOutput make_sections(const SectionInput& input);

@@ -110,6 +110,13 @@ void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& st
         state.converged = state.converged && solved.result.converged;
         Branch branch = std::move(solved.branch);
         branch.ink_share = 1.0 / count_all;
+        // Seen from the same side as the trunk that it goes on from.
+        if (glm::dot(branch.sections.back().e, whole[count - 1].e) < 0) {
+            for (Section& section : branch.sections) {
+                section.e = -section.e;
+                section.m = -section.m;
+            }
+        }
         if (index == count_all / 2) {
             // The middle one carries the trunk.
             branch.sections.pop_back();

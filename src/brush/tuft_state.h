@@ -37,6 +37,18 @@ struct Branch {
     double ink_share = 1;    ///< of the tuft's ink; shares sum to one
 };
 
+/// Where the hand's work is, joules, of the whole spine (sub-spines follow it). The work that the
+/// hand does against `TuftState::force` and `moment` is the change of stored() and `lost`.
+struct TuftEnergy {
+    double bend = 0;         ///< stored in the bent hair
+    double contact = 0;      ///< in what the surface presses flat, in hair that sticks, and in the wet film
+    double aside = 0;        ///< in side nodes that friction has drawn to one side
+    double spread = 0;       ///< of bend and contact: what the springs of the spread side nodes hold
+    double lost = 0;         ///< since the step before, by yielding, slip, damping; never negative
+
+    double stored() const { return bend + contact + aside; }
+};
+
 /// The tuft at one moment: one branch, or the sub-spines after bifurcation.
 struct TuftState {
     std::vector<Branch> branches;
@@ -45,6 +57,7 @@ struct TuftState {
     Vec3 moment{0};          ///< of `force` about the root, N·m, world
     double root_moment = 0;  ///< bending moment at the ferrule, N·m
     double normal_force = 0; ///< newtons
+    TuftEnergy energy;
     bool touching = false;
     bool converged = true;   ///< false: the solver stopped at its limit with its best state
     int iterations = 0;

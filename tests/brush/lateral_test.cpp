@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/random.h"
 
@@ -143,6 +145,98 @@ TEST(Lateral, AWallHoldsTheSideThatMeetsIt) {
         EXPECT_LT(v[i], 5.5e-4);  // gives by the push over 100 times the springs
     }
     EXPECT_GT(v[14], 0.8 * u[14]);
+}
+
+double tributary(const std::vector<double>& at, std::size_t i) {
+    return 0.5 * (at[std::min(i + 1, at.size() - 1)] - at[i > 0 ? i - 1 : 0]);
+}
+
+TEST(Lateral, WhatTheSpringsStoreIsTheWorkOfThePushLessE) {
+    Random random(11);
+    const std::vector<double> at = nodes(16);
+    const LateralSprings springs{2e4, 1.5e4, 2.5e-3, 100, pointed(at)};
+    for (int trial = 0; trial < 10; ++trial) {
+        LateralSide side = pushed(at, 0);
+        for (double& q : side.push) q = random.uniform(0, 60);
+        if (trial > 4) {
+            for (std::size_t i = 5; i < 9; ++i) side.clear[i] = random.uniform(-1e-4, 4e-4);
+        }
+        const std::vector<double> u = solve_lateral(at, springs, side);
+        double work = 0;
+        for (std::size_t i = 1; i < u.size(); ++i) work += tributary(at, i) * side.push[i] * u[i];
+        const double stored = lateral_energy(at, springs, side, u).value + work;
+        EXPECT_NEAR(stored_at_rest(at, springs, side, u), stored, 1e-9 * stored);  // rounding
+        EXPECT_GT(stored, 0);
+    }
+}
+
+/// S(δ) + Σ w T |δ - d|.
+double dragged(const std::vector<double>& at, const LateralSprings& springs, const LateralFriction& f,
+               const std::vector<double>& shift) {
+    double sum = 2 * lateral_energy(at, springs, pushed(at, 0), shift).value;
+    for (std::size_t i = 1; i < shift.size(); ++i) sum += tributary(at, i) * f.most[i] * std::abs(shift[i] - f.stuck[i]);
+    return sum;
+}
+
+TEST(Lateral, DraggedNodesStickOrSlipWithTheLeastOfStoredAndLost) {
+    Random random(13);
+    const std::vector<double> at = nodes(16);
+    const LateralSprings springs{400, 400, 1.4e-3, 100, pointed(at)};
+    int sticking = 0, slipping = 0;
+    for (int trial = 0; trial < 40; ++trial) {
+        LateralFriction f{std::vector<double>(at.size(), 0), std::vector<double>(at.size(), 0)};
+        for (std::size_t i = 6; i < at.size(); ++i) {
+            f.most[i] = random.uniform(0, 0.1);
+            f.stuck[i] = random.uniform(-1e-4, 2e-4);
+        }
+        const LateralShift out = drag_lateral(at, springs, f);
+        const double least = dragged(at, springs, f, out.shift);
+        EXPECT_NEAR(out.stored, 2 * lateral_energy(at, springs, pushed(at, 0), out.shift).value, 1e-9 * least);
+        for (std::size_t i = 6; i < at.size(); ++i) (std::abs(out.shift[i] - f.stuck[i]) < 1e-9 ? sticking : slipping)++;
+        for (int other = 0; other < 20; ++other) {
+            std::vector<double> v = out.shift;
+            for (std::size_t i = 1; i < v.size(); ++i) v[i] += random.uniform(-1, 1) * std::pow(10.0, -5 - other % 3);
+            // Held nodes are held by springs 1e8 times as stiff.
+            EXPECT_GT(dragged(at, springs, f, v), least * (1 - 1e-7)) << trial;
+        }
+    }
+    EXPECT_GT(sticking, 20);
+    EXPECT_GT(slipping, 20);
+}
+
+TEST(Lateral, ADragShiftsTheSidesUntilTheirSpringsPullAsFrictionDoesAndLosesTheRest) {
+    const std::vector<double> at = nodes(16);
+    const LateralSprings springs{400, 400, 1.4e-3, 100, pointed(at)};
+    LateralFriction f{std::vector<double>(at.size(), 0), std::vector<double>(at.size(), 0)};
+    for (std::size_t i = 6; i < at.size(); ++i) f.most[i] = 0.05;
+    LateralShift now;
+    now.shift.assign(at.size(), 0);
+    double brought = 0, lost = 0;
+    const auto slide = [&](double way) {  // of the tuft over the surface
+        f.stuck = now.shift;
+        for (std::size_t i = 6; i < at.size(); ++i) f.stuck[i] -= way;
+        const LateralShift next = drag_lateral(at, springs, f);
+        double slipped = 0;
+        for (std::size_t i = 6; i < at.size(); ++i) slipped += tributary(at, i) * f.most[i] * std::abs(next.shift[i] - f.stuck[i]);
+        for (std::size_t i = 6; i < at.size(); ++i) brought += tributary(at, i) * f.most[i] * std::abs(way);
+        lost += slipped;
+        // What is stored more was brought by friction on the way; the rest is lost.
+        EXPECT_LE(next.stored + lost, brought + 1e-15);
+        now = next;
+    };
+    slide(-1e-6);
+    for (std::size_t i = 8; i < 14; ++i) EXPECT_NEAR(now.shift[i], 1e-6, 1e-12);  // sticks
+    for (int k = 0; k < 500; ++k) slide(-2e-6);
+    LateralSide side = pushed(at, 0);
+    for (std::size_t i = 6; i < at.size(); ++i) side.push[i] = 0.025;  // each side's half
+    const std::vector<double> whole = solve_lateral(at, springs, side);
+    for (std::size_t i = 6; i < at.size(); ++i) EXPECT_NEAR(now.shift[i], whole[i], 1e-9);  // slips everywhere
+    for (int k = 0; k < 500; ++k) slide(2e-6);
+    for (std::size_t i = 6; i < at.size(); ++i) EXPECT_NEAR(now.shift[i], -whole[i], 1e-9);
+    // Air holds nothing.
+    f.most.assign(at.size(), 0);
+    f.stuck = now.shift;
+    EXPECT_LT(drag_lateral(at, springs, f).stored, 1e-9 * now.stored);
 }
 
 TEST(Lateral, HalfWidthStaysBetweenItsBounds) {
