@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 
+#include "core/ease.h"
+
 namespace tuft::brush {
 
 namespace {
@@ -60,6 +62,19 @@ void turn_with_splay(const Preset& p, Spine& spine, const Pose& from, const Pose
     if (size > 0 && side > kTurnsAt && side < kDrawn && std::abs(off) > kElsewhere) rod::turn_about_clamp(m, off);
     if (side > kDrawn) w /= side;
     spine.one_sided = {w.real(), w.imag()};
+}
+
+Foot foot_of(const Tuft& tuft, const ContactPlane& tip) {
+    Foot foot;
+    const Preset& p = tuft.preset;
+    const double down = -glm::dot(tuft.pose.axis(), tip.normal);
+    const double height = glm::dot(tuft.pose.position - tip.origin, tip.normal);
+    if (tuft.split || p.spine == SpineMethod::table || !(down > 0.1) || !(height > 0) || height >= down * p.length) return foot;
+    foot.centre = tuft.pose.position + height / down * tuft.pose.axis();
+    foot.radius = rest_radius(p, height / down / p.length);
+    const double side = glm::length(tuft.spine.one_sided);
+    foot.share = smooth_step((kDrawn - side) / (kDrawn - kBuiltIn));
+    return foot;
 }
 
 }  // namespace tuft::brush

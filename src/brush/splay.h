@@ -4,7 +4,7 @@
 
 #include "brush/tuft.h"
 
-/// Inside of the tuft: hair that was pressed straight down has no side of its own.
+/// Hair that was pressed straight down has no side of its own.
 ///
 /// Its ends splay round the foot of the axis. Dragged by ds along -u, each end at azimuth φ from u
 /// trails on its string of length ρ (a tractrix), dφ = -sin φ ds/ρ, which maps the circle to itself by
@@ -23,5 +23,17 @@ namespace tuft::brush {
 /// leans by more than the tuft's own taper (radius over length).
 void turn_with_splay(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
                      std::span<const ContactPlane> planes);
+
+/// Where the axis of a tuft that touches meets the surface, and the hair that stands round it there
+/// while not all of it has been drawn to the side where the spine lies.
+struct Foot {
+    Vec3 centre{0};      ///< metres, world
+    double radius = 0;   ///< metres, of the straight tuft at the height of the surface
+    double share = 0;    ///< 1: hair lies on all sides alike … 0: all of it has been drawn to one side
+};
+
+/// `tip`: the plane that the tip meets. No share for hair in the air, split, from the query table, or
+/// under a ferrule that lies level.
+Foot foot_of(const Tuft& tuft, const ContactPlane& tip);
 
 }  // namespace tuft::brush

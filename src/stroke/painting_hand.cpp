@@ -177,6 +177,8 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
     closed_area = 0;
     const double amount = closed ? 0 : std::clamp((1 - mean) / kSplays, 0.0, 1.0);
     footprint::splay(trails, tracks, slid, tuft.preset.length, amount);
+    if (!contact.planes.empty())
+        footprint::cover_foot(trails, brush::foot_of(tuft, contact.planes.front()), contact.frame, kSkinFilm);
     std::vector<footprint::Outline> outlines;
     for (const footprint::Trail& trail : trails) {
         footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points);
