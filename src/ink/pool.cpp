@@ -88,7 +88,8 @@ const float* snapshot_plane(const TileSnapshot& before, int pigment) {
 }
 
 /// Reads a tile; whether there is relief on it.
-bool read(Tile& tile, const Canvas& canvas, const atlas::TexelMap& map, const TileSnapshot& before, double strength) {
+bool read(Tile& tile, const Canvas& canvas, const atlas::TexelMap& map, const TileSnapshot& before,
+          const PoolOptions& options) {
     tile.relief = dry_relief(canvas, tile.slot);
     for (float& z : tile.relief) z *= 1e-6f / kHeightUnit;
     tile.film.fill(0);
@@ -100,7 +101,7 @@ bool read(Tile& tile, const Canvas& canvas, const atlas::TexelMap& map, const Ti
         for (int t = 0; t < kN; ++t) {
             tile.fixed[p][t] = was ? smaller(was[t], (*now)[t]) : 0;
             tile.loose[p][t] = (*now)[t] - tile.fixed[p][t];
-            tile.film[t] += tile.loose[p][t] / static_cast<float>(strength);
+            tile.film[t] += tile.loose[p][t] / static_cast<float>(options.strength);
             tile.relief[t] += tile.fixed[p][t] * height;
             if (tile.loose[p][t] > 0) tile.pigments |= 1u << p;
         }
@@ -108,7 +109,8 @@ bool read(Tile& tile, const Canvas& canvas, const atlas::TexelMap& map, const Ti
     bool any = false;
     for (int t = 0; t < kN; ++t) {
         tile.relief[t] = positive(tile.relief[t] - static_cast<float>(kPlain * 1e-6) / kHeightUnit);
-        const float area = map.tiles[tile.slot].piece[t] == atlas::kNoPiece ? 0 : map.tiles[tile.slot].area[t];
+        const bool out = map.tiles[tile.slot].piece[t] == atlas::kNoPiece || (options.free && !options.free(tile.slot, t));
+        const float area = out ? 0 : map.tiles[tile.slot].area[t];
         tile.area[t] = area;
         tile.inverse[t] = area > 0 ? 1 / area : 0;
         tile.near[t] = area > 0 && tile.relief[t] > 0 ? 1.0f : 0.0f;
@@ -239,7 +241,7 @@ void pool(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks& se
     for (const TileSnapshot* tile : before) slots.push_back(tile->slot);
     std::vector<Tile> tiles = halo_tiles<Tile>(map, seams, slots);
     bool any = false;
-    for (std::size_t i = 0; i < tiles.size(); ++i) any = read(tiles[i], canvas, map, *before[i], options.strength) || any;
+    for (std::size_t i = 0; i < tiles.size(); ++i) any = read(tiles[i], canvas, map, *before[i], options) || any;
     if (!any) return;
     Pool work(tiles, options);
     work.surface_.resize(tiles.size());

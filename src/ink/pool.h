@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct PoolOptions {
     double pin = 1.5;         ///< film units from which dry texels are wetted
     double reach = 0.6e-3;    ///< metres over which it settles
     double strength = 1;      ///< of the ink: pigments in a film unit
+    std::function<bool(std::uint32_t slot, int texel)> free = {};  ///< empty: all; nothing goes onto or off what is not
 };
 
 /// Micrometres of dry paint above the substrate, as `TileLook::height` without what is open.

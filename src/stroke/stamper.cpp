@@ -236,7 +236,9 @@ void Stamper::pool(const atlas::SeamLinks& seams, double film, double strength) 
     std::vector<const ink::TileSnapshot*> before;
     for (const auto& [slot, tile] : before_) before.push_back(&tile);
     std::sort(before.begin(), before.end(), [](const auto* a, const auto* b) { return a->slot < b->slot; });
-    ink::pool(canvas_, model_.texels, seams, before, {.hold = kHeldByRidges * film, .strength = strength});
+    ink::PoolOptions options{.hold = kHeldByRidges * film, .strength = strength};
+    if (mask_) options.free = [this](std::uint32_t slot, int texel) { return mask_->coverage(slot, texel) > 0; };
+    ink::pool(canvas_, model_.texels, seams, before, options);
 }
 
 void Stamper::blot(const atlas::SeamLinks& seams) {

@@ -136,6 +136,23 @@ TEST(Pool, ASeamDoesNotShow) {
     EXPECT_GT(most, 3.2);
 }
 
+TEST(Pool, StopsAtTape) {
+    Furrowed f(150, 2);
+    const auto taped = [&](std::uint32_t slot, int t) { return f.map.position(slot, t).x > 0.4e-3f; };
+    const auto under = [&] {
+        std::vector<float> out;
+        f.each([&](std::uint32_t slot, int t, const Vec3&) {
+            if (taped(slot, t)) out.push_back((*f.canvas.plane(slot, 1))[t]);
+        });
+        return out;
+    };
+    const std::vector<float> before = under();
+    const double all = f.canvas.total(f.map, 1);
+    f.settle({.free = [&](std::uint32_t slot, int t) { return !taped(slot, t); }});
+    EXPECT_EQ(under(), before);
+    EXPECT_NEAR(f.canvas.total(f.map, 1) / all, 1, 1e-6);
+}
+
 TEST(Pool, LeavesPlainGroundAsItIsPainted) {
     Furrowed thin(0);  // 60 µm all over, level
     thin.each([&](std::uint32_t slot, int t, const Vec3&) { thin.canvas.touch_film(slot, kFirstDryFilm, 0)[t] = 5.9f; });
