@@ -234,8 +234,12 @@ PolygonSoup OffReader::read_binary() {
         const std::uint32_t n_colour = word();
         if (n_colour > left() / 4)
             throw Error(file_, "face " + std::to_string(i + 1) + " is cut off");
-        at += 4 * std::size_t{n_colour};
-        add_face(i + 1, kNone);
+        std::array<double, 4> rgba{};
+        for (std::uint32_t k = 0; k < n_colour; ++k) {
+            const double value = real();
+            if (k < 4) rgba[k] = value;
+        }
+        add_face(i + 1, n_colour < 3 ? kNone : builder_.colour_group(colour_from(rgba, true)));
     }
     finish_colours();
     return builder_.finish();

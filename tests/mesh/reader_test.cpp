@@ -425,6 +425,26 @@ TEST(Off, CubeInEveryDialect) {
     expect_unit_cube(read_off(out.bytes(), "a.off"), "binary");
 }
 
+TEST(Off, ColoursOfBinaryFacesAreGroups) {
+    // Real ones, as many as the face says; fewer than three are an index into a table that there is none of.
+    Binary out("OFF BINARY\n", true);
+    out.put(std::int32_t{4}).put(std::int32_t{4}).put(std::int32_t{0});
+    for (const Vec3f& p : {Vec3f{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) out.put(p.x).put(p.y).put(p.z);
+    const auto face = [&](std::array<std::int32_t, 3> corners, const std::vector<float>& colour) {
+        out.put(std::int32_t{3});
+        for (const std::int32_t c : corners) out.put(c);
+        out.put(static_cast<std::int32_t>(colour.size()));
+        for (const float c : colour) out.put(c);
+    };
+    face({0, 2, 1}, {1, 0, 0});
+    face({0, 1, 3}, {0, 0.5f, 1, 1});
+    face({0, 3, 2}, {1, 0, 0, 0.25f});
+    face({1, 2, 3}, {7});
+    const PolygonSoup soup = read_off(out.bytes(), "a.off");
+    EXPECT_THAT(soup.group_names, ElementsAre("#ff0000", "#0080ff", ""));
+    EXPECT_THAT(soup.polygon_groups, ElementsAre(0u, 1u, 0u, 2u));
+}
+
 TEST(Off, ColoursNormalsAndTextureCoordinates) {
     const std::string tail = "3 0 1 2\n";
     const PolygonSoup bytes = read_off(
