@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 #include "io/image.h"
 
 namespace {

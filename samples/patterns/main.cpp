@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "atlas/seams.h"
+#include "atlas/texels/seams.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/units.h"
@@ -17,7 +17,7 @@
 #include "io/read_model.h"
 #include "render/picture.h"
 #include "roller.h"
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 namespace tuft::samples {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "stroke/trace.h"
+#include "stroke/journal/trace.h"
 
 /// The sample decorations: strokes with their places on the models of `models/`.
 namespace tuft::samples {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "brush/sweep.h"
-#include "stroke/placement.h"
+#include "stroke/hand/placement.h"
 
 namespace tuft::samples {
 

@@ -5,7 +5,7 @@
 
 #include "brush/preset.h"
 #include "core/types.h"
-#include "stroke/trace.h"
+#include "stroke/journal/trace.h"
 
 /// A written stroke as a list of key points, and the motion of the hand made from it.
 namespace tuft::samples {

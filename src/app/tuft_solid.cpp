@@ -8,7 +8,7 @@
 #include "app/studio.h"
 #include "brush/skin.h"
 #include "core/ease.h"
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 
 namespace tuft::app {
 namespace {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "atlas/coverage.h"
-#include "atlas/half_edges.h"
-#include "atlas/raster.h"
+#include "atlas/charts/half_edges.h"
+#include "atlas/pack/coverage.h"
+#include "atlas/pack/raster.h"
 #include "core/random.h"
 
 namespace tuft::atlas {

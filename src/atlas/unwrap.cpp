@@ -5,15 +5,15 @@
 #include <string>
 
 #include "atlas/atlas.h"
-#include "atlas/charts.h"
-#include "atlas/coverage.h"
-#include "atlas/cut_to_pack.h"
-#include "atlas/file_uvs.h"
-#include "atlas/merge.h"
-#include "atlas/move_seams.h"
-#include "atlas/pack.h"
-#include "atlas/polish.h"
-#include "atlas/snap.h"
+#include "atlas/charts/charts.h"
+#include "atlas/charts/cut_to_pack.h"
+#include "atlas/charts/merge.h"
+#include "atlas/charts/move_seams.h"
+#include "atlas/charts/polish.h"
+#include "atlas/charts/snap.h"
+#include "atlas/flatten/file_uvs.h"
+#include "atlas/pack/coverage.h"
+#include "atlas/pack/pack.h"
 
 namespace tuft::atlas {
 namespace {

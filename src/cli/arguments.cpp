@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "io/export_maps.h"
-#include "stroke/trace.h"
+#include "stroke/journal/trace.h"
 
 namespace tuft::cli {
 namespace {

@@ -14,10 +14,10 @@
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/parallel.h"
-#include "ink/composite.h"
-#include "ink/deposit.h"
+#include "ink/colour/composite.h"
+#include "ink/touch/deposit.h"
 #include "io/read_model.h"
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 /// Speed on this machine: one thread, CPU time, medians over repeats.
 namespace tuft::cli {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "ink/film.h"
-#include "ink/transfer.h"
+#include "ink/film/film.h"
+#include "ink/touch/transfer.h"
 
 namespace tuft::cli {
 namespace {

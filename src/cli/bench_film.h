@@ -1,6 +1,6 @@
 #pragma once
 
-#include "stroke/model.h"
+#include "stroke/painting/model.h"
 
 /// Speed of wet ink, for `tuft bench`.
 namespace tuft::cli {

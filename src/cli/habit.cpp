@@ -7,7 +7,7 @@
 #include "cli/steps.h"
 #include "core/files.h"
 #include "io/inkml.h"
-#include "stroke/habit.h"
+#include "stroke/hand/habit.h"
 
 namespace tuft::cli {
 

@@ -10,8 +10,8 @@
 
 #include "brush/preset.h"
 #include "core/units.h"
-#include "stroke/line_width.h"
-#include "stroke/room.h"
+#include "stroke/hand/line_width.h"
+#include "stroke/hand/room.h"
 
 namespace tuft::cli {
 

@@ -4,8 +4,8 @@
 
 #include "cli/arguments.h"
 #include "cli/console.h"
-#include "stroke/journal.h"
-#include "stroke/model.h"
+#include "stroke/journal/journal.h"
+#include "stroke/painting/model.h"
 
 /// Where drawings and handwriting without a place of their own go.
 namespace tuft::cli {

@@ -10,8 +10,8 @@
 #include "io/inkml.h"
 #include "io/read_model.h"
 #include "io/restore.h"
-#include "stroke/fit.h"
-#include "stroke/journal_traces.h"
+#include "stroke/journal/fit.h"
+#include "stroke/journal/journal_traces.h"
 
 /// Commands that start from a project: replay, export, render.
 namespace tuft::cli {

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "core/units.h"
-#include "ink/composite.h"
-#include "ink/recolour.h"
+#include "ink/colour/composite.h"
+#include "ink/colour/recolour.h"
 #include "io/export.h"
 #include "io/image.h"
 #include "io/looks.h"
@@ -18,7 +18,7 @@
 #include "io/restore.h"
 #include "io/svg.h"
 #include "mesh/inspect.h"
-#include "stroke/habit.h"
+#include "stroke/hand/habit.h"
 
 namespace fs = std::filesystem;
 

@@ -10,7 +10,7 @@
 #include "cli/console.h"
 #include "io/project.h"
 #include "render/picture.h"
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 /// Steps that several commands share.
 namespace tuft::cli {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "atlas/log_map.h"
+#include "atlas/texels/log_map.h"
 
 namespace tuft::footprint {
 namespace {

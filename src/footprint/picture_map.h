@@ -1,6 +1,6 @@
 #pragma once
 
-#include "atlas/log_map.h"
+#include "atlas/texels/log_map.h"
 #include "footprint/stamp.h"
 
 /// From a texel to its place in a footprint's picture, as the kernel and those who plan for it

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "atlas/log_map.h"
+#include "atlas/texels/log_map.h"
 #include "footprint/picture.h"
 #include "footprint/quarters.h"
 #include "footprint/sweep.h"

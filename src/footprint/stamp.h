@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "atlas/piece_graph.h"
+#include "atlas/texels/piece_graph.h"
 #include "footprint/footprint.h"
 #include "footprint/picture.h"
 

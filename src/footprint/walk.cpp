@@ -6,7 +6,7 @@
 #include <functional>
 #include <span>
 
-#include "atlas/log_map.h"
+#include "atlas/texels/log_map.h"
 
 namespace tuft::footprint {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "atlas/piece_graph.h"
+#include "atlas/texels/piece_graph.h"
 #include "footprint/stamp.h"
 
 /// The walk over the pieces of the surface from the point that a stamp touches: which of them

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "atlas/texel_map.h"
-#include "ink/pigments.h"
+#include "atlas/texels/texel_map.h"
+#include "ink/colour/pigments.h"
 
 /// Pigment amounts on the texels of an atlas.
 namespace tuft::ink {

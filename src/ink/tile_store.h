@@ -1,6 +1,6 @@
 #pragma once
 
-#include "atlas/texel_map.h"
+#include "atlas/texels/texel_map.h"
 
 /// The one place where a kernel's amounts go into a tile.
 namespace tuft::ink {

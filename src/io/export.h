@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "atlas/atlas.h"
-#include "atlas/texel_map.h"
+#include "atlas/texels/texel_map.h"
 #include "core/progress.h"
 #include "core/units.h"
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 #include "io/image.h"
 #include "mesh/triangle_mesh.h"
 

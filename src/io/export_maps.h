@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "ink/composite.h"
-#include "stroke/painting.h"
+#include "ink/colour/composite.h"
+#include "stroke/painting/painting.h"
 
 /// Single maps of a decoration as picture files.
 namespace tuft::io {

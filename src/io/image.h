@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 
 /// Picture files: PNG with 8 or 16 bits, OpenEXR, and reading them back. The codec
 /// (OpenImageIO, 250 shared objects, 0.25 s) is loaded when the first picture is.

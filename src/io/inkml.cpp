@@ -13,7 +13,7 @@
 #include "core/units.h"
 #include "io/inkml_decode.h"
 #include "io/inkml_marks.h"
-#include "stroke/journal.h"
+#include "stroke/journal/journal.h"
 
 namespace tuft::io {
 

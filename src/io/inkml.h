@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stroke/trace.h"
+#include "stroke/journal/trace.h"
 
 /// Stroke files: InkML 1.0 (W3C Recommendation, 20 September 2011).
 namespace tuft::io {

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "stroke/journal.h"
+#include "stroke/journal/journal.h"
 
 namespace tuft::io {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stroke/trace.h"
+#include "stroke/journal/trace.h"
 
 namespace pugi {
 class xml_node;

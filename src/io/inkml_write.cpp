@@ -8,7 +8,7 @@
 #include "core/files.h"
 #include "core/units.h"
 #include "io/inkml.h"
-#include "stroke/journal.h"
+#include "stroke/journal/journal.h"
 
 namespace tuft::io {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "io/project.h"
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 /// How a project's work is shown: kept beside how it was painted.
 namespace tuft::io {

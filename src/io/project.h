@@ -14,7 +14,7 @@
 #include "core/units.h"
 #include "ink/canvas.h"
 #include "mesh/triangle_mesh.h"
-#include "stroke/journal.h"
+#include "stroke/journal/journal.h"
 
 /// The `.tuft` project: one SQLite database (application id "TUFT") that holds the model,
 /// its atlas, the presets used, the journal and a picture of the texels.

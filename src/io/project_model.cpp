@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "atlas/fault.h"
+#include "atlas/flatten/fault.h"
 #include "core/hash.h"
 #include "core/units.h"
 #include "io/project_db.h"

@@ -5,7 +5,7 @@
 
 #include "core/hash.h"
 #include "io/project_db.h"
-#include "stroke/palette.h"
+#include "stroke/painting/palette.h"
 
 namespace tuft::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/inkml.h"
-#include "stroke/trace.h"
+#include "stroke/journal/trace.h"
 
 /// Drawings: SVG 1.1 (W3C Recommendation, 16 August 2011).
 namespace tuft::io {

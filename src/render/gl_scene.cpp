@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "atlas/texel_map.h"
+#include "atlas/texels/texel_map.h"
 #include "core/hash.h"
 #include "render/gl_shaders.h"
 

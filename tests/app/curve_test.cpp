@@ -7,7 +7,7 @@
 
 #include "app/view/texture.h"
 #include "models.h"
-#include "stroke/lead.h"
+#include "stroke/hand/lead.h"
 
 namespace tuft::app {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "io/read_model.h"
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 namespace tuft::test {
 

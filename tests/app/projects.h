@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "atlas/texel_map.h"
+#include "atlas/texels/texel_map.h"
 #include "core/hash.h"
 #include "io/project.h"
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 /// What the studio kept, asked of the file and of the command line.
 namespace tuft::test {

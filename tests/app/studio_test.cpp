@@ -12,8 +12,8 @@
 #include <sstream>
 #include <thread>
 
-#include "ink/composite.h"
-#include "ink/pigments.h"
+#include "ink/colour/composite.h"
+#include "ink/colour/pigments.h"
 #include "io/image.h"
 #include "io/project.h"
 #include "io/read_model.h"

@@ -6,7 +6,7 @@
 
 #include "brush/preset.h"
 #include "core/units.h"
-#include "stroke/placement.h"
+#include "stroke/hand/placement.h"
 #include "window.h"
 
 /// A Wacom tablet from its kernel events on: the real X server with the real driver reads an event device

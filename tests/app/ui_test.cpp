@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "brush/preset.h"
-#include "ink/pigments.h"
+#include "ink/colour/pigments.h"
 
 namespace tuft::app {
 namespace {

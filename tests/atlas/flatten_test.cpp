@@ -1,4 +1,4 @@
-#include "atlas/flatten.h"
+#include "atlas/flatten/flatten.h"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <numbers>
 #include <numeric>
 
-#include "atlas/charts.h"
-#include "atlas/merge.h"
-#include "atlas/seam_graph.h"
-#include "atlas/snap.h"
-#include "atlas/straighten.h"
+#include "atlas/charts/charts.h"
+#include "atlas/charts/merge.h"
+#include "atlas/charts/seam_graph.h"
+#include "atlas/charts/snap.h"
+#include "atlas/charts/straighten.h"
 #include "nasty_meshes.h"
 
 namespace tuft::atlas {

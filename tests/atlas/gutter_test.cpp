@@ -1,4 +1,4 @@
-#include "atlas/gutter.h"
+#include "atlas/texels/gutter.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "analytic_surfaces.h"
-#include "atlas/seams.h"
+#include "atlas/texels/seams.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 

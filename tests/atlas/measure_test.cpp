@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "atlas/atlas.h"
-#include "atlas/coverage.h"
+#include "atlas/pack/coverage.h"
 #include "core/random.h"
 #include "test_mesh.h"
 

@@ -1,4 +1,4 @@
-#include "atlas/pack.h"
+#include "atlas/pack/pack.h"
 
 #include <gtest/gtest.h>
 

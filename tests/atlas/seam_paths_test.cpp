@@ -1,4 +1,4 @@
-#include "atlas/seam_paths.h"
+#include "atlas/charts/seam_paths.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "atlas/charts.h"
-#include "atlas/merge.h"
-#include "atlas/move_seams.h"
+#include "atlas/charts/charts.h"
+#include "atlas/charts/merge.h"
+#include "atlas/charts/move_seams.h"
 #include "core/parallel.h"
 #include "shapes.h"
 #include "test_mesh.h"

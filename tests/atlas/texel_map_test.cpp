@@ -1,4 +1,4 @@
-#include "atlas/texel_map.h"
+#include "atlas/texels/texel_map.h"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +12,10 @@
 #include <sstream>
 
 #include "analytic_surfaces.h"
-#include "atlas/border_cells.h"
-#include "atlas/log_map.h"
-#include "atlas/piece_graph.h"
-#include "atlas/seam_links.h"
+#include "atlas/texels/border_cells.h"
+#include "atlas/texels/log_map.h"
+#include "atlas/texels/piece_graph.h"
+#include "atlas/texels/seam_links.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/parallel.h"

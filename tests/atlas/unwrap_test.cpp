@@ -8,8 +8,8 @@
 
 #include "atlas/atlas.h"
 #include "atlas/atlas_picture.h"
-#include "atlas/coverage.h"
-#include "atlas/half_edges.h"
+#include "atlas/charts/half_edges.h"
+#include "atlas/pack/coverage.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "../atlas/analytic_surfaces.h"
-#include "atlas/log_map.h"
+#include "atlas/texels/log_map.h"
 #include "footprint/stamp.h"
 
 /// A surface with its maps, and what stamps do on it.

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 #include "mixtures.h"
 
 namespace tuft::ink {

@@ -1,4 +1,4 @@
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "ink/kubelka_munk.h"
+#include "ink/colour/kubelka_munk.h"
 #include "mesh/repair.h"
 
 namespace tuft::ink {

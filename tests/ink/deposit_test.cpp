@@ -1,4 +1,4 @@
-#include "ink/deposit.h"
+#include "ink/touch/deposit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "core/random.h"
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 #include "texels.h"
 
 namespace tuft::ink {

@@ -4,7 +4,7 @@
 
 #include "../atlas/analytic_surfaces.h"
 #include "core/parallel.h"
-#include "ink/film.h"
+#include "ink/film/film.h"
 
 // Ink that runs down a wall.
 namespace tuft::ink {

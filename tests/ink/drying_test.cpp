@@ -1,10 +1,10 @@
-#include "ink/drying.h"
+#include "ink/film/drying.h"
 
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 
 namespace tuft::ink {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/hash.h"
 #include "core/random.h"
-#include "ink/film_tile.h"
+#include "ink/film/film_tile.h"
 
 namespace {
 

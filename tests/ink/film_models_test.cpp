@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "atlas/seam_links.h"
-#include "ink/film.h"
+#include "atlas/texels/seam_links.h"
+#include "ink/film/film.h"
 #include "mesh/repair.h"
 
 // The wet film on the shipped models, whose charts meet in every way that charts do.

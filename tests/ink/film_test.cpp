@@ -1,4 +1,4 @@
-#include "ink/film.h"
+#include "ink/film/film.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "../atlas/analytic_surfaces.h"
 #include "core/parallel.h"
-#include "ink/drying.h"
+#include "ink/film/drying.h"
 
 namespace tuft::ink {
 namespace {

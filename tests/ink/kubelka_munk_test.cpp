@@ -1,4 +1,4 @@
-#include "ink/kubelka_munk.h"
+#include "ink/colour/kubelka_munk.h"
 
 #include <gtest/gtest.h>
 

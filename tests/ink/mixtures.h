@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/random.h"
-#include "ink/colorimetry.h"
-#include "ink/kubelka_munk.h"
-#include "ink/upsample.h"
+#include "ink/colour/colorimetry.h"
+#include "ink/colour/kubelka_munk.h"
+#include "ink/colour/upsample.h"
 
 /// Random mixes, thicknesses and stacks of pigments, with their colours computed in full.
 namespace tuft::ink::test {

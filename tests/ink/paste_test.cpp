@@ -1,12 +1,12 @@
-#include "ink/paste.h"
+#include "ink/film/paste.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
-#include "ink/level.h"
-#include "ink/stir.h"
+#include "ink/film/level.h"
+#include "ink/touch/stir.h"
 #include "texels.h"
 
 namespace tuft::ink {

@@ -1,4 +1,4 @@
-#include "ink/pigments.h"
+#include "ink/colour/pigments.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "core/error.h"
-#include "ink/colorimetry.h"
-#include "ink/composite.h"
+#include "ink/colour/colorimetry.h"
+#include "ink/colour/composite.h"
 
 namespace tuft::ink {
 namespace {

@@ -1,4 +1,4 @@
-#include "ink/pool.h"
+#include "ink/film/pool.h"
 
 #include <gtest/gtest.h>
 

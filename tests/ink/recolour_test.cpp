@@ -1,12 +1,12 @@
-#include "ink/recolour.h"
+#include "ink/colour/recolour.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
-#include "ink/composite.h"
-#include "ink/deposit.h"
+#include "ink/colour/composite.h"
+#include "ink/touch/deposit.h"
 
 namespace tuft::ink {
 namespace {

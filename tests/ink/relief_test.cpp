@@ -1,4 +1,4 @@
-#include "ink/relief.h"
+#include "ink/film/relief.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ink/reservoir.h"
+#include "ink/touch/reservoir.h"
 
 #include <gtest/gtest.h>
 

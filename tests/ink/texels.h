@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "atlas/texel_map.h"
+#include "atlas/texels/texel_map.h"
 #include "core/random.h"
 
 /// Values of a tile's texels to put into kernels.

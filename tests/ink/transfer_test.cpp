@@ -1,9 +1,9 @@
-#include "ink/transfer.h"
+#include "ink/touch/transfer.h"
 
 #include <gtest/gtest.h>
 
 #include "core/random.h"
-#include "ink/paste.h"
+#include "ink/film/paste.h"
 
 namespace tuft::ink {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "brush/preset.h"
 #include "core/files.h"
-#include "ink/pigments.h"
+#include "ink/colour/pigments.h"
 #include "io/inkml.h"
 #include "mesh/repair.h"
-#include "stroke/placement.h"
+#include "stroke/hand/placement.h"
 
 namespace tuft::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "stroke/fill.h"
+#include "stroke/painting/fill.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stroke/fit.h"
+#include "stroke/journal/fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stroke/habit.h"
+#include "stroke/hand/habit.h"
 
 #include <gtest/gtest.h>
 

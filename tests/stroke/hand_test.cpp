@@ -1,4 +1,4 @@
-#include "stroke/hand.h"
+#include "stroke/hand/hand.h"
 
 #include <gtest/gtest.h>
 

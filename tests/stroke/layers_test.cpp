@@ -1,4 +1,4 @@
-#include "stroke/layers.h"
+#include "stroke/journal/layers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stroke/lead.h"
+#include "stroke/hand/lead.h"
 
 #include <gtest/gtest.h>
 

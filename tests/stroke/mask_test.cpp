@@ -1,4 +1,4 @@
-#include "stroke/mask.h"
+#include "stroke/painting/mask.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 #include "sheet.h"
-#include "stroke/stamper.h"
+#include "stroke/painting/stamper.h"
 
 namespace tuft::stroke {
 namespace {

@@ -1,4 +1,4 @@
-#include "stroke/palette.h"
+#include "stroke/painting/palette.h"
 
 #include <gtest/gtest.h>
 

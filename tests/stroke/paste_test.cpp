@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 #include "sheet.h"
 
 namespace tuft::stroke {

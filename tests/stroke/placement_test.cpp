@@ -1,4 +1,4 @@
-#include "stroke/placement.h"
+#include "stroke/hand/placement.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "grids.h"
-#include "stroke/lead.h"
+#include "stroke/hand/lead.h"
 
 namespace tuft::stroke {
 namespace {

@@ -1,4 +1,4 @@
-#include "stroke/resample.h"
+#include "stroke/hand/resample.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stroke/room.h"
+#include "stroke/hand/room.h"
 
 #include <gtest/gtest.h>
 

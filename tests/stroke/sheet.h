@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 /// A sheet and strokes over it, shared by the tests of this room.
 namespace tuft::stroke {

@@ -1,4 +1,4 @@
-#include "stroke/symmetry.h"
+#include "stroke/hand/symmetry.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/ease.h"
-#include "stroke/laying.h"
-#include "stroke/lead.h"
+#include "stroke/hand/laying.h"
+#include "stroke/hand/lead.h"
 
 namespace tuft::app {
 namespace {

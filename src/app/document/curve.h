@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/surface_query.h"
-#include "stroke/placement.h"
+#include "stroke/hand/placement.h"
 
 /// Lines and curves through control points on a model, painted by a hand of even pace.
 namespace tuft::app {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/project.h"
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 namespace tuft::app {
 

@@ -17,9 +17,9 @@
 
 #include "app/document/keeper.h"
 #include "app/view/texture.h"
-#include "stroke/fit.h"
-#include "stroke/painting.h"
-#include "stroke/symmetry.h"
+#include "stroke/hand/symmetry.h"
+#include "stroke/journal/fit.h"
+#include "stroke/painting/painting.h"
 
 namespace tuft::app {
 

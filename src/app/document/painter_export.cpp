@@ -4,7 +4,7 @@
 #include "io/image.h"
 #include "io/inkml.h"
 #include "render/picture.h"
-#include "stroke/journal_traces.h"
+#include "stroke/journal/journal_traces.h"
 
 /// Exports and pictures, on the painter's thread.
 namespace fs = std::filesystem;

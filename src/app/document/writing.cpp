@@ -6,8 +6,8 @@
 #include "brush/preset.h"
 #include "core/error.h"
 #include "io/svg.h"
-#include "stroke/line_width.h"
-#include "stroke/placement.h"
+#include "stroke/hand/line_width.h"
+#include "stroke/hand/placement.h"
 
 namespace tuft::app {
 

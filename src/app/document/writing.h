@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/surface_query.h"
-#include "stroke/trace.h"
+#include "stroke/journal/trace.h"
 
 /// A drawing or handwriting that waits to be laid onto the model.
 namespace tuft::app {

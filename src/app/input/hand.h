@@ -6,7 +6,7 @@
 #include "brush/preset.h"
 #include "mesh/surface_query.h"
 #include "render/gl_camera.h"
-#include "stroke/placement.h"
+#include "stroke/hand/placement.h"
 
 namespace tuft::app {
 

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "app/panels/panels.h"
-#include "ink/composite.h"
-#include "ink/kubelka_munk.h"
-#include "ink/recolour.h"
+#include "ink/colour/composite.h"
+#include "ink/colour/kubelka_munk.h"
+#include "ink/colour/recolour.h"
 
 /// Inks: choosing, loading the brush, and what the work is shown with afterwards.
 namespace tuft::app {

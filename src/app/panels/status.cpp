@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/panels/panels.h"
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 
 namespace tuft::app {
 

@@ -5,9 +5,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "ink/composite.h"
+#include "ink/colour/composite.h"
 #include "render/gl_scene.h"
-#include "stroke/painting.h"
+#include "stroke/painting/painting.h"
 
 namespace tuft::app {
 

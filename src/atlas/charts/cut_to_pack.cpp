@@ -1,0 +1,253 @@
+#include "atlas/charts/cut_to_pack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "atlas/charts/straighten.h"
+#include "atlas/charts/tasks.h"
+#include "atlas/flatten/hull.h"
+
+namespace tuft::atlas {
+namespace {
+
+constexpr int kMostCuts = 9;
+constexpr double kLeastOfUse = 0.98;  // that is left when a cut is made for the sake of the next
+constexpr double kBeyond = 1.03;  // of the goal, once charts are cut: a short search errs by this
+constexpr double kAsLong = 0.85;         // of the longest chart's length
+constexpr std::size_t kCandidates = 6;   // largest charts that are tried
+constexpr std::size_t kMostCharts = 48;  // with more, small ones fill the gaps
+constexpr std::size_t kDear = 200000;    // triangles of a chart that is left as it is
+
+std::vector<Vec2> border_of(const FlatChart& chart) {
+    std::vector<Vec2> border;
+    border.reserve(chart.mesh.loop.size());
+    for (const std::uint32_t v : chart.mesh.loop) border.push_back(chart.uv[v]);
+    return border;
+}
+
+/// Part of the pages that charts of `area` cover.
+double use_of(const Packing& packing, double area) {
+    if (!packing.fits) return 0;
+    return area * packing.texels_per_unit * packing.texels_per_unit /
+           (static_cast<double>(packing.size) * packing.size * packing.pages);
+}
+
+/// A layout of the charts, as good as `goal` asks for where that is near: with many charts, small
+/// ones fill the gaps whichever way they are turned.
+Packing pack_well(const std::vector<std::vector<Vec2>>& borders, double area, PackOptions options,
+                  double goal) {
+    constexpr std::size_t kMany = 128;
+    constexpr double kNear = 0.94;  // of what is good enough
+    options.search = Search::full;
+    Packing packing = pack(borders, options);
+    const double use = use_of(packing, area);
+    if (use >= goal || use < kNear * kGoodUse || borders.size() > kMany) return packing;
+    options.search = Search::patient;
+    Packing better = pack(borders, options);
+    return use_of(better, area) > use ? better : packing;
+}
+
+/// A chart in parts.
+struct Halves {
+    std::vector<FlatChart> parts;
+    std::vector<std::uint32_t> cut;  // half-edges of the mesh
+};
+
+/// What parts are cut from.
+struct Whole {
+    const mesh::TriangleMesh& mesh;
+    const FlatChart& chart;
+    double unit, gap;
+};
+
+/// The part of a flat chart that consists of these of its faces; nothing when it is no disk
+/// or its new border comes too near to itself.
+std::optional<FlatChart> part_of(const Whole& of, std::span<const std::uint32_t> glued,
+                                 const std::vector<std::uint32_t>& faces) {
+    const FlatChart& whole = of.chart;
+    FlatChart part;
+    part.worst = whole.worst;
+    part.l2 = whole.l2;
+    std::vector<std::uint32_t> triangles;
+    for (const std::uint32_t f : faces) triangles.push_back(whole.mesh.triangles[f]);
+    part.mesh = make_chart(of.mesh, glued, std::move(triangles), of.unit);
+    if (!part.mesh.disk) return std::nullopt;
+    part.uv.resize(part.mesh.n_vertices());
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        for (int k = 0; k < 3; ++k)
+            part.uv[part.mesh.faces[i][k]] = whole.uv[whole.mesh.faces[faces[i]][k]];
+    if (!check_flat(part.mesh, part.uv, of.gap).sound()) return std::nullopt;
+    return part;
+}
+
+std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut,
+                            const FlatChart& chart, double gap) {
+    const ChartMesh& m = chart.mesh;
+    if (m.faces.size() < 2 || m.faces.size() > kDear) return std::nullopt;
+    const Rectangle box = smallest_rectangle(chart_hull(chart));
+    double lo = std::numeric_limits<double>::infinity();
+    for (const Vec2& p : chart.uv) lo = std::min(lo, box.c * p.x + box.s * p.y);
+    const auto upper = [&](std::uint32_t f) {
+        Vec2 middle(0);
+        for (const std::uint32_t v : m.faces[f]) middle += chart.uv[v] / 3.0;
+        return box.c * middle.x + box.s * middle.y > lo + 0.5 * box.length;
+    };
+    const Patch patch = make_patch(mesh, cut.glued, m.triangles, cut.unit);
+    std::vector<std::uint8_t> seam(patch.twin.size());
+    for (std::uint32_t h = 0; h < seam.size(); ++h) {
+        const std::uint32_t g = patch.twin[h];
+        seam[h] = g == kNone || upper(h / 3) != upper(g / 3);
+    }
+    straighten_seams(patch, seam);
+
+    Halves halves;
+    std::vector<std::uint32_t> local(patch.twin), glued(cut.glued);
+    for (std::uint32_t h = 0; h < seam.size(); ++h) {
+        if (!seam[h] || local[h] == kNone) continue;
+        local[h] = kNone;
+        const std::uint32_t whole = 3 * m.triangles[h / 3] + h % 3;
+        glued[whole] = kNone;
+        halves.cut.push_back(whole);
+    }
+    const auto parts = connected_charts(local);
+    if (parts.size() < 2 || parts.size() > 4) return std::nullopt;
+    for (const auto& faces : parts) {
+        auto part = part_of({mesh, chart, cut.unit, gap}, glued, faces);
+        if (!part) return std::nullopt;
+        halves.parts.push_back(std::move(*part));
+    }
+    return halves;
+}
+
+void apply(CutMesh& cut, std::uint32_t chart, const Halves& halves) {
+    for (const std::uint32_t h : halves.cut) cut.glued[h] = kNone;
+    cut.charts[chart] = halves.parts[0];
+    cut.charts.insert(cut.charts.end(), halves.parts.begin() + 1, halves.parts.end());
+}
+
+/// Charts to be cut together.
+using Proposal = std::vector<std::pair<std::uint32_t, Halves>>;
+
+/// Each of the charts with the largest boxes, the two largest together, and those of them that
+/// are about as long as the longest, which may be all that keeps the rest small.
+std::vector<Proposal> proposals(const mesh::TriangleMesh& mesh, const CutMesh& cut, double gap) {
+    std::vector<double> box(cut.charts.size()), length(cut.charts.size());
+    for (std::size_t c = 0; c < box.size(); ++c) {
+        const Rectangle r = smallest_rectangle(chart_hull(cut.charts[c]));
+        box[c] = r.length * r.width;
+        length[c] = r.length;
+    }
+    std::vector<std::uint32_t> order(box.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return box[a] > box[b]; });
+    order.resize(std::min(order.size(), kCandidates));
+    std::vector<std::optional<Halves>> halves(order.size());
+    run_tasks(order.size(),
+              [&](std::size_t i) { halves[i] = halve(mesh, cut, cut.charts[order[i]], gap); });
+    std::vector<Proposal> all;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        if (halves[i]) all.push_back({{order[i], *halves[i]}});
+    if (order.size() > 1 && halves[0] && halves[1])
+        all.push_back({{order[0], *halves[0]}, {order[1], *halves[1]}});
+    const double longest = *std::max_element(length.begin(), length.end());
+    Proposal together;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        if (halves[i] && length[order[i]] >= kAsLong * longest)
+            together.push_back({order[i], *halves[i]});
+    if (together.size() > 1) all.push_back(std::move(together));
+    return all;
+}
+
+std::vector<std::vector<Vec2>> borders_after(std::vector<std::vector<Vec2>> borders,
+                                             const Proposal& proposal) {
+    for (const auto& [chart, halves] : proposal) {
+        borders[chart] = border_of(halves.parts[0]);
+        for (std::size_t p = 1; p < halves.parts.size(); ++p)
+            borders.push_back(border_of(halves.parts[p]));
+    }
+    return borders;
+}
+
+}  // namespace
+
+std::vector<std::vector<Vec2>> chart_borders(const CutMesh& cut) {
+    std::vector<std::vector<Vec2>> borders;
+    borders.reserve(cut.charts.size());
+    for (const FlatChart& chart : cut.charts) borders.push_back(border_of(chart));
+    return borders;
+}
+
+namespace {
+
+/// Where cutting starts from, of which coarse masks show `use`.
+struct Start {
+    double area, use;
+};
+
+/// Cuts while coarse masks show that it gains, until they show the goal or nothing helps; the
+/// number of cuts.
+int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap,
+                       const PackOptions& options, const Start& start, double goal, int most) {
+    const double area = start.area;
+    double use = start.use;
+    std::vector<std::vector<Vec2>> borders = chart_borders(cut);
+    int cuts = 0;
+    for (; cuts < most && use < goal; borders = chart_borders(cut)) {
+        const std::vector<Proposal> all = proposals(mesh, cut, gap);
+        std::vector<double> gained(all.size(), 0);
+        run_tasks(all.size(), [&](std::size_t i) {
+            gained[i] = use_of(pack(borders_after(borders, all[i]), options), area);
+            // Two cuts have to gain as much as each of them would.
+            if (gained[i] < goal) gained[i] /= std::pow(kCutGain, all[i].size());
+        });
+        const auto best = std::max_element(gained.begin(), gained.end());
+        // A cut may gain nothing until the next one is made.
+        if (best == gained.end() || *best < kLeastOfUse * use) break;
+        use = std::max(use, *best);
+        for (const auto& [chart, halves] : all[static_cast<std::size_t>(best - gained.begin())]) {
+            apply(cut, chart, halves);
+            ++cuts;
+        }
+    }
+    return cuts;
+}
+
+}  // namespace
+
+CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
+                      double goal) {
+    CutToPack result;
+    double area = 0;
+    for (const FlatChart& chart : cut.charts) area += chart.mesh.area;
+    result.packing = pack_well(chart_borders(cut), area, options, goal);
+    double use = use_of(result.packing, area);
+    if (use >= goal) return result;
+    const ProgressFn progress = std::exchange(options.progress, {});
+    PackOptions coarse = options;
+    coarse.search = Search::coarse;
+    CutMesh tried = cut;
+    int cuts = 0;
+    for (double now = use; cuts < kMostCuts && now < goal && tried.charts.size() <= kMostCharts;) {
+        report(progress, "cut to pack", double(cuts) / kMostCuts);
+        const Start start{area, use_of(pack(chart_borders(tried), coarse), area)};
+        const double shown = kBeyond * start.use / now * goal;  // by coarse masks
+        const int more = cut_while_it_gains(mesh, tried, gap, coarse, start, shown, kMostCuts - cuts);
+        if (more == 0) break;
+        cuts += more;
+        Packing packing = pack_well(chart_borders(tried), area, options, goal);
+        now = use_of(packing, area);
+        if (now < goal && now < std::pow(kCutGain, cuts - result.cuts) * use) continue;
+        use = now;
+        cut = tried;
+        result.cuts = cuts;
+        result.packing = std::move(packing);
+    }
+    return result;
+}
+
+}  // namespace tuft::atlas

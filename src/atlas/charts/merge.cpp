@@ -1,0 +1,309 @@
+#include "atlas/charts/merge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "atlas/charts/meter.h"
+#include "atlas/charts/seam_graph.h"
+#include "atlas/charts/tasks.h"
+#include "atlas/flatten/hull.h"
+
+namespace tuft::atlas {
+namespace {
+
+constexpr std::size_t kDear = 4096;     // triangles
+constexpr double kNearEnds = 1.0 / 32;  // of the border's length
+constexpr double kAsLong = 1.05;        // as another
+constexpr double kAtFirst = 1.1;        // beyond limits of form, before a chart is laid flat
+constexpr double kUsualWork = 5;        // triangles in all trials, over those of the mesh
+
+/// A rigid motion of the plane.
+struct Motion {
+    double c = 1, s = 0;
+    Vec2 shift{0};
+    Vec2 operator()(const Vec2& p) const {
+        return Vec2(c * p.x - s * p.y, s * p.x + c * p.y) + shift;
+    }
+};
+
+/// One pair of charts to be tried along one chain.
+struct Trial {
+    std::uint32_t chain = kNone, a = kNone, b = kNone;  // chain and charts of the graph
+    double rank = 0;
+    std::vector<std::uint32_t> halves;  // seams to be glued, half-edges of the mesh
+    std::size_t n_chain = 0;            // how many of them are the chain's own
+    bool merged = false;
+    FlatChart flat;
+};
+
+Vec2 corner_uv(const FlatChart& chart, std::uint32_t h) {
+    const std::uint32_t l = local_half(chart.mesh.triangles, h);
+    return chart.uv[chart.mesh.faces[l / 3][l % 3]];
+}
+
+/// The motion of b's UVs that brings the two sides of the chain together best, and the
+/// root mean square distance that is left.
+std::pair<Motion, double> fit_sides(const FlatChart& a, const FlatChart& b,
+                                    std::span<const std::uint32_t> twin, const Trial& trial) {
+    std::vector<std::array<Vec2, 2>> pairs;
+    for (std::size_t i = 0; i < trial.n_chain; ++i) {
+        std::uint32_t h = trial.halves[i], g = twin[h];
+        if (local_half(a.mesh.triangles, h) == kNone) std::swap(h, g);
+        pairs.push_back({corner_uv(a, h), corner_uv(b, next_half(g))});
+        pairs.push_back({corner_uv(a, next_half(h)), corner_uv(b, g)});
+    }
+    Vec2 mean_a(0), mean_b(0);
+    for (const auto& [p, q] : pairs) {
+        mean_a += p;
+        mean_b += q;
+    }
+    mean_a /= double(pairs.size());
+    mean_b /= double(pairs.size());
+    double c = 0, s = 0;
+    for (const auto& [p, q] : pairs) {
+        const Vec2 u = p - mean_a, v = q - mean_b;
+        c += glm::dot(u, v);
+        s += u.y * v.x - u.x * v.y;
+    }
+    const double norm = std::hypot(c, s);
+    Motion m;
+    if (norm > 0) {
+        m.c = c / norm;
+        m.s = s / norm;
+    }
+    m.shift = mean_a - Vec2(m.c * mean_b.x - m.s * mean_b.y, m.s * mean_b.x + m.c * mean_b.y);
+    double misfit = 0;
+    for (const auto& [p, q] : pairs) misfit += glm::dot(p - m(q), p - m(q));
+    return {m, std::sqrt(misfit / double(pairs.size()))};
+}
+
+/// How compact a chart is.
+struct Form {
+    double fill = 1;    // its area over that of its hull
+    double length = 0;  // of its smallest rectangle
+};
+
+Form form_of(const FlatChart& chart) {
+    const std::vector<Vec2> hull = chart_hull(chart);
+    double area = 0;
+    for (std::size_t i = 1; i + 1 < hull.size(); ++i) {
+        const Vec2 p = hull[i] - hull[0], q = hull[i + 1] - hull[0];
+        area += 0.5 * (p.x * q.y - p.y * q.x);
+    }
+    return {area > 0 ? chart.mesh.area / area : 1, smallest_rectangle(hull).length};
+}
+
+class Merger {
+  public:
+    Merger(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options,
+           const MergeOptions& merge)
+        : mesh_(mesh),
+          cut_(cut),
+          options_(options),
+          merge_(merge),
+          budget_(cut, options.l2_all),
+          patch_(whole_patch(mesh, cut)),
+          graph_(patch_, seam_flags(cut), 0),
+          chart_at_(mesh.n_triangles(), kNone),
+          refused_(3 * mesh.n_triangles(), 0) {
+        for (std::uint32_t c = 0; c < cut.charts.size(); ++c)
+            chart_at_[graph_.chart_of(cut.charts[c].mesh.triangles[0])] = c;
+        number_charts(cut);
+    }
+
+    void run(const ProgressFn& progress) {
+        Meter meter(progress, "merge", kUsualWork * double(mesh_.n_triangles()));
+        for (int round = 0; round < 200; ++round) {
+            std::vector<Trial> trials = next_trials();
+            if (trials.empty()) break;
+            for (const Trial& t : trials) set_glued(t, true);
+            const std::vector<std::uint32_t> order = largest_first(trials);
+            run_tasks(order.size(), [&](std::size_t i) {
+                Trial& t = trials[order[i]];
+                MeterPart part(meter, double(n_triangles(t)));
+                attempt(t, part);
+                part.finish();
+            });
+            for (Trial& t : trials) conclude(t);
+        }
+        std::erase_if(cut_.charts, [](const FlatChart& c) { return c.mesh.faces.empty(); });
+    }
+
+  private:
+    void set_glued(const Trial& t, bool glued) {
+        for (const std::uint32_t h : t.halves) {
+            const std::uint32_t g = cut_.twin[h];
+            cut_.glued[h] = glued ? g : kNone;
+            cut_.glued[g] = glued ? h : kNone;
+        }
+    }
+
+    /// Disjoint pairs in the order of rank.
+    std::vector<Trial> next_trials() {
+        const std::vector<SeamGraph::Chain> chains = graph_.chains();
+        std::vector<double> perimeter(cut_.charts.size(), 0);
+        for (const SeamGraph::Chain& c : chains) {
+            perimeter[chart_at_[c.chart_a]] += c.length;
+            perimeter[chart_at_[c.chart_b]] += c.length;
+        }
+        std::vector<Trial> all;
+        for (const SeamGraph::Chain& c : chains) {
+            if (c.chart_a == c.chart_b || c.closed || refused_[c.id]) continue;
+            if (Refusals::count(cut_.refused.merged, change(c.id, c.chart_a, c.chart_b)) > 0) {
+                refused_[c.id] = 1;
+                continue;
+            }
+            const double area_a = graph_.moments(c.chart_a).area;
+            const double area_b = graph_.moments(c.chart_b).area;
+            if (area_a + area_b > merge_.largest_chart) continue;
+            if (graph_.n_triangles(c.chart_a) + graph_.n_triangles(c.chart_b) > options_.triangles)
+                continue;
+            Trial t;
+            t.chain = c.id;
+            t.a = c.chart_a;
+            t.b = c.chart_b;
+            t.rank = c.length / std::max(1e-300, std::min(perimeter[chart_at_[t.a]],
+                                                          perimeter[chart_at_[t.b]]));
+            all.push_back(std::move(t));
+        }
+        std::stable_sort(all.begin(), all.end(),
+                         [](const Trial& x, const Trial& y) { return x.rank > y.rank; });
+        std::vector<std::uint8_t> used(cut_.charts.size(), 0);
+        std::vector<Trial> chosen;
+        for (Trial& t : all) {
+            if (used[chart_at_[t.a]] || used[chart_at_[t.b]]) continue;
+            used[chart_at_[t.a]] = used[chart_at_[t.b]] = 1;
+            t.halves = graph_.half_edges(t.chain);
+            t.n_chain = t.halves.size();
+            const std::vector<std::uint32_t> slit = graph_.glued_with(t.chain);
+            t.halves.insert(t.halves.end(), slit.begin(), slit.end());
+            chosen.push_back(std::move(t));
+        }
+        return chosen;
+    }
+
+    std::size_t n_triangles(const Trial& t) const {
+        return cut_.charts[chart_at_[t.a]].mesh.faces.size() +
+               cut_.charts[chart_at_[t.b]].mesh.faces.size();
+    }
+
+    std::vector<std::uint32_t> largest_first(const std::vector<Trial>& trials) const {
+        std::vector<std::uint32_t> order(trials.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
+            return n_triangles(trials[x]) > n_triangles(trials[y]);
+        });
+        return order;
+    }
+
+    /// Flattens the two charts as one from where they lie now.
+    void attempt(Trial& t, MeterPart& part) {
+        const FlatChart& a = cut_.charts[chart_at_[t.a]];
+        const FlatChart& b = cut_.charts[chart_at_[t.b]];
+        const auto [motion, misfit] = fit_sides(a, b, cut_.twin, t);
+        double length = 0;
+        for (std::size_t i = 0; i < t.n_chain; ++i) length += patch_.length[t.halves[i]];
+        if (misfit > merge_.largest_misfit * length) return;
+
+        std::vector<std::uint32_t> triangles(a.mesh.triangles.size() + b.mesh.triangles.size());
+        std::merge(a.mesh.triangles.begin(), a.mesh.triangles.end(), b.mesh.triangles.begin(),
+                   b.mesh.triangles.end(), triangles.begin());
+        t.flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
+        ChartMesh& mesh = t.flat.mesh;
+        if (!mesh.disk) return;
+        t.flat.uv.assign(mesh.n_vertices(), Vec2(0));
+        std::vector<std::uint32_t> count(mesh.n_vertices(), 0);
+        std::size_t ia = 0, ib = 0;
+        for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+            const bool in_a =
+                ia < a.mesh.triangles.size() && a.mesh.triangles[ia] == mesh.triangles[f];
+            const FlatChart& from = in_a ? a : b;
+            const auto& face = from.mesh.faces[in_a ? ia++ : ib++];
+            for (int k = 0; k < 3; ++k) {
+                const Vec2& p = from.uv[face[k]];
+                t.flat.uv[mesh.faces[f][k]] += in_a ? p : motion(p);
+                ++count[mesh.faces[f][k]];
+            }
+        }
+        for (std::size_t v = 0; v < count.size(); ++v) t.flat.uv[v] /= double(count[v]);
+
+        // Charts that lie one over the other stay so; only near the ends of the chain do small
+        // crossings go away. That is worth a look where laying flat is dear.
+        if (mesh.faces.size() > kDear && crosses_itself(mesh, t.flat.uv, 0, kNearEnds)) return;
+        // Nor does laying flat change much of the shape.
+        const std::array<Form, 2> parts{form_of(a), form_of(b)};
+        scale_to_area(mesh, t.flat.uv);
+        if (misshapen(form_of(t.flat), parts, kAtFirst)) return;
+        const double flat_enough = 1 + 0.1 * (options_.l2 - 1);
+        FlatCheck check = check_flat(mesh, t.flat.uv, options_.gap);
+        if (!check.sound() || check.l2 > flat_enough) {
+            ArapOptions trial = trial_arap(options_);
+            trial.on_step = [&] { part.advance(double(mesh.faces.size()) / trial.iterations); };
+            arap(mesh, t.flat.uv, trial);
+            scale_to_area(mesh, t.flat.uv);
+            check = check_flat(mesh, t.flat.uv, options_.gap);
+        }
+        if (!check.sound() || check.l2 > options_.l2 || check.stretch_999 > options_.largest ||
+            check.linf > std::max({options_.worst, a.worst, b.worst}))
+            return;
+        t.flat.worst = check.linf;
+        t.flat.l2 = check.l2;
+        t.merged = !misshapen(form_of(t.flat), parts, 1);
+    }
+
+    /// Whether a chart of two parts is too ragged or too long, by more than `slack`.
+    bool misshapen(const Form& whole, const std::array<Form, 2>& parts, double slack) const {
+        if (slack * whole.fill < std::min({merge_.least_fill, parts[0].fill, parts[1].fill})) return true;
+        // Two that lie beside each other may be as long as the longer of them.
+        const double longer = std::max(parts[0].length, parts[1].length);
+        return whole.length > slack * std::max(merge_.longest, kAsLong * longer);
+    }
+
+    Refusals::Change change(std::uint32_t chain, std::uint32_t a, std::uint32_t b) const {
+        std::uint32_t first = kNone;
+        for (const std::uint32_t h : graph_.half_edges(chain)) first = std::min(first, h);
+        const auto [v, w] =
+            std::minmax(cut_.charts[chart_at_[a]].version, cut_.charts[chart_at_[b]].version);
+        return {first, v, w};
+    }
+
+    void conclude(Trial& t) {
+        const std::array<const FlatChart*, 2> before{&cut_.charts[chart_at_[t.a]],
+                                                     &cut_.charts[chart_at_[t.b]]};
+        const std::array<const FlatChart*, 1> now{&t.flat};
+        if (!t.merged || !budget_.allows(before, now)) {
+            set_glued(t, false);
+            refused_[t.chain] = 1;
+            ++cut_.refused.merged[change(t.chain, t.a, t.b)];
+            return;
+        }
+        const std::uint32_t ca = chart_at_[t.a], cb = chart_at_[t.b];
+        budget_.spend(before, now);
+        graph_.glue(t.chain);
+        cut_.charts[ca] = std::move(t.flat);
+        cut_.charts[ca].version = ++cut_.versions;
+        cut_.charts[cb] = {};
+        chart_at_[t.a] = chart_at_[t.b] = kNone;
+        chart_at_[graph_.chart_of(cut_.charts[ca].mesh.triangles[0])] = ca;
+    }
+
+    const mesh::TriangleMesh& mesh_;
+    CutMesh& cut_;
+    const ChartOptions& options_;
+    const MergeOptions& merge_;
+    StretchBudget budget_;
+    Patch patch_;
+    SeamGraph graph_;
+    std::vector<std::uint32_t> chart_at_;  // by the triangle that stands for it in the graph
+    std::vector<std::uint8_t> refused_;    // by chain
+};
+
+}  // namespace
+
+void merge_charts(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options,
+                  const MergeOptions& merge, const ProgressFn& progress) {
+    Merger(mesh, cut, options, merge).run(progress);
+}
+
+}  // namespace tuft::atlas

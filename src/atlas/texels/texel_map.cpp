@@ -1,0 +1,371 @@
+#include "atlas/texels/texel_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atlas/texels/border_cells.h"
+#include "core/error.h"
+#include "core/parallel.h"
+
+namespace tuft::atlas {
+namespace {
+
+constexpr std::int64_t kSnap = 4096;  // sub-texel steps; 16384 texels × 4096 squared fits 64 bits
+const float kPieceCos = std::cos(35.0f * 0.0174532925f);
+const float kBendCos = std::cos(30.0f * 0.0174532925f);
+
+/// A triangle in the atlas on the snapped grid, counter-clockwise.
+struct SnappedTriangle {
+    std::array<std::int64_t, 3> x, y;
+    std::array<int, 3> corner{0, 1, 2};  ///< of the mesh triangle
+    std::int64_t area2 = 0;              ///< twice the area, snapped units²
+};
+
+std::int64_t floor_div(std::int64_t a, std::int64_t b) {  // b > 0
+    return a >= 0 ? a / b : -((-a + b - 1) / b);
+}
+
+std::int64_t snap(float uv, std::uint32_t size) {
+    const double texels = std::clamp(static_cast<double>(uv), 0.0, 1.0) * size;
+    return static_cast<std::int64_t>(std::floor(texels * kSnap + 0.5));
+}
+
+/// Area 0 for what cannot be drawn.
+SnappedTriangle snapped_triangle(const Atlas& atlas, std::size_t triangle) {
+    SnappedTriangle s{};
+    for (int k = 0; k < 3; ++k) {
+        const Vec2f uv = atlas.corner_uvs[3 * triangle + k];
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return s;
+        s.x[k] = snap(uv.x, atlas.size);
+        s.y[k] = snap(uv.y, atlas.size);
+    }
+    s.area2 = (s.x[1] - s.x[0]) * (s.y[2] - s.y[0]) - (s.y[1] - s.y[0]) * (s.x[2] - s.x[0]);
+    if (s.area2 < 0) {
+        std::swap(s.x[1], s.x[2]);
+        std::swap(s.y[1], s.y[2]);
+        std::swap(s.corner[1], s.corner[2]);
+        s.area2 = -s.area2;
+    }
+    return s;
+}
+
+/// Twice the area of (edge k → k+1, point): positive inside.
+std::int64_t edge_value(const SnappedTriangle& s, int k, std::int64_t x, std::int64_t y) {
+    const int l = (k + 1) % 3;
+    return (s.x[l] - s.x[k]) * (y - s.y[k]) - (s.y[l] - s.y[k]) * (x - s.x[k]);
+}
+
+/// First and last + 1 texel row whose centre may lie in the triangle.
+std::pair<std::int64_t, std::int64_t> row_range(const SnappedTriangle& s) {
+    const auto [lo, hi] = std::minmax({s.y[0], s.y[1], s.y[2]});
+    return {floor_div(lo - kSnap / 2 + kSnap - 1, kSnap), floor_div(hi - kSnap / 2, kSnap) + 1};
+}
+
+/// Columns [begin, end) of a texel row whose centres lie in the triangle. An edge that
+/// points up, or straight left, owns the centres on it.
+std::pair<std::int64_t, std::int64_t> column_range(const SnappedTriangle& s, std::int64_t row,
+                                                   std::int64_t size) {
+    const std::int64_t y = row * kSnap + kSnap / 2;
+    std::int64_t begin = 0, end = size;
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3;
+        const std::int64_t dx = s.x[l] - s.x[k], dy = s.y[l] - s.y[k];
+        const bool owns = dy > 0 || (dy == 0 && dx < 0);
+        // value(column) = at_zero − dy kSnap column must be > 0, or ≥ 0 on an edge that owns.
+        const std::int64_t at_zero = dx * (y - s.y[k]) - dy * (kSnap / 2 - s.x[k]);
+        const std::int64_t least = at_zero - (owns ? 0 : 1);  // integer: > 0 is ≥ 1
+        if (dy > 0) {
+            end = std::min(end, floor_div(least, dy * kSnap) + 1);
+        } else if (dy < 0) {
+            begin = std::max(begin, floor_div(-least + (-dy * kSnap) - 1, -dy * kSnap));
+        } else if (least < 0) {
+            return {0, 0};
+        }
+    }
+    return {begin, end};
+}
+
+/// Triangles by bands of 16 texel rows, in index order.
+struct Bands {
+    std::vector<std::size_t> start;
+    std::vector<std::uint32_t> triangles;
+};
+
+Bands sort_into_bands(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t n_bands) {
+    const std::size_t n = mesh.n_triangles();
+    std::vector<std::array<std::uint16_t, 2>> range(n);  // first band and last + 1
+    parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const SnappedTriangle s = snapped_triangle(atlas, i);
+            const auto [lo, hi] = row_range(s);
+            range[i] = {0, 0};
+            const std::int64_t last = std::min<std::int64_t>(hi, atlas.size);
+            if (s.area2 == 0 || lo >= last) continue;
+            range[i] = {static_cast<std::uint16_t>(lo / kTile),
+                        static_cast<std::uint16_t>((last - 1) / kTile + 1)};
+        }
+    });
+    Bands bands;
+    bands.start.assign(n_bands + 1, 0);
+    for (const auto& r : range) {
+        for (int b = r[0]; b < r[1]; ++b) ++bands.start[b + 1];
+    }
+    for (std::uint32_t b = 0; b < n_bands; ++b) bands.start[b + 1] += bands.start[b];
+    bands.triangles.resize(bands.start.back());
+    std::vector<std::size_t> next(bands.start.begin(), bands.start.end() - 1);
+    for (std::size_t i = 0; i < n; ++i) {
+        for (int b = range[i][0]; b < range[i][1]; ++b)
+            bands.triangles[next[b]++] = static_cast<std::uint32_t>(i);
+    }
+    return bands;
+}
+
+/// Calls visit(row in the band, first column, last column + 1, triangle).
+template <class Visit>
+void draw_band(const Atlas& atlas, const Bands& bands, std::size_t band, Visit&& visit) {
+    for (std::size_t i = bands.start[band]; i < bands.start[band + 1]; ++i) {
+        const std::uint32_t triangle = bands.triangles[i];
+        const SnappedTriangle s = snapped_triangle(atlas, triangle);
+        const auto [lo, hi] = row_range(s);
+        const std::int64_t band_row = static_cast<std::int64_t>(band) * kTile;
+        const std::int64_t first = std::max(lo, band_row);
+        const std::int64_t last = std::min({hi, band_row + kTile, std::int64_t{atlas.size}});
+        for (std::int64_t row = first; row < last; ++row) {
+            const auto [begin, end] = column_range(s, row, atlas.size);
+            if (begin < end) visit(static_cast<int>(row - band_row), begin, end, triangle);
+        }
+    }
+}
+
+/// Surface point, normal and area of the texel centre (x, y); returns the length in
+/// metres of the longest side of the texel's image.
+float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle,
+                  std::int64_t column, std::int64_t row, TexelShape& shape, float& texel_area,
+                  int texel) {
+    const SnappedTriangle s = snapped_triangle(atlas, triangle);
+    const std::int64_t x = column * kSnap + kSnap / 2, y = row * kSnap + kSnap / 2;
+    const double scale = 1.0 / static_cast<double>(s.area2);
+    Vec3 p{0}, n{0}, du{0}, dv{0};
+    for (int k = 0; k < 3; ++k) {  // corner k faces edge k+1 → k+2
+        const int l = (k + 1) % 3, o = (k + 2) % 3;
+        const double w = static_cast<double>(edge_value(s, l, x, y)) * scale;
+        const Vec3 corner = mesh.position(triangle, s.corner[k]);
+        p += w * corner;
+        n += w * Vec3(mesh.corner_normals[3 * std::size_t{triangle} + s.corner[k]]);
+        du += static_cast<double>(s.y[l] - s.y[o]) * scale * kSnap * corner;
+        dv += static_cast<double>(s.x[o] - s.x[l]) * scale * kSnap * corner;
+    }
+    const Vec3 area_vector = glm::cross(du, dv);
+    const double area = glm::length(area_vector);
+    double length = glm::length(n);
+    if (!(length > 1e-6)) {
+        const Vec3 face = glm::cross(mesh.position(triangle, 1) - mesh.position(triangle, 0),
+                                     mesh.position(triangle, 2) - mesh.position(triangle, 0));
+        length = glm::length(face);
+        n = length > 0 ? face : Vec3{0, 0, 1};
+        if (!(length > 0)) length = 1;
+    }
+    shape.px[texel] = static_cast<float>(p.x);
+    shape.py[texel] = static_cast<float>(p.y);
+    shape.pz[texel] = static_cast<float>(p.z);
+    shape.nx[texel] = static_cast<float>(n.x / length);
+    shape.ny[texel] = static_cast<float>(n.y / length);
+    shape.nz[texel] = static_cast<float>(n.z / length);
+    texel_area = static_cast<float>(area);
+    return static_cast<float>(std::sqrt(glm::dot(du, du) + glm::dot(dv, dv)));
+}
+
+bool hang_together(const TexelShape& shape, int a, int b, float reach) {
+    const float dx = shape.px[a] - shape.px[b], dy = shape.py[a] - shape.py[b],
+                dz = shape.pz[a] - shape.pz[b];
+    return dx * dx + dy * dy + dz * dz <= reach * reach;
+}
+
+/// Grows the piece `piece` from `seed` over unassigned texels of the same chart in the same square of
+/// `side` × `side` texels.
+void grow_piece(const TexelShape& shape, TexelTile& tile,
+                const std::array<std::uint32_t, kTileTexels>& chart, float reach, int seed,
+                std::uint8_t piece, float min_cos, int side) {
+    std::array<std::uint8_t, kTileTexels> open;
+    int n_open = 0;
+    const float nx = shape.nx[seed], ny = shape.ny[seed], nz = shape.nz[seed];
+    tile.piece[seed] = piece;
+    open[n_open++] = static_cast<std::uint8_t>(seed);
+    while (n_open > 0) {
+        const int a = open[--n_open];
+        const int ax = a % kTile, ay = a / kTile;
+        for (int by = std::max(ay - 1, 0); by <= std::min(ay + 1, kTile - 1); ++by) {
+            for (int bx = std::max(ax - 1, 0); bx <= std::min(ax + 1, kTile - 1); ++bx) {
+                const int b = by * kTile + bx;
+                if (tile.piece[b] != kNoPiece || chart[b] != chart[seed]) continue;
+                if (((bx ^ seed % kTile) | (by ^ seed / kTile)) & ~(side - 1)) continue;
+                const float c = shape.nx[b] * nx + shape.ny[b] * ny + shape.nz[b] * nz;
+                if (c < min_cos || !hang_together(shape, a, b, reach)) continue;
+                tile.piece[b] = piece;
+                open[n_open++] = static_cast<std::uint8_t>(b);
+            }
+        }
+    }
+}
+
+/// Whether normals stray so far from their mean that what lies beyond the tile unrolls otherwise from one
+/// of its ends than from the other: folds, and walls that run round a corner. A quarter of such a tile is
+/// still near enough to a plane or a cylinder; raw scans stray less (of the armadillo's tiles at 4096² one
+/// in fifty does).
+bool bends(const TexelShape& shape, const std::array<std::uint32_t, kTileTexels>& chart) {
+    const auto normal = [&](int t) { return Vec3f{shape.nx[t], shape.ny[t], shape.nz[t]}; };
+    Vec3f sum{0};
+    for (int t = 0; t < kTileTexels; ++t)
+        if (chart[t] != kNone) sum += normal(t);
+    const float least = kBendCos * glm::length(sum);
+    for (int t = 0; t < kTileTexels; ++t)
+        if (chart[t] != kNone && glm::dot(sum, normal(t)) < least) return true;
+    return false;
+}
+
+/// Splits the tile's texels (those with a chart) into pieces; returns the chart of each.
+/// A tile so rough that it would need more than 254 is split by charts and gaps alone;
+/// texels beyond that (one-texel charts side by side) are given up.
+std::vector<std::uint32_t> split_into_pieces(const TexelShape& shape, TexelTile& tile,
+                                             const std::array<std::uint32_t, kTileTexels>& chart,
+                                             float reach) {
+    const int side = bends(shape, chart) ? kTile / 2 : kTile;
+    for (const float min_cos : {kPieceCos, -2.0f}) {
+        std::vector<std::uint32_t> charts;
+        tile.piece.fill(kNoPiece);
+        bool all = true;
+        for (int t = 0; t < kTileTexels; ++t) {
+            if (chart[t] == kNone || tile.piece[t] != kNoPiece) continue;
+            all = charts.size() < kNoPiece;
+            if (!all) break;
+            grow_piece(shape, tile, chart, reach, t, static_cast<std::uint8_t>(charts.size()), min_cos, side);
+            charts.push_back(chart[t]);
+        }
+        if (all || min_cos < -1) return charts;
+    }
+    return {};
+}
+
+/// Fills one tile from the triangle of each of its texels; returns the charts of its pieces.
+std::vector<std::uint32_t> fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas,
+                                     std::uint32_t tile_index, std::uint32_t tiles_per_side,
+                                     const std::uint32_t* ids, TexelShape& shape, TexelTile& tile,
+                                     float& reach) {
+    const std::int64_t x0 = std::int64_t{tile_index % tiles_per_side} * kTile;
+    const std::int64_t y0 = std::int64_t{tile_index / tiles_per_side} * kTile;
+    std::array<std::uint32_t, kTileTexels> chart;
+    double side = 0;
+    int n = 0;
+    for (int t = 0; t < kTileTexels; ++t) {
+        chart[t] = kNone;
+        const std::int64_t x = x0 + t % kTile, y = y0 + t / kTile;
+        if (x >= atlas.size) continue;
+        const std::uint32_t id = ids[static_cast<std::size_t>(t / kTile) * atlas.size + x];
+        if (id == kNone) continue;
+        chart[t] = atlas.triangle_chart[id];
+        side += shade_texel(mesh, atlas, id, x, y, shape, tile.area[t], t);
+        ++n;
+    }
+    // Mean diagonal of a texel, with room for stretch that varies inside the tile.
+    reach = n > 0 ? static_cast<float>(3 * side / n) : 0;
+    return split_into_pieces(shape, tile, chart, reach);
+}
+
+double mean_texel_size(const TexelMap& map) {
+    double area = 0;
+    std::size_t n = 0;
+    for (const TexelTile& tile : map.tiles) {
+        for (int t = 0; t < kTileTexels; ++t) {
+            area += tile.area[t];
+            n += tile.piece[t] != kNoPiece;
+        }
+    }
+    return n > 0 ? std::sqrt(area / static_cast<double>(n)) : 0;
+}
+
+void check_sizes(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
+    const std::size_t n = mesh.n_triangles();
+    if (atlas.size == 0 || atlas.size > 16384)
+        throw Error("atlas size " + std::to_string(atlas.size) + " is not between 1 and 16384");
+    if (atlas.corner_uvs.size() != 3 * n || atlas.triangle_chart.size() != n ||
+        mesh.corner_normals.size() != 3 * n)
+        throw Error("the atlas was made for another mesh");
+}
+
+}  // namespace
+
+TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
+                         const ProgressFn& progress, TexelStore store) {
+    check_sizes(mesh, atlas);
+    report(progress, "texel map", 0);
+    TexelMap map;
+    map.size = atlas.size;
+    map.tiles_per_side = (atlas.size + kTile - 1) / kTile;
+    map.texel_size = atlas.texel_size;
+    const std::uint32_t side = map.tiles_per_side;
+    const Bands bands = sort_into_bands(mesh, atlas, side);
+
+    std::vector<std::uint8_t> occupied(std::size_t{side} * side, 0);
+    parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t band = begin; band < end; ++band) {
+            draw_band(atlas, bands, band,
+                      [&](int, std::int64_t x0, std::int64_t x1, std::uint32_t) {
+                          for (std::int64_t tx = x0 / kTile; tx <= (x1 - 1) / kTile; ++tx)
+                              occupied[band * side + tx] = 1;
+                      });
+        }
+    });
+    map.slot_of_tile.assign(occupied.size(), kNone);
+    for (std::size_t i = 0; i < occupied.size(); ++i) {
+        if (!occupied[i]) continue;
+        map.slot_of_tile[i] = static_cast<std::uint32_t>(map.tile_of_slot.size());
+        map.tile_of_slot.push_back(static_cast<std::uint32_t>(i));
+    }
+    report(progress, "texel map", 0.2);
+
+    const std::size_t n_slots = map.tile_of_slot.size();
+    const bool packed = is_packed(store, atlas.size);
+    map.tiles.resize(n_slots);
+    map.shapes.resize(packed ? 0 : n_slots);
+    map.packed.resize(packed ? n_slots : 0);
+    map.reach.assign(n_slots, 0);
+    std::vector<std::vector<PackedBox>> boxes(packed ? n_slots : 0);
+    std::vector<std::vector<std::uint32_t>> charts(n_slots);
+    parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> ids;
+        TexelShape room{};
+        for (std::size_t band = begin; band < end; ++band) {
+            ids.assign(std::size_t{kTile} * atlas.size, kNone);
+            draw_band(atlas, bands, band,
+                      [&](int row, std::int64_t x0, std::int64_t x1, std::uint32_t triangle) {
+                          std::uint32_t* line = ids.data() + std::size_t(row) * atlas.size;
+                          for (std::int64_t x = x0; x < x1; ++x)
+                              line[x] = std::min(line[x], triangle);
+                      });
+            for (std::uint32_t tx = 0; tx < side; ++tx) {
+                const std::uint32_t tile = static_cast<std::uint32_t>(band * side + tx);
+                const std::uint32_t slot = map.slot_of_tile[tile];
+                if (slot == kNone) continue;
+                TexelShape& shape = packed ? room : map.shapes[slot];
+                charts[slot] = fill_tile(mesh, atlas, tile, side, ids.data(), shape,
+                                         map.tiles[slot], map.reach[slot]);
+                if (!packed) continue;
+                boxes[slot].resize(charts[slot].size());
+                map.packed[slot] = pack_shape(shape, map.tiles[slot], boxes[slot]);
+            }
+        }
+    });
+    if (!(map.texel_size > 0)) map.texel_size = mean_texel_size(map);
+    map.piece_start.assign(1, 0);
+    for (const auto& c : charts) {
+        map.piece_chart.insert(map.piece_chart.end(), c.begin(), c.end());
+        map.piece_start.push_back(static_cast<std::uint32_t>(map.piece_chart.size()));
+    }
+    for (const auto& b : boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
+    for (const BorderCell& c : build_border_cells(mesh, atlas, map).cells)
+        map.tiles[c.texel.slot].area[c.texel.texel] = static_cast<float>(c.area);
+    report(progress, "texel map", 1);
+    return map;
+}
+
+}  // namespace tuft::atlas

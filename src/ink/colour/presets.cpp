@@ -1,0 +1,166 @@
+#include "ink/colour/presets.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/files.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::ink::preset {
+namespace {
+
+constexpr std::size_t kMaxBytes = 1 << 20;
+
+}  // namespace
+
+void Reader::only(std::initializer_list<std::string_view> keys) const {
+    for (const auto& [key, value] : table_) {
+        if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+        const std::vector<std::string> known(keys.begin(), keys.end());
+        const std::string near = nearest_name(key.str(), known);
+        fail(key.source().begin.line, "unknown key '" + std::string(key.str()) + "'" +
+                                          (near.empty() ? "" : ", did you mean '" + near + "'?"));
+    }
+}
+
+double Reader::number(std::string_view key, double lo, double hi,
+                      std::optional<double> fallback) const {
+    const toml::node* node = table_.get(key);
+    if (!node) {
+        if (!fallback) fail(line(), "'" + std::string(key) + "' is missing");
+        return *fallback;
+    }
+    return in_range(*node, key, lo, hi);
+}
+
+Rgb Reader::rgb(std::string_view key, double lo, double hi) const {
+    const toml::array& values = array(key);
+    if (values.size() != 3)
+        fail(line_of(key), "'" + std::string(key) + "' must be 3 numbers (red, green, blue)");
+    Rgb result;
+    for (std::size_t b = 0; b < 3; ++b)
+        result[b] = static_cast<float>(in_range(*values.get(b), key, lo, hi));
+    return result;
+}
+
+std::vector<float> Reader::numbers(std::string_view key, std::size_t min, std::size_t max, double lo,
+                                   double hi) const {
+    const toml::array& values = array(key);
+    if (values.size() < min || values.size() > max)
+        fail(line_of(key), "'" + std::string(key) + "' must be " + std::to_string(min) +
+                               (min == max ? "" : " to " + std::to_string(max)) + " numbers, not " +
+                               std::to_string(values.size()));
+    std::vector<float> result;
+    for (const toml::node& node : values)
+        result.push_back(static_cast<float>(in_range(node, key, lo, hi)));
+    return result;
+}
+
+std::string Reader::text(std::string_view key, std::optional<std::string> fallback) const {
+    const toml::node* node = table_.get(key);
+    if (!node) {
+        if (!fallback) fail(line(), "'" + std::string(key) + "' is missing");
+        return *fallback;
+    }
+    const auto value = node->value<std::string>();
+    if (!value || !node->is_string())
+        fail(node->source().begin.line, "'" + std::string(key) + "' must be text");
+    return *value;
+}
+
+void Reader::fail(long at, const std::string& what) const {
+    throw Error(source_, at, what);
+}
+
+long Reader::line_of(std::string_view key) const {
+    const toml::node* node = table_.get(key);
+    return node ? static_cast<long>(node->source().begin.line) : line();
+}
+
+double Reader::in_range(const toml::node& node, std::string_view key, double lo, double hi) const {
+    const auto value = node.value<double>();
+    if (!value || !node.is_number())
+        fail(node.source().begin.line, "'" + std::string(key) + "' must be a number");
+    if (!(*value >= lo && *value <= hi)) {
+        std::ostringstream range;
+        range << "'" << key << "' must lie in [" << lo << ", " << hi << "], not be " << *value;
+        fail(node.source().begin.line, range.str());
+    }
+    return *value;
+}
+
+const toml::array& Reader::array(std::string_view key) const {
+    const toml::node* node = table_.get(key);
+    if (!node) fail(line(), "'" + std::string(key) + "' is missing");
+    if (!node->as_array()) fail(line_of(key), "'" + std::string(key) + "' must be a list of numbers");
+    return *node->as_array();
+}
+
+toml::table parse_table(std::string_view text, const std::string& source) {
+    try {
+        return toml::parse(text);
+    } catch (const toml::parse_error& e) {
+        throw Error(source, e.source().begin.line, std::string(e.description()));
+    }
+}
+
+std::vector<std::string> list(const char* folder) {
+    std::vector<std::string> names;
+    std::error_code ec;
+    for (const auto& entry : fs::directory_iterator(data_folder() / "models" / folder, ec))
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Text load(std::string_view name, const char* folder, const char* kind) {
+    fs::path path(name);
+    if (path.extension() != ".toml") {
+        const std::vector<std::string> known = list(folder);
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            const std::string near = nearest_name(name, known);
+            std::string all;
+            for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
+            throw Error("unknown " + std::string(kind) + " '" + std::string(name) + "'" +
+                        (near.empty() ? "; there are: " + all : ", did you mean '" + near + "'?"));
+        }
+        path = data_folder() / "models" / folder / (std::string(name) + ".toml");
+    }
+    const std::vector<char> bytes = read_file(path, kMaxBytes);
+    return {{bytes.begin(), bytes.end()}, path.string(), path.stem().string()};
+}
+
+std::string quoted(const std::string& text) {
+    std::ostringstream out;
+    out << toml::value<std::string>(text);
+    return out.str();
+}
+
+std::string shortest(double v) {
+    std::ostringstream out;
+    out << toml::value<double>(v);
+    return out.str();
+}
+
+std::string shortest_float(float v) {
+    char buffer[32];
+    for (int digits = 6; digits <= 9; ++digits) {
+        std::snprintf(buffer, sizeof buffer, "%.*g", digits, static_cast<double>(v));
+        if (static_cast<float>(std::strtod(buffer, nullptr)) == v) break;
+    }
+    return buffer;
+}
+
+std::string list_text(std::span<const float> values) {
+    std::string out = "[";
+    for (std::size_t i = 0; i < values.size(); ++i)
+        out += (i ? ", " : "") + shortest_float(values[i]);
+    return out + "]";
+}
+
+}  // namespace tuft::ink::preset

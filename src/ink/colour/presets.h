@@ -1,0 +1,60 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ink/colour/spectrum.h"
+
+/// Reading and writing preset files; only the room's own sources see this.
+namespace tuft::ink::preset {
+
+/// A table of a preset file, with errors that name file and line.
+class Reader {
+  public:
+    Reader(const toml::table& table, const std::string& source) : table_(table), source_(source) {}
+
+    /// Refuses every other key.
+    void only(std::initializer_list<std::string_view> keys) const;
+    bool has(std::string_view key) const { return table_.contains(key); }
+    double number(std::string_view key, double lo, double hi, std::optional<double> fallback) const;
+    Rgb rgb(std::string_view key, double lo, double hi) const;
+    /// A list of `min` to `max` numbers.
+    std::vector<float> numbers(std::string_view key, std::size_t min, std::size_t max, double lo,
+                               double hi) const;
+    std::string text(std::string_view key, std::optional<std::string> fallback) const;
+    [[noreturn]] void fail(long line, const std::string& what) const;
+    long line() const { return table_.source().begin.line; }
+    long line_of(std::string_view key) const;
+
+  private:
+    double in_range(const toml::node& node, std::string_view key, double lo, double hi) const;
+    const toml::array& array(std::string_view key) const;
+
+    const toml::table& table_;
+    const std::string& source_;
+};
+
+/// Throws `Error` with file and line.
+toml::table parse_table(std::string_view text, const std::string& source);
+
+/// Names of the files in models/`folder`, sorted.
+std::vector<std::string> list(const char* folder);
+
+struct Text {
+    std::string text, source, name;
+};
+/// The preset of that name in models/`folder`, or the file when it ends in ".toml"; `kind` is
+/// what to call it in messages.
+Text load(std::string_view name, const char* folder, const char* kind);
+
+std::string quoted(const std::string& text);    ///< TOML basic string
+std::string shortest(double v);                 ///< TOML number
+std::string shortest_float(float v);            ///< fewest digits that read back as the same float
+std::string list_text(std::span<const float> values);
+
+}  // namespace tuft::ink::preset

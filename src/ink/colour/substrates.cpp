@@ -1,0 +1,70 @@
+#include "ink/colour/pigments.h"
+#include "ink/colour/presets.h"
+
+namespace tuft::ink {
+
+using preset::list_text;
+using preset::quoted;
+using preset::shortest_float;
+
+Substrate parse_substrate(std::string_view text, const std::string& source) {
+    const toml::table table = preset::parse_table(text, source);
+    const preset::Reader in(table, source);
+    in.only({"name", "title", "reflectance", "roughness", "metallic", "capacity", "interface",
+             "relief_um", "relief_length_um", "absorbency", "pores", "retention", "diffusion", "threshold", "edge",
+             "evaporation", "source"});
+    Substrate s;
+    const auto read = [&](float& field, std::string_view key, double lo, double hi,
+                          double unit = 1) {
+        const double value = in.number(key, lo, hi, static_cast<double>(field) / unit);
+        field = static_cast<float>(value * unit);
+    };
+    s.name = in.text("name", "");
+    s.title = in.text("title", s.name);
+    s.reflectance = in.rgb("reflectance", 0, 1);
+    s.roughness = static_cast<float>(in.number("roughness", 0, 1, 0.5));
+    s.metallic = static_cast<float>(in.number("metallic", 0, 1, 0.0));
+    s.capacity = static_cast<float>(in.number("capacity", 0.1, 1000, 8.0));
+    read(s.interface, "interface", 0, 1);
+    read(s.relief, "relief_um", 0, 1000, 1e-6);
+    read(s.relief_length, "relief_length_um", 1, 10000, 1e-6);
+    read(s.absorbency, "absorbency", 0, 100);
+    read(s.pores, "pores", 0, 1000);
+    read(s.retention, "retention", 0, 1);
+    read(s.diffusion, "diffusion", 0, 1e-4);
+    read(s.threshold, "threshold", 0, 10);
+    read(s.edge, "edge", 0, 1);
+    read(s.evaporation, "evaporation", 0, 10);
+    return s;
+}
+
+std::string substrate_toml(const Substrate& s) {
+    return "name = " + quoted(s.name) + "\ntitle = " + quoted(s.title) +
+           "\nreflectance = " + list_text(s.reflectance) +
+           "\nroughness = " + shortest_float(s.roughness) +
+           "\nmetallic = " + shortest_float(s.metallic) +
+           "\ncapacity = " + shortest_float(s.capacity) +
+           "\ninterface = " + shortest_float(s.interface) +
+           "\nrelief_um = " + shortest_float(s.relief * 1e6f) +
+           "\nrelief_length_um = " + shortest_float(s.relief_length * 1e6f) +
+           "\nabsorbency = " + shortest_float(s.absorbency) +
+           "\npores = " + shortest_float(s.pores) +
+           "\nretention = " + shortest_float(s.retention) +
+           "\ndiffusion = " + shortest_float(s.diffusion) +
+           "\nthreshold = " + shortest_float(s.threshold) +
+           "\nedge = " + shortest_float(s.edge) +
+           "\nevaporation = " + shortest_float(s.evaporation) + "\n";
+}
+
+Substrate load_substrate(std::string_view name) {
+    const preset::Text text = preset::load(name, "substrates", "substrate");
+    Substrate substrate = parse_substrate(text.text, text.source);
+    if (substrate.name.empty()) substrate.name = text.name;
+    return substrate;
+}
+
+std::vector<std::string> list_substrates() {
+    return preset::list("substrates");
+}
+
+}  // namespace tuft::ink

@@ -1,0 +1,500 @@
+#include "ink/film/film.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "ink/film/drying.h"
+#include "ink/film/film_list.h"
+
+namespace tuft::ink {
+namespace {
+
+using namespace wet;
+
+constexpr std::size_t kLines = 14;     // of memory asked for at once: as many as the processor waits for
+constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and drying
+// What may leave a texel in one step, of what it has: less than all of it together.
+constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
+constexpr double kSeamStiffness = 2;     // what links add to it; all that flows out of a texel stays below what it has
+constexpr double kBeadStep = 0.05;     // seconds: a bead goes a texel or a few
+constexpr double kLeastMixing = 2e-10; // m²/s
+constexpr double kStirring = 0.02;     // film units: mixing over mobility
+constexpr double kMostUneven = 1.2;
+constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
+constexpr double kRimLength = 1e-3;    // metres: what the rim of a wet spot adds to its area, as for drying
+
+/// What goes over a link for pigments: dp = −out p(texel) + in p(other).
+struct Carried {
+    std::uint8_t texel, other_texel;
+    std::uint32_t other;  ///< place in the list
+    float out, in;
+};
+
+/// Memory that will be needed soon. Planes lie here and there, and the processor waits long for each line
+/// that it does not expect, but it can wait for a dozen at once: some between one loop and the next.
+struct Ahead {
+    std::array<const char*, 512> lines;
+    std::size_t n = 0, at = 0;
+
+    void clear() { n = at = 0; }
+    void add(const void* from, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; from && i < end && n < lines.size(); i += 64)
+            lines[n++] = static_cast<const char*>(from) + i;
+    }
+    void fetch(std::size_t count) {
+        // Into the second cache: the first is full of what is being worked on.
+        for (const std::size_t end = std::min(n, at + count); at < end; ++at) __builtin_prefetch(lines[at], 0, 2);
+    }
+};
+
+/// What a thread works with.
+struct Worker {
+    Work work;
+    Ahead ahead;
+    std::vector<Carried> carried;
+    std::deque<PlanePtr> spare;  ///< planes that nobody reads any more
+};
+
+/// Copies a plane with a border of one texel from the tiles around; absent planes are zeros, and
+/// so are tiles that are not in the list: nothing there can move.
+template <class PlaneOf>
+bool load(Field& field, const std::vector<Sources>& sources, const std::array<std::uint32_t, 9>& around,
+          PlaneOf&& plane_of) {
+    static constexpr Plane kDry{};
+    std::array<const float*, 9> planes;
+    bool any = false;
+    for (int i = 0; i < 9; ++i) {
+        const Plane* plane = around[i] == kNone ? nullptr : plane_of(sources[around[i]]);
+        any |= plane != nullptr;
+        planes[i] = (plane ? plane : &kDry)->data();
+    }
+    if (any) gather(field, planes);
+    return any;
+}
+
+/// Of a tile's `others`.
+const Beyond* other_of(const Active& tile, std::uint32_t slot) {
+    return &*std::lower_bound(tile.others.begin(), tile.others.end(), slot, [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+}
+
+float at(const Plane* plane, int t) { return plane ? (*plane)[t] : 0; }
+
+bool all_zero(const Plane& plane) {
+    return std::all_of(plane.begin(), plane.end(), [](float v) { return v == 0.0f; });
+}
+
+}  // namespace
+
+FilmParams film_params(const Substrate& substrate, const Vec3& down) {
+    FilmParams p;
+    p.mobility = static_cast<double>(substrate.diffusion);
+    // Wet in wet, surface tension stirs more than molecules move: as wide as water itself spreads.
+    p.mixing = std::max(kLeastMixing, kStirring * p.mobility);
+    p.threshold = static_cast<double>(substrate.threshold);
+    p.pin = 2 * static_cast<double>(substrate.edge);
+    p.absorbency = static_cast<double>(substrate.absorbency);
+    p.pores = static_cast<double>(substrate.pores);
+    p.retention = static_cast<double>(substrate.retention);
+    p.evaporation = static_cast<double>(substrate.evaporation);
+    p.rim_evaporation = p.evaporation * static_cast<double>(substrate.edge) * kRimLength;
+    p.stain = p.pores / (p.pores + 2);
+    if (substrate.pores > 0)
+        p.unevenness = kMostUneven * static_cast<double>(substrate.relief) / (static_cast<double>(substrate.relief) + kFilmHeight);
+    if (glm::length(down) > 0) p.down = glm::normalize(down);
+    return p;
+}
+
+struct WetFilm::State : TileList {
+    std::vector<std::uint8_t> told;
+    std::unique_ptr<Drips> drips;
+    std::vector<Sources> sources;  ///< of the list; empty: not looked up yet
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
+
+    using TileList::TileList;
+
+    std::unique_ptr<Worker> take_worker() {
+        const std::lock_guard lock(mutex);
+        if (workers.empty()) return std::make_unique<Worker>();
+        auto worker = std::move(workers.back());
+        workers.pop_back();
+        return worker;
+    }
+    void give_back(std::unique_ptr<Worker> worker) {
+        const std::lock_guard lock(mutex);
+        workers.push_back(std::move(worker));
+    }
+
+    /// Planes for films to come are kept: making them costs as much as a step.
+    void end(const Canvas& canvas) {
+        list.clear();
+        sources.clear();
+        if (!canvas.wet()) workers.clear();
+    }
+
+    void tell(std::uint32_t slot, const BeforeFn& before) {
+        if (!before || told[slot]) return;
+        told[slot] = 1;
+        before(slot);
+    }
+
+    /// Beads run for the time of a step. Whether any did.
+    bool run_beads(Canvas& canvas, const FilmParams& params, double dt, const BeforeFn& before) {
+        if (!(glm::length(params.down) > 0)) return false;
+        const std::vector<Drips::Seed> seeds = seeds_of_beads(canvas, params);
+        if (seeds.empty()) return false;
+        if (!drips) drips = std::make_unique<Drips>(map, seams, ground().free);
+        const std::vector<std::uint32_t> written =
+            drips->run(canvas, seeds, params, dt, [&](std::uint32_t slot) { tell(slot, before); });
+        if (written.empty()) return false;
+        look_at(canvas, written);
+        return true;
+    }
+
+    void prepare(const Canvas& canvas) {
+        sources.resize(list.size());
+        parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                auto& g = geometry[list[i].slot];
+                if (!g) g = std::make_unique<Geometry>(make_geometry(map, seams, list[i].slot, ground()));
+                list[i].stiffness = g->stiffness;
+                list[i].geometry = g.get();
+                list[i].diagonals = g->gd.get();
+                find_planes(canvas, i);
+            }
+        });
+    }
+
+    /// The longest stable step, seconds, and its rates.
+    double choose(const FilmParams& p, double left, bool beads, Step& step) const {
+        const double area = map.texel_size * map.texel_size;
+        const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
+        double stiffness = 4, most_w = 0, most_s = 0;
+        for (const Active& tile : list) {
+            stiffness = std::max(stiffness, static_cast<double>(tile.stiffness) + (tile.links.empty() ? 0 : kSeamStiffness));
+            most_w = std::max(most_w, static_cast<double>(tile.outcome.most_w));
+            most_s = std::max(most_s, static_cast<double>(tile.outcome.most_s));
+        }
+        double dt = beads ? kBeadStep : kLongestStep;
+        const double free = std::max(0.0, most_w - p.hold);
+        const double flow = stiffness / area *
+                            std::max(p.mobility * (most_w - p.threshold) + levelling * free,
+                                     p.pores > 0 ? p.mobility * most_s : 0.0);
+        if (flow > 0) dt = std::min(dt, kFlowPart / flow);
+        const double mixing = p.mixing / area * stiffness;
+        if (mixing > 0) dt = std::min(dt, kMixingPart / mixing);
+        dt = std::max(dt, p.shortest_step);
+        dt = left / std::ceil(left / dt * (1 - 1e-12));
+        step.flow = static_cast<float>(p.mobility * dt / area);
+        step.levelling = static_cast<float>(levelling * dt / area);
+        step.limit = static_cast<float>(kFlowPart / stiffness);
+        step.threshold = static_cast<float>(p.threshold);
+        step.pin = static_cast<float>(p.pin);
+        step.mixing = static_cast<float>(std::min(p.mixing * dt / area, kMixingPart / stiffness));
+        step.grip = static_cast<float>(p.grip);
+        step.soak = static_cast<float>(-std::expm1(-p.absorbency * dt));
+        step.pores = static_cast<float>(p.pores);
+        step.passing = static_cast<float>(1 - p.retention);
+        step.evaporation = static_cast<float>(p.evaporation * dt);
+        step.rim = static_cast<float>(p.rim_evaporation * dt / (map.texel_size * p.rim_depth));
+        step.rim_depth = static_cast<float>(p.rim_depth);
+        step.hold = static_cast<float>(p.hold);
+        return dt;
+    }
+
+    /// Fluxes over the seams of a tile: added to dw, ds; what pigments need is kept.
+    void seam_fluxes(std::size_t index, const Step& step, bool thin, Work& work, std::vector<Carried>& carried) const {
+        const Active& tile = list[index];
+        const Geometry& g = *geometry[tile.slot];
+        carried.clear();
+        const Sources& mine = sources[index];
+        std::uint32_t slot = kNone, other = kNone;
+        for (const atlas::SeamLink& l : tile.links) {
+            if (slot != l.other_slot) {
+                slot = l.other_slot;
+                other = other_of(tile, slot)->place;
+            }
+            const std::array<float, 2> here{at(mine.liquid[0], l.texel), at(mine.liquid[1], l.texel)};
+            std::array<float, 2> there{};
+            if (other != kNone)
+                there = {at(sources[other].liquid[0], l.other_texel), at(sources[other].liquid[1], l.other_texel)};
+            const float t = here[0] + here[1], u = there[0] + there[1];
+            thin = thin || u < step.rim_depth;
+            if (!(t + u > 0) || other == kNone) continue;
+            // One order for both sides, so that both have the same numbers.
+            const bool first = tile.slot != l.other_slot ? tile.slot < l.other_slot : l.texel < l.other_texel;
+            const bool both = t > 0 && u > 0;  // then what pins rims has no say, and lies in memory far away
+            const float g0 = both ? 0 : g.grain[field_of(l.texel)];
+            const float g1 = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
+            const float apart = static_cast<float>(l.apart) / 64;
+            const SeamFlux f = first ? seam_flux(l.weight, apart, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
+                                     : seam_flux(l.weight, apart, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
+            const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
+            work.dw[l.texel] += sign * f.w * inverse;
+            work.ds[l.texel] += sign * f.s * inverse;
+            carried.push_back({l.texel, l.other_texel, other, first ? f.a : -f.b, first ? -f.b : f.a});
+        }
+        if (step.rim > 0 && thin) slopes_over_seams(index, step, work);
+    }
+
+    /// `rim_slope` of the texels whose neighbours lie over a seam.
+    void slopes_over_seams(std::size_t index, const Step& step, Work& work) const {
+        const Active& tile = list[index];
+        const Geometry& g = *geometry[tile.slot];
+        const Beyond* other = tile.others.data();
+        for (std::size_t i = 0; i < tile.taps.size();) {
+            const std::uint8_t texel = tile.taps[i].texel;
+            const int k = field_of(texel), column = texel % kSide, row = texel / kSide;
+            const float here = std::min(work.total[k], step.rim_depth);
+            std::array<float, 4> beyond{};
+            std::array<bool, 4> tapped{};
+            for (; i < tile.taps.size() && tile.taps[i].texel == texel; ++i) {
+                const atlas::SeamTap& tap = tile.taps[i];
+                tapped[tap.side] = true;
+                if (tap.other_slot == kNone) {
+                    beyond[tap.side] += tap.weight * work.total[k + tap.other_texel % 3 - 1 + (tap.other_texel / 3 - 1) * kRow];
+                    continue;
+                }
+                if (other->slot != tap.other_slot) other = other_of(tile, tap.other_slot);
+                if (other->place == kNone) continue;
+                const Sources& there = sources[other->place];
+                beyond[tap.side] += tap.weight * (at(there.liquid[0], tap.other_texel) + at(there.liquid[1], tap.other_texel));
+            }
+            if (!(here > 0)) continue;
+            const auto drop = [&](int side, int conductance, int neighbour) {
+                if (conductance == 0 && !tapped[side]) return 0.0f;
+                return std::max(0.0f, here - (tapped[side] ? std::max(0.0f, beyond[side]) : work.total[neighbour]));
+            };
+            const int side = Geometry::right_of(column, row);
+            const float across = drop(0, g.gx[side], k + 1) + drop(2, g.gx[side - 1], k - 1);
+            const float along = drop(1, g.gy[texel + kSide], k + kRow) + drop(3, g.gy[texel], k - kRow);
+            work.rim_slope[texel] = std::sqrt(across * across + along * along);
+        }
+    }
+
+    void compute(std::size_t index, int pigments, const Step& step, std::uint64_t number, Worker& worker) {
+        Active& tile = list[index];
+        Work& work = worker.work;
+        const Geometry& g = *geometry[tile.slot];
+        const bool any_w = load(work.w, sources, tile.around, [](const Sources& a) { return a.liquid[0]; });
+        if (!any_w) work.w.fill(0);
+        const bool any_s = load(work.s, sources, tile.around, [](const Sources& a) { return a.liquid[1]; });
+        if (!any_s) work.s.fill(0);
+        Ahead& ahead = worker.ahead;
+        ahead.fetch(kLines);
+        const bool thin = fluxes(work, g, step);
+        ahead.fetch(2 * kLines);
+        liquid_changes(work, g, step);
+        ahead.fetch(kLines);
+        seam_fluxes(index, step, thin, work, worker.carried);
+        // From what is there and nothing else: the same whenever this journal is painted.
+        const std::uint64_t seed =
+            hash_bits(hash_bits(tile.slot, number),
+                      std::bit_cast<std::uint32_t>(tile.outcome.most_w + tile.outcome.most_s));
+        const Outcome before = tile.outcome;
+        const bool seam_was = tile.seam_wet;
+        tile.outcome = {};
+        tile.pigments = 0;
+        tile.idle = !any_w && !any_s && worker.carried.empty();
+        if (tile.idle) return;
+        give(tile.w, worker);
+        give(tile.s, worker);
+        std::array<std::uint8_t, kTexels> closing;
+        ahead.fetch(kLines);
+        tile.outcome = local_step(tile.w->data(), tile.s->data(), work, g, step, seed, closing);
+        if (tile.outcome.closing) {
+            if (!tile.closing) tile.closing = std::make_unique<std::array<std::uint8_t, kTexels>>();
+            *tile.closing = closing;
+        }
+        tile.seam_wet = false;
+        for (const atlas::SeamLink& l : tile.links)
+            tile.seam_wet = tile.seam_wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
+        tile.spreads = before.sides != tile.outcome.sides || seam_was != tile.seam_wet ||
+                       (before.most_w + before.most_s > 0) != tile.wet();
+        for (int p = 0; p < pigments; ++p) compute_pigment(index, p, seed + 1 + static_cast<std::uint64_t>(p), worker);
+    }
+
+    void compute_pigment(std::size_t index, int p, std::uint64_t seed, Worker& worker) {
+        Active& tile = list[index];
+        Work& work = worker.work;
+        const Geometry& g = *geometry[tile.slot];
+        bool any = load(work.p, sources, tile.around, [p](const Sources& a) { return a.open[p]; });
+        if (!any) work.p.fill(0);
+        for (const Carried& c : worker.carried) any = any || sources[c.other].open[p];
+        if (!any) return;
+        worker.ahead.fetch(kLines);
+        const bool over = !worker.carried.empty();
+        if (over) work.dp.fill(0);
+        for (const Carried& c : worker.carried) {
+            const int k = field_of(c.texel);
+            const float there = at(sources[c.other].open[p], c.other_texel);
+            work.dp[c.texel] += (c.in * there - c.out * work.p[k]) * g.inverse[c.texel];
+        }
+        give(tile.p[p], worker);
+        pigment_step(tile.p[p]->data(), work, g, over, seed);
+        worker.ahead.fetch(kLines);
+        tile.pigments |= 1u << p;
+    }
+
+    static void give(PlanePtr& plane, Worker& worker) {
+        if (worker.spare.empty()) {
+            plane = std::make_unique<Plane>();
+        } else {
+            plane = std::move(worker.spare.front());
+            worker.spare.pop_front();
+        }
+    }
+
+    /// Lists the memory of a tile that this thread comes to soon: nobody takes its planes away before.
+    void look_ahead(std::size_t index, Ahead& ahead) const {
+        ahead.clear();
+        const auto planes_of = [&](std::uint32_t at, std::size_t begin, std::size_t end) {
+            if (at == kNone) return;
+            for (const Plane* plane : sources[at].liquid) ahead.add(plane, begin, end);
+            for (const Plane* plane : sources[at].open) ahead.add(plane, begin, end);
+        };
+        const Active& tile = list[index];
+        planes_of(static_cast<std::uint32_t>(index), 0, sizeof(Plane));
+        for (const int above : {0, 1, 2}) planes_of(tile.around[above], sizeof(Plane) - 64, sizeof(Plane));
+        for (const int below : {6, 7, 8}) planes_of(tile.around[below], 0, 64);
+        ahead.add(tile.geometry, 0, offsetof(Geometry, grain));
+        ahead.add(tile.diagonals, 0, sizeof(Geometry::Diagonals));
+    }
+
+    void find_planes(const Canvas& canvas, std::size_t index) {
+        const std::uint32_t slot = list[index].slot;
+        Sources& from = sources[index];
+        from.liquid = {canvas.liquid(slot, Liquid::film), canvas.liquid(slot, Liquid::pores)};
+        for (int p = 0; p < kMaxPigments; ++p) from.open[p] = canvas.plane(slot, p);
+    }
+
+    /// Puts into the canvas what a step made of a tile, when nobody needs what was there any more.
+    void commit(Canvas& canvas, std::size_t index, float stain, std::deque<PlanePtr>& spare) {
+        Active& tile = list[index];
+        if (tile.idle) return;
+        Sources& from = sources[index];
+        const auto put_liquid = [&](Liquid where, PlanePtr& plane, float most) {
+            const Plane*& known = from.liquid[static_cast<std::size_t>(where)];
+            if (most > 0) {
+                known = plane.get();
+                canvas.swap_liquid(tile.slot, where, plane);
+            } else if (known) {
+                known = nullptr;
+                PlanePtr none;
+                canvas.swap_liquid(tile.slot, where, none);
+            }
+            if (plane) spare.push_back(std::move(plane));
+        };
+        put_liquid(Liquid::film, tile.w, tile.outcome.most_w);
+        put_liquid(Liquid::pores, tile.s, tile.outcome.most_s);
+        for (int p = 0; p < kMaxPigments; ++p) {
+            if (!(tile.pigments >> p & 1)) continue;
+            if (from.open[p] || !all_zero(*tile.p[p])) {
+                from.open[p] = tile.p[p].get();
+                canvas.swap_open(tile.slot, p, tile.p[p]);
+            }
+            if (tile.p[p]) spare.push_back(std::move(tile.p[p]));
+        }
+        if (!tile.outcome.closing) return;
+        close_films(canvas, tile.slot, *tile.closing, stain);
+        find_planes(canvas, index);
+    }
+
+    static bool last_reader(std::atomic<std::uint32_t>& readers, bool alone) {
+        if (!alone) return readers.fetch_sub(1, std::memory_order_acq_rel) == 1;
+        const std::uint32_t left = readers.load(std::memory_order_relaxed) - 1;
+        readers.store(left, std::memory_order_relaxed);
+        return left == 0;
+    }
+
+    void step(Canvas& canvas, const FilmParams& params, const Step& rates, FilmReport& report) {
+        const bool alone = thread_count() == 1;
+        for (std::size_t i = 0; i < list.size(); ++i) readers[i].store(n_readers[i], std::memory_order_relaxed);
+        const int pigments = static_cast<int>(canvas.pigments().size());
+        parallel_for(list.size(), 16, [&](std::size_t begin, std::size_t end) {
+            std::unique_ptr<Worker> worker = take_worker();
+            worker->ahead.clear();
+            for (std::size_t i = begin; i < end; ++i) {
+                // The tile after the next: the next one's side is read already with this one.
+                if (i + 2 < end) look_ahead(i + 2, worker->ahead);
+                else worker->ahead.clear();
+                compute(i, pigments, rates, report.steps, *worker);
+                each_read(i, [&](std::uint32_t read) {
+                    if (last_reader(readers[read], alone))
+                        commit(canvas, read, static_cast<float>(params.stain), worker->spare);
+                });
+            }
+            give_back(std::move(worker));
+        });
+        const double area = map.texel_size * map.texel_size;
+        for (const Active& tile : list) report.evaporated += tile.outcome.evaporated * area;
+        ++report.steps;
+        report.tile_steps += list.size();
+    }
+};
+
+WetFilm::WetFilm(const atlas::TexelMap& map, atlas::SeamLinks seams)
+    : state_(std::make_unique<State>(map, std::move(seams))) {}
+WetFilm::~WetFilm() = default;
+WetFilm::WetFilm(WetFilm&&) noexcept = default;
+
+void WetFilm::keep_within(FreeFn free) { state_->set_free(std::move(free)); }
+
+FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before,
+                            const ProgressFn& progress) {
+    FilmReport report;
+    if (!canvas.wet() || !(seconds > 0)) return report;
+    State& s = *state_;
+    s.told.assign(s.map.n_slots(), 0);
+    s.set_unevenness(params.unevenness);
+    s.begin(canvas);
+    double beads = 0;  // seconds that they have not run yet
+    bool running = glm::length(params.down) > 0;
+    for (double left = seconds; left > 0 && !s.list.empty();) {
+        if (progress && !progress("drying", 1 - left / seconds)) {
+            s.end(canvas);
+            throw Cancelled();
+        }
+        if (s.sources.empty()) s.prepare(canvas);
+        for (const Active& tile : s.list) s.tell(tile.slot, before);
+        Step step;
+        const double dt = s.choose(params, left, running, step);
+        s.step(canvas, params, step, report);
+        left = dt < left * (1 - 1e-9) ? left - dt : 0;
+        if (s.changed()) s.spread(), s.sources.clear();
+        beads += dt;
+        if (beads > 0.9 * kBeadStep || left == 0) {
+            running = s.run_beads(canvas, params, beads, before);
+            if (running) s.sources.clear();
+            beads = 0;
+        }
+    }
+    s.end(canvas);
+    return report;
+}
+
+FilmReport WetFilm::dry(Canvas& canvas, const FilmParams& params, const BeforeFn& before, double limit,
+                        const ProgressFn& progress) {
+    FilmReport report;
+    constexpr double kAtOnce = 60;
+    for (double left = limit; left > 0 && canvas.wet(); left -= kAtOnce) {
+        const FilmReport part = advance(canvas, std::min(left, kAtOnce), params, before, progress);
+        report.steps += part.steps;
+        report.tile_steps += part.tile_steps;
+        report.evaporated += part.evaporated;
+    }
+    if (before)
+        for (const std::uint32_t slot : canvas.touched_slots())
+            if (canvas.has_film(slot, kOpenFilm) || canvas.liquid(slot, Liquid::film) || canvas.liquid(slot, Liquid::pores))
+                before(slot);
+    report.evaporated += dry_all(canvas, state_->map);
+    return report;
+}
+
+}  // namespace tuft::ink

@@ -1,0 +1,281 @@
+#include "ink/film/film_list.h"
+
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace tuft::ink::wet {
+namespace {
+
+constexpr std::size_t kMostBeads = 256;
+/// Sides of a tile (`Outcome::sides`) that are all wet where the tiles around it may be reached.
+constexpr std::array<std::uint8_t, 9> kTowards{5, 1, 9, 4, 0, 8, 6, 2, 10};
+
+/// Calls fn(i) for the places around a tile that what is wet in it may reach.
+template <class Fn>
+void each_reached(const Active& tile, Fn&& fn) {
+    for (int i = 0; i < 9; ++i)
+        if (i != 4 && (tile.outcome.sides & kTowards[i]) == kTowards[i]) fn(i);
+}
+
+void look(const Canvas& canvas, Active& tile) {
+    tile.outcome.sides = 15;
+    tile.seam_wet = true;
+    const Plane *w = canvas.liquid(tile.slot, Liquid::film), *s = canvas.liquid(tile.slot, Liquid::pores);
+    tile.outcome.most_w = w ? greatest(w->data()) : 0;
+    tile.outcome.most_s = s ? greatest(s->data()) : 0;
+}
+
+}  // namespace
+
+TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
+    : map(m), seams(std::move(s)), geometry(m.n_slots()), mark_(m.n_slots(), 0), place_(m.n_slots(), kNone) {
+    for (const atlas::SeamLink& l : seams.links) weights_.push_back(l.weight);
+    taps_ = seams.taps;
+    find_near();
+    limit_links();
+}
+
+void TileList::find_near() {
+    near_start_.assign(1, 0);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        const std::size_t first = near_.size();
+        const auto add = [&](std::uint32_t other, bool linked) {
+            if (other != kNone && (near_.size() == first || near_.back().slot != other)) near_.push_back({other, kNone, linked});
+        };
+        for (const atlas::SeamLink& l : links_of(slot)) add(l.other_slot, true);
+        for (std::uint32_t i = seams.tap_start[slot]; i < seams.tap_start[slot + 1]; ++i) add(seams.taps[i].other_slot, false);
+        const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
+        std::sort(begin, near_.end(), [](const Beyond& a, const Beyond& b) { return a.slot != b.slot ? a.slot < b.slot : a.linked > b.linked; });
+        near_.erase(std::unique(begin, near_.end(), [](const Beyond& a, const Beyond& b) { return a.slot == b.slot; }), near_.end());
+        near_start_.push_back(static_cast<std::uint32_t>(near_.size()));
+    }
+}
+
+void TileList::set_unevenness(double unevenness) {
+    if (unevenness == ground_.unevenness) return;
+    ground_.unevenness = unevenness;
+    look_anew();
+}
+
+void TileList::set_free(WetFilm::FreeFn free) {
+    if (!free && !ground_.free) return;
+    ground_.free = std::move(free);
+    look_anew();
+}
+
+void TileList::look_anew() {
+    for (auto& g : geometry) g.reset();
+    const auto root = [&](std::uint32_t slot, int texel) {
+        return std::sqrt(ease_of_flow(Vec3(map.position(slot, texel)), ground_.unevenness));
+    };
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
+            atlas::SeamLink& l = seams.links[i];
+            double weight = static_cast<double>(weights_[i]);
+            if (ground_.unevenness > 0) weight *= root(slot, l.texel) * root(l.other_slot, l.other_texel);
+            if (ground_.free) weight *= passing(ground_.free(slot, l.texel), ground_.free(l.other_slot, l.other_texel));
+            l.weight = static_cast<float>(weight);
+        }
+    limit_links();
+    close_taps();
+}
+
+/// Where a tape lies on a tap, nothing slopes that way: the texel itself takes the tap's place.
+void TileList::close_taps() {
+    seams.taps = taps_;
+    if (!ground_.free) return;
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t i = seams.tap_start[slot], next = i; i < seams.tap_start[slot + 1]; i = next) {
+            const atlas::SeamTap first = taps_[i];
+            bool closed = false;
+            for (; next < seams.tap_start[slot + 1] && taps_[next].texel == first.texel && taps_[next].side == first.side; ++next)
+                if (const atlas::SeamTap& tap = taps_[next]; tap.other_slot != kNone)
+                    closed = closed || passing(ground_.free(slot, tap.texel), ground_.free(tap.other_slot, tap.other_texel)) == 0;
+            if (!closed) continue;
+            for (std::uint32_t k = i; k < next; ++k) seams.taps[k] = {kNone, k == i ? 1.0f : 0.0f, first.texel, 4, first.side};
+        }
+}
+
+void TileList::limit_links() {
+    const double mean = map.texel_size * map.texel_size;
+    std::vector<std::array<float, kTexels>> of_slot;  // only of slots with links
+    std::vector<std::uint32_t> index(map.n_slots(), kNone);
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        if (seams.start[slot] == seams.start[slot + 1]) continue;
+        index[slot] = static_cast<std::uint32_t>(of_slot.size());
+        std::array<float, kTexels>& sums = of_slot.emplace_back();
+        sums.fill(0);
+        for (const atlas::SeamLink& l : links_of(slot)) sums[l.texel] += l.weight;
+        for (int t = 0; t < kTexels; ++t) {
+            const double most = kSeamPart * static_cast<double>(map.tiles[slot].area[t]) / mean;
+            sums[t] = static_cast<double>(sums[t]) > most ? static_cast<float>(most) / sums[t] : 1;
+        }
+    }
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
+            atlas::SeamLink& l = seams.links[i];
+            l.weight *= std::min(of_slot[index[slot]][l.texel], of_slot[index[l.other_slot]][l.other_texel]);
+        }
+}
+
+std::span<const atlas::SeamLink> TileList::links_of(std::uint32_t slot) const {
+    return std::span(seams.links).subspan(seams.start[slot], seams.start[slot + 1] - seams.start[slot]);
+}
+
+std::array<std::uint32_t, 9> TileList::around(std::uint32_t slot) const {
+    std::array<std::uint32_t, 9> out;
+    const auto n = static_cast<std::int64_t>(map.tiles_per_side);
+    const std::int64_t tx = map.tile_of_slot[slot] % n, ty = map.tile_of_slot[slot] / n;
+    for (int i = 0; i < 9; ++i) {
+        const std::int64_t x = tx + i % 3 - 1, y = ty + i / 3 - 1;
+        out[i] = x < 0 || y < 0 || x >= n || y >= n
+                     ? kNone : map.slot_of_tile[static_cast<std::size_t>(y * n + x)];
+    }
+    return out;
+}
+
+void TileList::begin(const Canvas& canvas) {
+    const std::vector<std::uint32_t> wet = canvas.wet_slots();
+    list.clear();
+    list.resize(wet.size());
+    parallel_for(wet.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Active& tile = list[i];
+            tile.slot = wet[i];
+            look(canvas, tile);
+        }
+    });
+    spread();
+}
+
+void TileList::spread() {
+    std::vector<std::uint32_t> wanted;
+    const auto want = [&](std::uint32_t slot) {
+        if (slot == kNone || mark_[slot]) return;
+        mark_[slot] = 1;
+        wanted.push_back(slot);
+    };
+    for (const Active& tile : list) {
+        if (!tile.wet()) continue;
+        want(tile.slot);
+        const std::array<std::uint32_t, 9> near = around(tile.slot);
+        each_reached(tile, [&](int i) { want(near[i]); });
+        if (tile.seam_wet)
+            for (const atlas::SeamLink& l : links_of(tile.slot)) want(l.other_slot);
+    }
+    std::sort(wanted.begin(), wanted.end());
+    std::vector<Active> next(wanted.size());
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        while (k < list.size() && list[k].slot < wanted[i]) ++k;
+        if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
+        next[i].slot = wanted[i];
+        next[i].links = links_of(wanted[i]);
+        next[i].taps = std::span(seams.taps).subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
+        place_[wanted[i]] = static_cast<std::uint32_t>(i);
+        mark_[wanted[i]] = 0;
+    }
+    list = std::move(next);
+    for (Active& tile : list) {
+        tile.around = around(tile.slot);
+        tile.absent = 0;
+        for (int i = 0; i < 9; ++i) {
+            std::uint32_t& at = tile.around[i];
+            if (at == kNone) continue;
+            at = place_[at];
+            if (at == kNone) tile.absent |= 1u << i;
+        }
+    }
+    others_.clear();
+    for (const Active& tile : list)
+        for (std::uint32_t i = near_start_[tile.slot]; i < near_start_[tile.slot + 1]; ++i)
+            others_.push_back({near_[i].slot, place_[near_[i].slot], near_[i].linked});
+    std::size_t from = 0;
+    for (Active& tile : list) {
+        const std::size_t n = near_start_[tile.slot + 1] - near_start_[tile.slot];
+        tile.others = std::span<const Beyond>(others_).subspan(from, n);
+        from += n;
+    }
+    for (const Active& tile : list) place_[tile.slot] = kNone;
+    readers = std::make_unique<std::atomic<std::uint32_t>[]>(list.size());
+    n_readers.assign(list.size(), 0);
+    for (std::size_t i = 0; i < list.size(); ++i) each_read(i, [&](std::uint32_t read) { ++n_readers[read]; });
+}
+
+bool TileList::changed() {
+    if (std::none_of(list.begin(), list.end(), [](const Active& tile) { return tile.spreads; })) return false;
+    wanted_.assign(list.size(), 0);
+    bool more = false;
+    for (std::size_t at = 0; at < list.size() && !more; ++at) {
+        const Active& tile = list[at];
+        if (!tile.wet()) continue;
+        wanted_[at] = 1;
+        each_reached(tile, [&](int i) {
+            if (tile.around[i] != kNone) wanted_[tile.around[i]] = 1;
+            else more = more || (tile.absent >> i & 1);
+        });
+        if (!tile.seam_wet) continue;
+        for (const Beyond& other : tile.others) {
+            if (!other.linked) continue;
+            if (other.place != kNone) wanted_[other.place] = 1;
+            else more = true;
+        }
+    }
+    return more || std::find(wanted_.begin(), wanted_.end(), 0) != wanted_.end();
+}
+
+void TileList::look_at(const Canvas& canvas, std::span<const std::uint32_t> slots) {
+    const std::size_t listed = list.size();
+    for (const std::uint32_t slot : slots) {
+        const auto end = list.begin() + static_cast<std::ptrdiff_t>(listed);
+        const auto at = std::lower_bound(list.begin(), end, slot, [](const Active& a, std::uint32_t s) { return a.slot < s; });
+        const bool known = at != end && at->slot == slot;
+        if (!known) {
+            list.emplace_back();
+            list.back().slot = slot;
+        }
+        look(canvas, known ? list[static_cast<std::size_t>(at - list.begin())] : list.back());
+    }
+    std::sort(list.begin(), list.end(), [](const Active& a, const Active& b) { return a.slot < b.slot; });
+    spread();
+}
+
+std::vector<Drips::Seed> TileList::seeds_of_beads(const Canvas& canvas, const FilmParams& params) const {
+    struct Found {
+        std::array<std::int32_t, 3> cube;
+        float weak, height;
+        Drips::Seed seed;
+    };
+    std::vector<Found> found;
+    for (const Active& tile : list) {
+        const auto least = static_cast<float>(Drips::least(params));
+        if (tile.outcome.most_w < least) continue;
+        const Plane& w = *canvas.liquid(tile.slot, Liquid::film);
+        const std::size_t first = found.size();
+        for (int t = 0; t < kTexels; ++t) {
+            if (w[t] < least) continue;
+            const Vec3 at(map.position(tile.slot, t));
+            const auto cell = [](double x) { return static_cast<std::int32_t>(std::floor(x / kGrainLength)); };
+            const std::array cube{cell(at.x), cell(at.y), cell(at.z)};
+            const float grain = geometry[tile.slot]->grain[field_of(t)];
+            auto same = std::find_if(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+                                     [&](const Found& f) { return f.cube == cube; });
+            if (same == found.end()) same = found.insert(found.end(), Found{cube, 0, 0, {}});
+            if (w[t] > same->weak * grain)
+                *same = {cube, w[t] / grain, static_cast<float>(-glm::dot(params.down, at)),
+                         {{tile.slot, static_cast<std::uint8_t>(t)}, static_cast<double>(grain)}};
+        }
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+        return a.cube != b.cube ? a.cube < b.cube : a.weak > b.weak;
+    });
+    found.erase(std::unique(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.cube == b.cube; }),
+                found.end());
+    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.height < b.height; });
+    std::vector<Drips::Seed> seeds;
+    for (std::size_t i = 0; i < std::min(found.size(), kMostBeads); ++i) seeds.push_back(found[i].seed);
+    return seeds;
+}
+
+}  // namespace tuft::ink::wet

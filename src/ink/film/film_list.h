@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ink/film/drips.h"
+#include "ink/film/film_tile.h"
+
+/// The tiles that a step of the wet film goes through; inside `ink` only.
+namespace tuft::ink::wet {
+
+inline constexpr double kSeamPart = 5;  ///< conductances over seams together, over the texel's area
+
+using PlanePtr = std::unique_ptr<Plane>;
+
+/// A tile's planes as a step finds them; a line of memory and a bit, since neighbours ask too.
+struct alignas(64) Sources {
+    std::array<const Plane*, 2> liquid{};
+    std::array<const Plane*, kMaxPigments> open{};
+};
+
+/// A tile over a seam from another one.
+struct Beyond {
+    std::uint32_t slot = kNone;
+    std::uint32_t place = kNone;            ///< in the list
+    bool linked = false;                    ///< liquid goes there; else only slopes are taken from it
+};
+
+/// A tile in the list of a step.
+struct Active {
+    std::uint32_t slot = kNone;
+    std::array<std::uint32_t, 9> around{};  ///< places in the list, row by row, this one in the middle
+    std::uint32_t absent = 0;               ///< bits: tiles around it that there are, but not in the list
+    std::uint32_t pigments = 0;             ///< bits: those computed
+    std::span<const Beyond> others;         ///< ascending slots
+    std::span<const atlas::SeamLink> links;
+    std::span<const atlas::SeamTap> taps;
+    Outcome outcome;
+    float stiffness = 0;
+    const Geometry* geometry = nullptr;     ///< null: not looked up yet
+    const Geometry::Diagonals* diagonals = nullptr;  ///< its own; to be asked for before it is there
+    bool seam_wet = false;
+    bool spreads = true;                    ///< wet in other places than before the step
+    bool idle = false;                      ///< nothing wet in sight
+    PlanePtr w, s;                          ///< of the step's end, until they are in the canvas
+    std::array<PlanePtr, kMaxPigments> p;
+    std::unique_ptr<std::array<std::uint8_t, kTexels>> closing;  ///< where outcome.closing
+
+    bool wet() const { return outcome.most_w + outcome.most_s > 0; }
+};
+
+struct TileList {
+    const atlas::TexelMap& map;
+    atlas::SeamLinks seams;                 ///< scaled: what goes over seams stays within what a step allows
+    std::vector<std::unique_ptr<Geometry>> geometry;  ///< [n_slots] null: never wet
+    std::vector<Active> list;               ///< ascending slots
+    std::unique_ptr<std::atomic<std::uint32_t>[]> readers;  ///< of the list: tiles that still need this one's planes
+
+    std::vector<std::uint32_t> n_readers;   ///< of the list: how many there are in a step
+
+    TileList(const atlas::TexelMap& m, atlas::SeamLinks s);
+
+    /// For surfaces that let liquid flow more easily here than there (`ease_of_flow`). Costs when it changes.
+    void set_unevenness(double unevenness);
+    /// The same for what is free of tape.
+    void set_free(WetFilm::FreeFn free);
+    const Ground& ground() const { return ground_; }
+    /// The list becomes the canvas' wet tiles and those round them.
+    void begin(const Canvas& canvas);
+    /// The list becomes the wet tiles and those that liquid may reach in the next step.
+    void spread();
+    /// Whether other tiles may be reached after this step than before it: whether `spread` would change the list.
+    bool changed();
+    /// Looks at slots that something else wrote to, and takes them into the list.
+    void look_at(const Canvas& canvas, std::span<const std::uint32_t> slots);
+    /// Where beads may start: of each cube of a grain's length the place that gives way first, the
+    /// lowest first, so that it does not matter how the surface lies in the atlas.
+    std::vector<Drips::Seed> seeds_of_beads(const Canvas& canvas, const FilmParams& params) const;
+
+    /// Calls fn with every place in the list whose planes a tile reads, its own among them.
+    template <class Fn>
+    void each_read(std::size_t index, Fn&& fn) const {
+        for (const std::uint32_t i : list[index].around)
+            if (i != kNone) fn(i);
+        for (const Beyond& other : list[index].others)
+            if (other.place != kNone) fn(other.place);
+    }
+
+  private:
+    std::vector<float> weights_;        ///< of the links as they came
+    std::vector<atlas::SeamTap> taps_;  ///< as they came
+    Ground ground_;
+    std::vector<std::uint32_t> near_start_;  ///< [n_slots + 1]
+    std::vector<Beyond> near_;          ///< over seams, by slot; places unknown
+    std::vector<Beyond> others_;        ///< of the list
+    std::vector<std::uint8_t> wanted_;  ///< of the list: scratch
+    std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch
+    std::vector<std::uint32_t> place_;  ///< [n_slots] scratch
+
+    void find_near();
+    void look_anew();
+    void limit_links();
+    void close_taps();
+    std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const;
+    std::array<std::uint32_t, 9> around(std::uint32_t slot) const;
+};
+
+}  // namespace tuft::ink::wet

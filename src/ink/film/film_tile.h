@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "atlas/texels/seam_links.h"
+#include "ink/film/film.h"
+
+/// One tile of the wet film with a border of one texel, as its kernels see it; inside `ink`
+/// only. Field k = (row + 1) * 24 + 8 + column, so that rows begin on 32 bytes; faces: between k
+/// and k + 1, k and k + 24, and the diagonals of the square k, k + 1, k + 24, k + 25.
+namespace tuft::ink::wet {
+
+inline constexpr int kTexels = atlas::kTileTexels;
+inline constexpr int kSide = atlas::kTile;
+inline constexpr int kRow = kSide + 8;
+inline constexpr int kField = (kSide + 2) * kRow + 8;
+
+struct alignas(64) Field : std::array<float, kField> {};
+
+/// Conductances in 16 bits: half the memory, which is what steps wait for. 1 is exact.
+inline constexpr float kConductanceUnit = 0x1p-14f, kDiagonalUnit = 0x1p-13f;
+
+inline constexpr double kGrainLength = 1.2e-3;  ///< metres over which the pin of a place varies
+
+inline constexpr int field_at(int column, int row) { return (row + 1) * kRow + 8 + column; }
+inline constexpr int field_of(int texel) { return field_at(texel % kSide, texel / kSide); }
+
+/// What the metric says of a tile: made once, never changed.
+struct alignas(64) Geometry {
+    static void* operator new(std::size_t bytes);  ///< as planes (plane_pool.cpp)
+    static void operator delete(void* geometry, std::size_t bytes);
+
+    /// Length over distance of faces, at most 4 times the smaller area, over kConductanceUnit: of texels'
+    /// right sides, rows of columns -8 to 15, 0 before -1; and of the sides below rows 0 to 16.
+    std::array<std::uint16_t, kSide * kRow> gx{};
+    std::array<std::uint16_t, kTexels + kSide> gy{};
+    std::array<float, kTexels> inverse{};  ///< mean texel's area over the texel's; 0 outside the charts
+    std::array<std::uint32_t, kSide + 2> valid{};  ///< bit column + 1: a texel of a chart
+    float stiffness = 0;                   ///< greatest Σ conductances over area
+    /// Of diagonals of the squares above and right of columns -8 to 15 of rows -1 to 15, over kDiagonalUnit: > 0 from
+    /// that texel, < 0 (its size) from the one to its right; null: none.
+    struct alignas(64) Diagonals : std::array<std::int16_t, (kSide + 1) * kRow> {
+        static void* operator new(std::size_t bytes);
+        static void operator delete(void* diagonals, std::size_t bytes);
+    };
+    std::unique_ptr<Diagonals> gd;
+    bool ups = false, downs = false;       ///< whether there are any > 0, < 0
+    Field grain{};                         ///< pin of the place, over the mean
+
+    static constexpr int right_of(int column, int row) { return row * kRow + 8 + column; }
+    static constexpr int corner_of(int column, int row) { return right_of(column, row + 1); }
+};
+/// What lets liquid flow less or more easily, from place to place.
+struct Ground {
+    double unevenness = 0;
+    WetFilm::FreeFn free;  ///< empty: all
+};
+/// Of what flows between two texels that are all free: so much; 0 over the edge of a tape.
+double passing(std::uint8_t free_a, std::uint8_t free_b);
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const Ground& ground);
+/// How easily liquid flows at a place, over the mean: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to
+/// 2.4 mm, −2 to 1.5. On a plane the flow in the large is that of the geometric mean, 1 (Dykhne 1971).
+double ease_of_flow(const Vec3& position, double unevenness);
+
+/// FilmParams for one step, in texels: rates times the step's length.
+struct Step {
+    float flow = 0;        ///< D dt / A per film unit
+    float levelling = 0;   ///< L dt / A per film unit above hold
+    float limit = 0;       ///< of flow × thickness, so that nothing gets negative
+    float threshold = 0, pin = 0;
+    float mixing = 0;      ///< D_p dt / A
+    float grip = 0;
+    float soak = 0;        ///< part drawn in by empty pores: 1 − exp(−a dt)
+    float pores = 0;
+    float passing = 1;     ///< part of the pigments that what seeps through the pores takes along
+    float evaporation = 0; ///< film units
+    float rim = 0;         ///< film units more, per film unit of slope
+    float rim_depth = 0;
+    float hold = 0;
+};
+
+/// Through faces: fluxes of w and s, film units · mean area, and the carriers of pigments,
+/// flux = a p(one end) + b p(other end).
+struct alignas(64) Faces {
+    Field w, s, a, b;
+};
+
+/// The fields of a tile in work.
+struct alignas(64) Work {
+    alignas(64) std::array<float, kSide * kRow> gx;  ///< conductances as in `Geometry`
+    alignas(64) std::array<float, kTexels + kSide> gy;
+    alignas(64) std::array<float, (kSide + 1) * kRow> gup, gdown;
+    Field w{}, s{}, total{};       ///< liquid
+    Field rate{};                  ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
+    Field above{}, free{};         ///< liquid above threshold, above hold
+    Field carrying{};              ///< liquid in which pigments move, M
+    Field p{};                     ///< one pigment
+    Faces x, y, up, down;          ///< up: of diagonals k to k + 25, down: k + 1 to k + 24
+    std::array<float, kTexels> dw, ds, rim_slope;  ///< the last: of liquid no higher than `rim_depth`, a texel
+    std::array<float, kTexels> dp; ///< what seams bring of one pigment
+};
+
+/// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
+void gather(Field& field, const std::array<const float*, 9>& planes);
+/// What follows from w and s, and what goes through the faces. Whether less than rim_depth stands on some texel.
+bool fluxes(Work& work, const Geometry& g, const Step& step);
+/// dw and ds of the texels from the fluxes.
+void liquid_changes(Work& work, const Geometry& g, const Step& step);
+
+/// What a texel's liquid became.
+struct Outcome {
+    float most_w = 0, most_s = 0;
+    bool closing = false;          ///< some texel had liquid and has none
+    double evaporated = 0;         ///< film · mean area
+    std::uint8_t sides = 0;        ///< wet texels in the first, last row, first, last column: bits 0–3
+};
+/// Numbers from −½ to ½, over 2^23, for the 256 texels, another sequence for each seed. Sums are rounded
+/// after adding so many units of their last place: small changes are kept on average, where
+/// rounding to the nearest would favour, at each power of two, the side below it.
+const float* dither(std::uint64_t seed);
+
+/// w and s [256] become those of `work` with dw, ds, then soaking and evaporation; `closing` [256] is
+/// 1 where a texel that was wet is wet no more.
+Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
+                   std::uint64_t seed, std::array<std::uint8_t, kTexels>& closing);
+/// The largest of [256], at least 0.
+float greatest(const float* plane);
+/// p [256] = work.p + what the faces bring, and dp if `seams`; never below 0.
+void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std::uint64_t seed);
+
+/// The same expressions for two texels that face each other over a seam.
+struct SeamFlux {
+    float w = 0, s = 0;  ///< from the first to the second
+    float a = 0, b = 0;  ///< pigment: a p1 + b p2
+};
+/// `apart`: their distance, texels. What comes from upstream smears as over a whole texel.
+SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, const std::array<float, 2>& s,
+                   const std::array<float, 2>& grain, const Step& step);
+
+}  // namespace tuft::ink::wet

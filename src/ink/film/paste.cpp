@@ -1,0 +1,209 @@
+#include "ink/film/paste.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ink/simd.h"
+
+namespace tuft::ink {
+namespace {
+
+constexpr int kN = atlas::kTileTexels;
+constexpr int kModes = 64;           // the finest waves are a thirtieth of the width
+constexpr double kTension = 0.03;    // N/m, of oil and of water with binder
+constexpr double kDensity = 1500;    // kg/m³ of heavy paint
+constexpr double kGravity = 9.81;    // m/s²
+constexpr double kTine = 0.35;       // half width of a furrow over the mean distance of bundles
+constexpr double kRimWidth = 1.5;    // of what is pushed out, over the film's thickness
+constexpr double kHeld = 0.02;       // of its height: finer waves than those held so far are rounded off
+constexpr double kLeastFilm = 0.15;  // of the mean: hair never scrapes to the ground
+constexpr double kRub = 0.6;         // of what bundles rub goes by where they lie, the rest is the liquid's
+
+using Texels = std::array<float, kN>;
+
+inline float positive(float a) { return a > 0 ? a : 0; }
+
+TUFT_CLONES void add(float* __restrict sum, const float* __restrict w) {
+    for (int t = 0; t < kN; ++t) sum[t] += w[t];
+}
+
+struct Volumes {
+    alignas(64) Texels down, up;
+};
+
+TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict full,
+                         const float* __restrict here, const float* __restrict before, float rate, float keep,
+                         float exchange, float room, float capacity) {
+    for (int t = 0; t < kN; ++t) {
+        const float f = coverage[t], w = here[t];
+        float goal = before[t] + f * full[t];
+        goal = goal < capacity ? goal : capacity;
+        const float touched = f > 0 ? rate : 0;
+        const float lack = positive(goal - w) * touched;
+        const float lift = f * positive(w - keep * before[t] - full[t]) * rate;
+        const float renewed = f * exchange * w;
+        out.down[t] = lack + renewed;
+        out.up[t] = renewed + (lift < room ? lift : room);
+    }
+}
+
+/// up becomes the part of a texel's paste that goes.
+TUFT_CLONES void part_of(float* __restrict up, const float* __restrict here) {
+    for (int t = 0; t < kN; ++t) {
+        const float part = here[t] > 0 ? up[t] / here[t] : 0;
+        up[t] = part < 1 ? part : 1;
+    }
+}
+
+/// What goes up of a plane, what of the mixture comes down, and the plane after both.
+TUFT_CLONES void move(float* __restrict w, float* __restrict up, float* __restrict down,
+                      const float* __restrict part, const float* __restrict volume, const float* __restrict mix,
+                      const float* __restrict strength) {
+    for (int t = 0; t < kN; ++t) {
+        up[t] = w[t] * part[t];
+        down[t] = strength[t] > 0 ? volume[t] * mix[t] / strength[t] : 0;
+        w[t] = (w[t] - up[t]) + down[t];
+    }
+}
+
+/// About exp(−x²), nothing from x = 2 on.
+double bump(double x) {
+    const double y = 1 - 0.25 * x * x;
+    return y > 0 ? (y * y) * (y * y) : 0;
+}
+
+/// cos(π j / n), by turning step for step: the same on every machine.
+std::array<double, 2 * (kTines - 1)> make_wave() {
+    static_assert(kTines - 1 == 128);
+    constexpr double kCos = 0.99969881869620422, kSin = 0.024541228522912288;  // of π / 128
+    std::array<double, 2 * (kTines - 1)> wave;
+    double c = 1, s = 0;
+    for (double& w : wave) {
+        w = c;
+        const double next = c * kCos - s * kSin;
+        s = s * kCos + c * kSin;
+        c = next;
+    }
+    return wave;
+}
+
+/// How much of the firmest bundle lies at each place, 0–1.
+std::array<double, kTines> pushed_by(std::span<const Tine> tines) {
+    std::array<double, kTines> out;
+    double firm = 0;
+    for (const Tine& tine : tines) firm += tine.weight;
+    const double half = firm > 0 ? kTine / firm : 1;  // of the width: firm bundles lie 1 / firm apart
+    for (int i = 0; i < kTines; ++i) {
+        double pushed = 0;
+        for (const Tine& tine : tines) pushed += tine.weight * bump((double(i) / (kTines - 1) - tine.at) / half);
+        out[i] = std::min(pushed, 1.0);
+    }
+    return out;
+}
+
+/// Furrows and rims before they level, over the mean.
+std::array<double, kTines> ploughed(std::span<const Tine> tines, const CombOptions& o) {
+    std::array<double, kTines> film = pushed_by(tines);
+    const double rim = std::max(kRimWidth * o.film / o.width, 1.5 / kTines);
+    for (int i = 0; i < kTines; ++i) {
+        const double u = double(i) / (kTines - 1);
+        film[i] = std::max(1 - o.depth * film[i], kLeastFilm) + o.rim * bump(std::min(u, 1 - u) / rim);
+    }
+    return film;
+}
+
+}  // namespace
+
+Comb comb_of(std::span<const Tine> tines, const CombOptions& o) {
+    Comb out;
+    out.fill(1);
+    if (!(o.yield > 0) || !(o.width > 0) || !(o.film > 0)) return out;
+    const std::array<double, kTines> film = ploughed(tines, o);
+    constexpr int kLast = kTines - 1;
+    static const std::array<double, 2 * kLast> wave = make_wave();
+    double mean = 0;
+    for (int i = 0; i < kTines; ++i) mean += (i == 0 || i == kLast ? 0.5 : 1.0) * film[i] / kLast;
+    std::array<double, kTines> levelled{};
+    for (int n = 1; n <= kModes; ++n) {
+        double a = 0;
+        for (int i = 0; i < kTines; ++i) a += (i == 0 || i == kLast ? 1.0 : 2.0) * film[i] * wave[n * i % (2 * kLast)] / kLast;
+        const double k = 3.14159265358979324 * n / o.width;
+        const double most = o.yield / (kTension * k * k * k * o.film) / o.film;  // over the mean film
+        const double held = std::clamp(a / mean, -most, most);
+        for (int i = 0; i < kTines; ++i) levelled[i] += held * wave[n * i % (2 * kLast)];
+    }
+    for (int i = 0; i < kTines; ++i) out[i] = static_cast<float>(std::max(1 + levelled[i], 0.0));
+    return out;
+}
+
+Comb rub_of(std::span<const Tine> tines) {
+    const std::array<double, kTines> lies = pushed_by(tines);
+    double mean = 0;
+    for (const double l : lies) mean += l / kTines;
+    Comb out;
+    for (int i = 0; i < kTines; ++i) out[i] = static_cast<float>(mean > 0 ? 1 + kRub * (lies[i] / mean - 1) : 1);
+    return out;
+}
+
+double standing_film(double yield) { return std::max(yield, 0.0) / (kDensity * kGravity) / kFilmUnit; }
+
+double levelling_length(double yield, double film) {
+    return yield > 0 && film > 0 ? std::cbrt(kTension * kHeld * film * film / yield) : 0;
+}
+
+Plane open_pigment(const Canvas& canvas, std::uint32_t slot) {
+    Plane sum;
+    sum.fill(0);
+    for (int p = 0; p < kMaxPigments; ++p)
+        if (const Plane* w = canvas.plane(slot, p)) add(sum.data(), w->data());
+    return sum;
+}
+
+void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,
+               const Tents& tents, std::span<const float, kN> area, double ds, const PasteParams& params,
+               const NodeMixes& mixes, const Plane& before, NodeContents& given, NodeContents& taken) {
+    if (tents.count == 0 || !(ds > 0)) return;
+    alignas(64) Texels full, strength{}, up, down, old;
+    alignas(64) std::array<Texels, kMaxPigments> mix;
+    std::array<bool, kMaxPigments> used{};
+    for (int p = 0; p < kMaxPigments; ++p) {
+        for (int k = 0; k < tents.count; ++k) used[p] = used[p] || mixes[p][tents.node[k]] > 0;
+        if (!used[p]) continue;
+        interpolate(mix[p], tents, mixes[p]);
+        add(strength.data(), mix[p].data());
+    }
+    comb_at(full, places, params.comb);
+    for (int t = 0; t < kN; ++t) full[t] *= static_cast<float>(params.target) * strength[t];
+    const Plane here = open_pigment(canvas, slot);
+    Volumes v;
+    volumes(v, coverage.data(), full.data(), here.data(), before.data(),
+            static_cast<float>(-std::expm1(-ds / params.transfer_length)), static_cast<float>(1 - params.dig),
+            static_cast<float>(params.exchange), static_cast<float>(params.room), static_cast<float>(params.capacity));
+    part_of(v.up.data(), here.data());
+    std::array<double, kNodes> shares;
+    MixtureGiven mixture(given, mixes, tents);
+    for (int p = 0; p < kMaxPigments; ++p) {
+        const Plane* there = canvas.plane(slot, p);
+        if (!used[p] && !there) continue;
+        if (!used[p]) mix[p].fill(0);
+        Plane& w = canvas.touch(slot, p);
+        old = w;
+        move(w.data(), up.data(), down.data(), v.up.data(), v.down.data(), mix[p].data(), strength.data());
+        const double stored = change_sum(w.data(), old.data(), area.data());
+        double lifted = 0;
+        for (int k = 0; k < tents.count; ++k) {
+            shares[k] = there ? static_cast<double>(tent_sum(tents.weight[k], up.data(), area)) : 0;
+            lifted += shares[k];
+        }
+        // What rounding makes of it: nothing may be given that does not come down.
+        if (!used[p]) lifted = std::max(-stored, 0.0);
+        const double laid = std::max(stored + lifted, 0.0);
+        deal(taken, p, laid - stored, shares, tents);
+        for (int k = 0; k < tents.count; ++k)
+            shares[k] = static_cast<double>(tent_sum(tents.weight[k], down.data(), area));
+        mixture.pigment(p, laid, shares);
+    }
+    mixture.water();
+}
+
+}  // namespace tuft::ink

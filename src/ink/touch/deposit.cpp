@@ -1,0 +1,157 @@
+#include "ink/touch/deposit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ink/colour/colorimetry.h"
+#include "ink/colour/elementary.h"
+#include "ink/simd.h"
+#include "ink/tile_store.h"
+
+namespace tuft::ink {
+namespace {
+
+constexpr int kN = atlas::kTileTexels, kRow = atlas::kTile;
+
+// All on n texels, whole rows.
+
+/// film = the least of film and w / part.
+TUFT_CLONES void limit_film(float* __restrict film, const float* __restrict w, float inverse_part, int n) {
+    for (int t = 0; t < n; ++t) {
+        const float f = w[t] * inverse_part;
+        film[t] = f < film[t] ? f : film[t];
+    }
+}
+
+TUFT_CLONES void add_film(float* __restrict all, const float* __restrict w, int n) {
+    for (int t = 0; t < n; ++t) all[t] += w[t];
+}
+
+TUFT_CLONES void linear_goals(float* __restrict goal, const float* __restrict coverage,
+                              float target, int n) {
+    for (int t = 0; t < n; ++t) goal[t] = target * coverage[t];
+}
+
+/// goal = −ln(1 − f hidden) / ε.
+TUFT_CLONES void goals(float* __restrict goal, const float* __restrict coverage, float hidden,
+                       float inverse_extinction, int n) {
+    for (int t = 0; t < n; ++t) goal[t] = -log_of(1 - coverage[t] * hidden) * inverse_extinction;
+}
+
+/// film becomes dw; returns whether any is positive.
+TUFT_CLONES bool increments(float* __restrict film, const float* __restrict all,
+                            const float* __restrict goal, float capacity, float rate, int n) {
+    for (int t = 0; t < n; ++t) {
+        const float room = film[t] + capacity - all[t];
+        const float limit = goal[t] < room ? goal[t] : room;
+        const float lack = limit - film[t];
+        film[t] = (lack > 0 ? lack : 0) * rate;
+    }
+    int wanted = 0;
+    for (int t = 0; t < n; ++t) wanted |= film[t] > 0;
+    return wanted != 0;
+}
+
+void law_goals(float* goal, const float* coverage, float target, const DepositLaw& law, int n) {
+    if (law.hidden > 0) goals(goal, coverage, law.hidden, law.inverse_extinction, n);
+    else linear_goals(goal, coverage, target, n);
+}
+
+bool is_bare(const float* row) {
+    float most = 0;
+    for (int t = 0; t < kRow; ++t) most = row[t] > most ? row[t] : most;
+    return !(most > 0);
+}
+
+}  // namespace
+
+Mix mix_of(Canvas& canvas, const Ink& ink) {
+    Mix mix{};
+    for (const InkPart& part : ink.parts)
+        mix[canvas.add_pigment(part.pigment)] += static_cast<float>(part.fraction);
+    return mix;
+}
+
+float extinction_of(const Ink& ink) {
+    constexpr Rgb kLuminance{0.2126f, 0.7152f, 0.0722f};  // Rec. 709
+    double sum = 0;
+    for (const InkPart& part : ink.parts) {
+        const PigmentCurve& curve = part.pigment.curve;
+        if (curve.nm.empty() && !curve.k.empty()) {
+            for (int c = 0; c < 3; ++c)
+                sum += part.fraction * kLuminance[c] * curve.scale * (2 * curve.k[c] + curve.s[c]);
+            continue;
+        }
+        if (curve.k.empty()) {  // made from bands, not from a file
+            for (int b = 0; b < kBands; ++b)
+                for (int c = 0; c < 3; ++c)
+                    sum += part.fraction * kLuminance[c] * band_weights()[c][b] * (2 * part.pigment.k[b] + part.pigment.s[b]);
+            continue;
+        }
+        // Over all wavelengths: what is laid down must not depend on the choice of bands.
+        for (int i = 0; i < kWavelengths; ++i) {
+            const Coefficients at = coefficients_at(curve, static_cast<float>(wavelength_nm(i)));
+            for (int c = 0; c < 3; ++c)
+                sum += part.fraction * static_cast<double>(kLuminance[c]) * rgb_matching()[c][i] * (2 * at.k + at.s);
+        }
+    }
+    return static_cast<float>(std::max(sum, 0.0));
+}
+
+DepositLaw deposit_law(const DepositParams& params, double ds) {
+    DepositLaw law;
+    if (ds > 0) law.rate = static_cast<float>(-std::expm1(-ds / params.transfer_length));
+    // Below 1e-3 the law is linear to 5e-4, and 1 − f hidden would lose digits.
+    if (params.extinction * params.target > 1e-3f) {
+        // Beyond ε c = 12 the film hides to 6e-6; more would only lose digits.
+        const float extinction = std::min(params.extinction, 12 / params.target);
+        law.hidden = -std::expm1(-extinction * params.target);
+        law.inverse_extinction = 1 / extinction;
+    }
+    return law;
+}
+
+void film_goals(std::span<float, kN> goal, std::span<const float, kN> coverage, const DepositParams& params) {
+    law_goals(goal.data(), coverage.data(), params.target, deposit_law(params, 0), kN);
+}
+
+double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
+               std::span<const float, kN> area, double ds, const DepositParams& params) {
+    return deposit(canvas, slot, coverage, area, params, deposit_law(params, ds));
+}
+
+double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
+               std::span<const float, kN> area, const DepositParams& params, const DepositLaw& law) {
+    // Nothing happens in rows without coverage.
+    int begin = 0, end = kN;
+    while (begin < end && is_bare(&coverage[begin])) begin += kRow;
+    while (end > begin && is_bare(&coverage[end - kRow])) end -= kRow;
+    const int n = end - begin;
+    if (n == 0) return 0;
+    alignas(64) float film[kN];
+    alignas(64) float all[kN];
+    std::fill_n(film, n, HUGE_VALF);
+    std::fill_n(all, n, 0.0f);
+    double strength = 0;
+    for (int p = 0; p < kMaxPigments; ++p) {
+        const Plane* w = canvas.plane(slot, p);
+        if (w) add_film(all, w->data() + begin, n);
+        if (!(params.mix[p] > 0)) continue;
+        strength += params.mix[p];
+        if (w)
+            limit_film(film, w->data() + begin, 1.0f / params.mix[p], n);
+        else
+            std::fill_n(film, n, 0.0f);
+    }
+    if (!(strength > 0) || !(params.target > 0) || !(law.rate > 0)) return 0;
+    alignas(64) float goal[kN];
+    law_goals(goal, &coverage[begin], params.target, law, n);
+    if (!increments(film, all, goal, params.capacity, law.rate, n)) return 0;
+    double given = 0;
+    for (int p = 0; p < kMaxPigments; ++p)
+        if (params.mix[p] > 0)
+            given += store_change(canvas.touch(slot, p).data() + begin, film, params.mix[p], &area[begin], n);
+    return given / strength;
+}
+
+}  // namespace tuft::ink

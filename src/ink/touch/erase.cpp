@@ -1,0 +1,135 @@
+#include "ink/touch/erase.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ink/colour/elementary.h"
+#include "ink/simd.h"
+#include "ink/tile_store.h"
+#include "ink/touch/deposit.h"
+
+namespace tuft::ink {
+namespace {
+
+constexpr int kN = atlas::kTileTexels;
+constexpr int kLanes = 16;
+constexpr float kNothing = 1e-6f;  // film units
+
+TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, float factor) {
+    for (int t = 0; t < kN; ++t) sum[t] += factor * w[t];
+}
+
+/// What stays of each texel's film, as a factor.
+TUFT_CLONES void keep(float* __restrict factor, const float* __restrict film, const float* __restrict start,
+                      const float* __restrict hides, const float* __restrict coverage, const float* __restrict liquid,
+                      float rate) {
+    for (int t = 0; t < kN; ++t) {
+        const float f = coverage[t], e = hides[t];
+        const float sum = f + exp_minus(e), x = sum < 1 ? sum : 1;
+        const float goal = -log_of(x > 1e-30f ? x : 1e-30f) / (e > 1e-3f ? e : 1e-3f);
+        const float left = start[t] > film[t] ? film[t] / start[t] : 1;
+        const float more = left - goal;
+        const float after = left - (more > 0 ? more : 0) * (liquid[t] > 0 ? 1 : rate);
+        const float part = left > 0 ? after / left : 0;
+        const float stays = film[t] * part < kNothing ? 0 : part;
+        factor[t] = f > 0 ? stays : 1;
+    }
+}
+
+/// w *= factor; returns Σ (change) · area, summed in lanes of fixed order.
+TUFT_CLONES double scale(float* __restrict w, const float* __restrict factor, const float* __restrict area) {
+    double sum[kLanes] = {};
+    for (int t = 0; t < kN; t += kLanes) {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const float before = w[t + lane], after = before * factor[t + lane];
+            w[t + lane] = after;
+            sum[lane] += (static_cast<double>(before) - static_cast<double>(after)) *
+                         static_cast<double>(area[t + lane]);
+        }
+    }
+    double total = 0;
+    for (const double s : sum) total += s;
+    return total;
+}
+
+float extinction_of(const Pigment& pigment) {
+    return ink::extinction_of(Ink{.parts = {{pigment, 1.0}}});
+}
+
+}  // namespace
+
+double Amounts::sum() const {
+    double total = 0;
+    for (const double p : pigment) total += p;
+    return total;
+}
+
+Amounts& Amounts::operator+=(const Amounts& other) {
+    for (int p = 0; p < kMaxPigments; ++p) pigment[p] += other.pigment[p];
+    liquid += other.liquid;
+    return *this;
+}
+
+EraseStart erase_start(const Canvas& canvas, std::uint32_t slot) {
+    EraseStart start;
+    start.film.fill(0);
+    start.hides.fill(0);
+    for (int film = 0; film < kFilms; ++film)
+        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+            if (const Plane* w = canvas.film_plane(slot, film, p)) {
+                add_scaled(start.film.data(), w->data(), 1);
+                add_scaled(start.hides.data(), w->data(), extinction_of(canvas.pigments()[p]));
+            }
+    for (const Liquid where : {Liquid::film, Liquid::pores})
+        if (const Plane* w = canvas.liquid(slot, where)) add_scaled(start.film.data(), w->data(), 1);
+    return start;
+}
+
+Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
+              std::span<const float, kN> area, double ds, const EraseStart& start, const EraseParams& params) {
+    Amounts gone;
+    if (!canvas.touched(slot) || !(ds > 0) || !(params.strength > 0)) return gone;
+    const Plane film = erase_start(canvas, slot).film;
+    alignas(64) std::array<float, kN> factor, liquid{};
+    for (const Liquid where : {Liquid::film, Liquid::pores})
+        if (const Plane* w = canvas.liquid(slot, where)) add_scaled(liquid.data(), w->data(), 1);
+    const auto rate = static_cast<float>(-std::expm1(-params.strength * ds / params.transfer_length));
+    keep(factor.data(), film.data(), start.film.data(), start.hides.data(), coverage.data(), liquid.data(), rate);
+    if (std::all_of(factor.begin(), factor.end(), [](float f) { return f == 1; })) return gone;
+    for (int film_place = 0; film_place < kFilms; ++film_place)
+        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+            if (canvas.film_plane(slot, film_place, p))
+                gone.pigment[p] +=
+                    scale(canvas.touch_film(slot, film_place, p).data(), factor.data(), area.data());
+    for (const Liquid where : {Liquid::film, Liquid::pores})
+        if (canvas.liquid(slot, where))
+            gone.liquid += scale(canvas.touch_liquid(slot, where).data(), factor.data(), area.data());
+    return gone;
+}
+
+Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area, const Coat& coat,
+                 float capacity) {
+    Amounts laid;
+    alignas(64) std::array<float, kN> all{}, dw, room;
+    for (int p = 0; p < kMaxPigments; ++p)
+        if (const Plane* w = canvas.plane(slot, p)) add_scaled(all.data(), w->data(), 1);
+    float strength[2] = {0, 0};
+    for (int p = 0; p < kMaxPigments; ++p) strength[0] += coat.first[p], strength[1] += coat.second[p];
+    for (int t = 0; t < kN; ++t) {
+        const float wanted = coat.film[t] * (strength[0] + coat.towards[t] * (strength[1] - strength[0]));
+        const float left = capacity > all[t] ? capacity - all[t] : 0;
+        room[t] = wanted > left ? left / wanted : 1;
+    }
+    for (int p = 0; p < kMaxPigments; ++p) {
+        if (!(coat.first[p] > 0 || coat.second[p] > 0)) continue;
+        bool any = false;
+        for (int t = 0; t < kN; ++t) {
+            dw[t] = room[t] * coat.film[t] * (coat.first[p] + coat.towards[t] * (coat.second[p] - coat.first[p]));
+            any = any || dw[t] > 0;
+        }
+        if (any) laid.pigment[p] += store_change(canvas.touch(slot, p).data(), dw.data(), 1, area.data());
+    }
+    return laid;
+}
+
+}  // namespace tuft::ink

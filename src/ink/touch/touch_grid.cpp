@@ -1,0 +1,158 @@
+#include "ink/touch/touch_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ink/simd.h"
+
+namespace tuft::ink {
+namespace {
+
+constexpr int kN = atlas::kTileTexels;
+constexpr int kSums = 16;
+constexpr double kLeastStep = 1e-6;  // metres between nodes
+
+using Texels = std::array<float, kN>;
+
+inline float limited(float x, float last) {
+    const float low = x > 0 ? x : 0;
+    return low < last ? low : last;
+}
+
+TUFT_CLONES void place(float* __restrict along, float* __restrict across, const float* __restrict x,
+                       const float* __restrict y, const float* __restrict z, const Vec3f& origin, const Vec3f& a,
+                       const Vec3f& b, float a0, float b0) {
+    for (int t = 0; t < kN; ++t) {
+        const float dx = x[t] - origin.x, dy = y[t] - origin.y, dz = z[t] - origin.z;
+        along[t] = limited(dx * a.x + dy * a.y + dz * a.z + a0, kAlong - 1);
+        across[t] = limited(dx * b.x + dy * b.y + dz * b.z + b0, kAcross - 1);
+    }
+}
+
+TUFT_CLONES void values_at(float* __restrict out, const float* __restrict across, const float* __restrict comb,
+                           float scale) {
+    for (int t = 0; t < kN; ++t) {
+        const float x = across[t] * scale;
+        int i = static_cast<int>(x);
+        i = i < kTines - 2 ? i : kTines - 2;
+        out[t] = comb[i] + (x - static_cast<float>(i)) * (comb[i + 1] - comb[i]);
+    }
+}
+
+TUFT_CLONES void hat(float* __restrict out, const float* __restrict at, const float* __restrict coverage, float node) {
+    for (int t = 0; t < kN; ++t) {
+        const float d = at[t] - node, w = 1 - (d < 0 ? -d : d);
+        out[t] = w > 0 && coverage[t] > 0 ? w : 0;
+    }
+}
+
+TUFT_CLONES void product(float* __restrict out, const float* __restrict a, const float* __restrict b) {
+    for (int t = 0; t < kN; ++t) out[t] = a[t] * b[t];
+}
+
+TUFT_CLONES void add_scaled(float* __restrict out, const float* __restrict w, float value) {
+    for (int t = 0; t < kN; ++t) out[t] += w[t] * value;
+}
+
+TUFT_CLONES float dot_area(const float* __restrict w, const float* __restrict x, const float* __restrict area) {
+    float sums[kSums] = {};
+    for (int t = 0; t < kN; t += kSums)
+        for (int i = 0; i < kSums; ++i) sums[i] += w[t + i] * x[t + i] * area[t + i];
+    float sum = 0;
+    for (const float s : sums) sum += s;
+    return sum;
+}
+
+TUFT_CLONES double difference_area(const float* __restrict after, const float* __restrict before,
+                                   const float* __restrict area) {
+    double sums[kSums] = {};
+    for (int t = 0; t < kN; t += kSums)
+        for (int i = 0; i < kSums; ++i)
+            sums[i] += (static_cast<double>(after[t + i]) - static_cast<double>(before[t + i])) *
+                       static_cast<double>(area[t + i]);
+    double sum = 0;
+    for (const double s : sums) sum += s;
+    return sum;
+}
+
+struct Range {
+    int first, last;
+};
+
+/// Nodes whose tents reach covered texels; none when there are none.
+Range reached(const Texels& at, std::span<const float, kN> coverage, int nodes) {
+    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+    for (int t = 0; t < kN; ++t) {
+        lo = std::min(lo, coverage[t] > 0 ? at[t] : lo);
+        hi = std::max(hi, coverage[t] > 0 ? at[t] : hi);
+    }
+    if (!(lo <= hi)) return {0, -1};
+    return {static_cast<int>(lo), std::min(static_cast<int>(hi) + 1, nodes - 1)};
+}
+
+}  // namespace
+
+TouchGrid touch_grid(std::span<const Vec2> places, const Vec2& axis) {
+    TouchGrid grid{.axis = axis};
+    if (places.empty()) return grid;
+    Vec2 lo{std::numeric_limits<double>::infinity()}, hi{-lo};
+    for (const Vec2& d : places) {
+        const Vec2 p = grid.at(d);  // with unit steps from the origin
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
+    }
+    grid.lo = lo;
+    grid.step = glm::max((hi - lo) / Vec2{kAlong - 1, kAcross - 1}, Vec2{kLeastStep});
+    return grid;
+}
+
+void place_texels(TexelPlaces& out, const TouchGrid& grid, const Frame& frame, const atlas::TexelShape& shape) {
+    const Vec3 along = (grid.axis.x * frame.t + grid.axis.y * frame.b) / grid.step.x;
+    const Vec3 across = (grid.axis.x * frame.b - grid.axis.y * frame.t) / grid.step.y;
+    place(out.along.data(), out.across.data(), shape.px.data(), shape.py.data(), shape.pz.data(), Vec3f(frame.origin),
+          Vec3f(along), Vec3f(across), static_cast<float>(-grid.lo.x / grid.step.x),
+          static_cast<float>(-grid.lo.y / grid.step.y));
+}
+
+void comb_at(std::span<float, kN> out, const TexelPlaces& places, const Comb& comb) {
+    values_at(out.data(), places.across.data(), comb.data(), float(kTines - 1) / (kAcross - 1));
+}
+
+void tents_of(Tents& out, const TexelPlaces& places, std::span<const float, kN> coverage) {
+    const Range along = reached(places.along, coverage, kAlong), across = reached(places.across, coverage, kAcross);
+    alignas(64) Texels rows;
+    alignas(64) std::array<Texels, kAcross> columns;
+    for (int j = across.first; j <= across.last; ++j)
+        hat(columns[j].data(), places.across.data(), coverage.data(), static_cast<float>(j));
+    out.count = 0;
+    for (int i = along.first; i <= along.last; ++i) {
+        hat(rows.data(), places.along.data(), coverage.data(), static_cast<float>(i));
+        for (int j = across.first; j <= across.last; ++j) {
+            out.node[out.count] = static_cast<std::uint8_t>(i * kAcross + j);
+            product(out.weight[out.count].data(), rows.data(), columns[j].data());
+            ++out.count;
+        }
+    }
+}
+
+float tent_sum(std::span<const float, kN> weight, const float* x, std::span<const float, kN> area) {
+    static constexpr Texels kOnes = [] {
+        Texels ones{};
+        ones.fill(1);
+        return ones;
+    }();
+    return dot_area(weight.data(), x ? x : kOnes.data(), area.data());
+}
+
+void interpolate(Texels& out, const Tents& tents, const std::array<float, kNodes>& values) {
+    out.fill(0);
+    for (int k = 0; k < tents.count; ++k)
+        if (const float v = values[tents.node[k]]; v != 0) add_scaled(out.data(), tents.weight[k].data(), v);
+}
+
+double change_sum(const float* after, const float* before, const float* area) {
+    return difference_area(after, before, area);
+}
+
+}  // namespace tuft::ink

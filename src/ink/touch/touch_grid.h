@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "atlas/texels/texel_map.h"
+#include "core/types.h"
+
+/// Where on the contact patch a texel lies: what its ink depends on.
+namespace tuft::ink {
+
+/// Nodes over the contact patch, `kAlong` from the root's side to the tip's, `kAcross` over its
+/// width; node (i, j) has the index i * kAcross + j. Between them ink is interpolated by tents.
+inline constexpr int kAlong = 4, kAcross = 8, kNodes = kAlong * kAcross;
+using NodeAreas = std::array<double, kNodes>;  ///< m² of surface by tents
+
+/// Lays the nodes over a patch in the stamp's (u, v), metres: p = (axis · d, axis × d) lies at the
+/// node coordinates (p − lo) / step; beyond the outer nodes as on them.
+struct TouchGrid {
+    Vec2 axis{1, 0};  ///< unit, from the root's side to the tip's
+    Vec2 lo{0};       ///< metres along and across the axis, of node (0, 0)
+    Vec2 step{1};     ///< metres between nodes, > 0
+
+    /// Node coordinates (along, across) of a place, not limited to the nodes.
+    Vec2 at(const Vec2& d) const {
+        return (Vec2{glm::dot(axis, d), axis.x * d.y - axis.y * d.x} - lo) / step;
+    }
+};
+
+/// The grid that spans these places along `axis`; of no places, that about the origin.
+TouchGrid touch_grid(std::span<const Vec2> places, const Vec2& axis);
+
+/// Node coordinates of the texels of a tile, limited to the nodes.
+struct TexelPlaces {
+    alignas(64) std::array<float, atlas::kTileTexels> along, across;
+};
+
+/// The same from the surface points, seen along the normal of the stamp's frame.
+void place_texels(TexelPlaces& out, const TouchGrid& grid, const Frame& frame, const atlas::TexelShape& shape);
+
+/// A figure across the contact patch, over its mean: finer than the nodes, as its bundles of hair are. Value i lies at
+/// i / (kTines − 1) of the width.
+inline constexpr int kTines = 129;
+using Comb = std::array<float, kTines>;
+
+/// The comb at the texels of a tile, linear between its values.
+void comb_at(std::span<float, atlas::kTileTexels> out, const TexelPlaces& places, const Comb& comb);
+
+/// The tents of the nodes that reach a tile's covered texels: w = ⟨1 − |i − along|⟩ ⟨1 − |j − across|⟩,
+/// which sum to one on each; zero on uncovered ones.
+struct Tents {
+    int count = 0;
+    std::array<std::uint8_t, kNodes> node;                                         ///< [count] ascending
+    alignas(64) std::array<std::array<float, atlas::kTileTexels>, kNodes> weight;  ///< [count]
+};
+
+/// About 10 ns for each node that reaches the tile.
+void tents_of(Tents& out, const TexelPlaces& places, std::span<const float, atlas::kTileTexels> coverage);
+
+/// Σ w · x · area over a tile, in an order of its own; x may be null: 1. Float sums.
+float tent_sum(std::span<const float, atlas::kTileTexels> weight, const float* x,
+               std::span<const float, atlas::kTileTexels> area);
+
+/// Σ (after − before) · area over a tile, in an order of its own. Double sums.
+double change_sum(const float* after, const float* before, const float* area);
+
+/// out = Σ over the tents of weight · value, `values` by node.
+void interpolate(std::array<float, atlas::kTileTexels>& out, const Tents& tents,
+                 const std::array<float, kNodes>& values);
+
+}  // namespace tuft::ink

@@ -1,0 +1,269 @@
+#include "ink/touch/transfer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ink/simd.h"
+
+namespace tuft::ink {
+namespace {
+
+constexpr int kN = atlas::kTileTexels;
+constexpr int kWater = kMaxPigments;
+constexpr double kSkinFilm = 4;         // film units on full hair
+constexpr double kHalfFull = 0.5;       // saturation from which hair is wet outside all over
+constexpr double kSkinTime = 0.3;       // seconds
+constexpr double kExchangeLength = 4e-3, kExchangeTime = 0.5;  // metres, seconds
+constexpr double kGentle = 0.3;         // of the exchange under firm pressure
+constexpr double kMostGiven = 0.999;    // of the skin: rounding may not take more than there is
+
+using Texels = std::array<float, kN>;
+
+double sum_of(const Reservoir::Content& c) {
+    double sum = 0;
+    for (const double v : c) sum += v;
+    return sum;
+}
+
+inline float larger(float a, float b) { return a > b ? a : b; }
+inline float smaller(float a, float b) { return a < b ? a : b; }
+inline float positive(float a) { return a > 0 ? a : 0; }
+
+/// a = a b, 1 at most.
+TUFT_CLONES void scale(float* __restrict a, const float* __restrict b) {
+    for (int t = 0; t < kN; ++t) {
+        const float x = a[t] * b[t];
+        a[t] = x < 1 ? x : 1;
+    }
+}
+
+struct Volumes {
+    alignas(64) Texels down, up;
+};
+
+TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict goal,
+                         const float* __restrict w, const float* __restrict total,
+                         const float* __restrict film, const float* __restrict exchange, const TransferParams& p,
+                         float rate) {
+    for (int t = 0; t < kN; ++t) {
+        const float touched = coverage[t] > 0 ? 1.0f : 0.0f;
+        const float lack = positive(smaller(goal[t] - w[t], p.deposit.capacity - total[t])) * rate;
+        const float n = smaller(lack + coverage[t] * p.pour, film[t] * touched);
+        const float part = coverage[t] * exchange[t];
+        const float x = part * smaller(w[t], film[t] - n);
+        const float over = positive(w[t] - larger(goal[t], p.deposit.target)) * part * p.thirst;
+        const float lift = smaller(over, smaller(p.room, w[t] - x));
+        out.down[t] = n + x;
+        out.up[t] = x + lift;
+    }
+}
+
+TUFT_CLONES void add_concentration(float* __restrict sum, const float* __restrict p, const float* __restrict total) {
+    for (int t = 0; t < kN; ++t) sum[t] += total[t] > 0 ? p[t] / total[t] : 0;
+}
+
+/// up becomes the part of the open film's pigments that goes with the liquid.
+TUFT_CLONES void lifted_part(float* __restrict up, const float* __restrict total, const float* __restrict dense) {
+    for (int t = 0; t < kN; ++t) {
+        const float most = dense[t] > 1 ? 1 / dense[t] : 1;
+        up[t] = total[t] > 0 ? up[t] / total[t] * most : 0;
+    }
+}
+
+/// down becomes the part that leaves of what the skin can give.
+TUFT_CLONES void given_part(float* __restrict part, const float* __restrict down, const float* __restrict film) {
+    for (int t = 0; t < kN; ++t) part[t] = film[t] > 0 ? down[t] / film[t] : 0;
+}
+
+/// What goes up of a plane, and the plane after it and what comes down.
+TUFT_CLONES void move(float* __restrict p, float* __restrict up, const float* __restrict lifted,
+                      const float* __restrict part, const float* __restrict film) {
+    for (int t = 0; t < kN; ++t) {
+        up[t] = p[t] * lifted[t];
+        p[t] = (p[t] - up[t]) + part[t] * film[t];
+    }
+}
+
+/// What a tile's nodes gave and took, before it is made to agree with what was stored.
+struct Booked {
+    std::array<double, kNodes> part{};                  ///< m² that gave all that lay over it
+    std::array<Reservoir::Content, kNodes> taken{};     ///< by the surface's planes; water: all liquid
+    Reservoir::Content stored{};                        ///< likewise, given less taken
+};
+
+/// Deals the stored change of each plane out to the nodes: what they took, and the rest by what
+/// lies over them, where the sums differ by the rounding of the texels.
+void settle(const Booked& b, const Tents& tents, const TransferParams& params, NodeContents& given) {
+    double all = 0;
+    for (int k = 0; k < tents.count; ++k) all += b.part[k] + b.taken[k][kWater];
+    Reservoir::Content stored = b.stored;
+    for (int p = 0; p < kMaxPigments; ++p) stored[kWater] -= stored[p];  // the liquid counts its pigments
+    for (int p = 0; p < Reservoir::kPlanes; ++p) {
+        std::array<double, kNodes> net;
+        double sum = 0;
+        for (int k = 0; k < tents.count; ++k) {
+            double taken = b.taken[k][p];
+            for (int q = 0; q < kMaxPigments && p == kWater; ++q) taken -= b.taken[k][q];
+            net[k] = b.part[k] * static_cast<double>(params.film[p][tents.node[k]]) - taken;
+            sum += net[k];
+        }
+        const double left = stored[p] - sum;
+        for (int k = 0; k < tents.count; ++k) {
+            const double share = all > 0 ? (b.part[k] + b.taken[k][kWater]) / all : 1.0 / tents.count;
+            given[tents.node[k]][p] += net[k] + left * share;
+        }
+    }
+}
+
+}  // namespace
+
+namespace {
+
+/// Where the hair has left the surface, what was on it spreads among the rest in line with it, which lacks
+/// some as it comes down: one film wets it all. What nobody lacks goes `back`.
+void pass_on(Skin& skin, NodeContents& back, const std::array<double, kNodes>& want, int across) {
+    constexpr double kSpare = 1.25;  // of what a node wants
+    std::array<double, kAlong> lack{}, over{};
+    double lacking = 0, loose = 0;
+    for (int i = 0; i < kAlong; ++i) {
+        const double volume = skin.volume(i * kAcross + across), most = want[i * kAcross + across];
+        lacking += lack[i] = std::max(0.0, most - volume);
+        loose += over[i] = std::max(0.0, volume - kSpare * most);
+    }
+    if (!(loose > 0)) return;
+    Reservoir::Content sum{};
+    for (int i = 0; i < kAlong; ++i) {
+        const int node = i * kAcross + across;
+        if (!(over[i] > 0)) continue;
+        const double out = over[i] / skin.volume(node), stays = std::min(1.0, lacking / loose);
+        for (int p = 0; p < Reservoir::kPlanes; ++p) {
+            const double v = out * skin.content[node][p];
+            skin.content[node][p] -= v;
+            sum[p] += stays * v;
+            back[node][p] += v - stays * v;
+        }
+    }
+    for (int i = 0; i < kAlong && lacking > 0; ++i)
+        for (int p = 0; p < Reservoir::kPlanes; ++p) skin.content[i * kAcross + across][p] += lack[i] / lacking * sum[p];
+}
+
+}  // namespace
+
+std::array<double, kAlong> firmness(const NodeAreas& areas) {
+    std::array<double, kAlong> width{};
+    double widest = 0;
+    for (int i = 0; i < kAlong; ++i) {
+        for (int j = 0; j < kAcross; ++j) width[i] += areas[i * kAcross + j];
+        if (i == 0 || i == kAlong - 1) width[i] *= 2;  // of an outer row's tent half is there
+        widest = std::max(widest, width[i]);
+    }
+    for (double& w : width) w = widest > 0 ? w / widest : 1;
+    return width;
+}
+
+double Skin::volume(int node) const { return sum_of(content[node]); }
+
+void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes) {
+    absorb(tuft, skin.content, nodes, touch);
+    skin.content = {};
+}
+
+void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes, const NodeAreas& areas,
+             double dt, double pour) {
+    const double filled = std::min(1.0, saturation_at(tuft, touch) / kHalfFull), wet = filled * filled;
+    const double part = -std::expm1(-std::max(dt, 0.0) / kSkinTime);
+    std::array<double, kNodes> want, lack;
+    NodeContents back{};
+    for (int node = 0; node < kNodes; ++node) want[node] = (kSkinFilm * wet + pour) * areas[node];
+    for (int across = 0; across < kAcross; ++across) pass_on(skin, back, want, across);
+    for (int node = 0; node < kNodes; ++node)
+        for (int p = 0; p < Reservoir::kPlanes; ++p) {
+            const double v = part * skin.content[node][p];
+            skin.content[node][p] -= v;
+            back[node][p] += v;
+        }
+    absorb(tuft, back, nodes, touch);
+    double all = 0;
+    for (int node = 0; node < kNodes; ++node) {
+        lack[node] = std::max(0.0, want[node] - skin.volume(node));
+        all += lack[node];
+    }
+    if (!(all > 0)) return;
+    const double within = std::min(1.0, tuft.remaining() / all);
+    for (double& amount : lack) amount *= within;
+    const NodeContents fresh = draw(tuft, lack, nodes, touch, filled >= 1 || pour > 0);
+    for (int node = 0; node < kNodes; ++node)
+        for (int p = 0; p < Reservoir::kPlanes; ++p) skin.content[node][p] += fresh[node][p];
+}
+
+TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const Touch& touch,
+                               const NodeAreas& areas, const DepositParams& deposit, double ds,
+                               double dt, double stress) {
+    TransferParams out;
+    out.deposit = deposit;
+    out.rub.fill(1);
+    const double way = ds / kExchangeLength + std::max(dt, 0.0) / kExchangeTime;
+    const double most = way * (kGentle + (1 - kGentle) * std::clamp(stress, 0.0, 1.0));
+    const std::array<double, kAlong> firm = firmness(areas);
+    for (int node = 0; node < kNodes; ++node)
+        out.exchange[node] = static_cast<float>(-std::expm1(-most * firm[node / kAcross]));
+    out.thirst = static_cast<float>(std::clamp(1 - saturation_at(tuft, touch), 0.0, 1.0));
+    double area = 0;
+    for (const double a : areas) area += a;
+    out.room = static_cast<float>(area > 0 ? room_left(tuft, touch) / area : 0);
+    for (int node = 0; node < kNodes; ++node) {
+        if (!(areas[node] > 0)) continue;
+        for (int p = 0; p < Reservoir::kPlanes; ++p)
+            out.film[p][node] =
+                static_cast<float>(kMostGiven * std::max(0.0, skin.content[node][p]) / areas[node]);
+    }
+    return out;
+}
+
+void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,
+              const Tents& tents, std::span<const float, kN> area, double ds, const TransferParams& params, NodeContents& given) {
+    if (tents.count == 0) return;
+    std::array<float, kNodes> over{};  // film units of all planes
+    for (int k = 0; k < tents.count; ++k)
+        for (int p = 0; p < Reservoir::kPlanes; ++p) over[tents.node[k]] += params.film[p][tents.node[k]];
+    alignas(64) Texels film, exchange, goal, total, dense{}, part, up, before;
+    interpolate(film, tents, over);
+    interpolate(exchange, tents, params.exchange);
+    comb_at(part, places, params.rub);
+    scale(exchange.data(), part.data());
+    film_goals(goal, coverage, params.deposit);
+    Plane& w = canvas.touch_liquid(slot, Liquid::film);
+    const Plane* s = canvas.liquid(slot, Liquid::pores);
+    for (int t = 0; t < kN; ++t) total[t] = s ? w[t] + (*s)[t] : w[t];
+    Volumes v;
+    const auto rate = static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
+    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), exchange.data(), params, rate);
+    given_part(part.data(), v.down.data(), film.data());
+    Booked booked;
+    for (int k = 0; k < tents.count; ++k) {
+        booked.part[k] = static_cast<double>(tent_sum(tents.weight[k], part.data(), area));
+        booked.taken[k][kWater] = static_cast<double>(tent_sum(tents.weight[k], v.up.data(), area));
+    }
+    before = w;
+    for (int t = 0; t < kN; ++t) w[t] = (w[t] - v.up[t]) + v.down[t];
+    booked.stored[kWater] = change_sum(w.data(), before.data(), area.data());
+    for (int p = 0; p < kMaxPigments; ++p)
+        if (const Plane* here = canvas.plane(slot, p)) add_concentration(dense.data(), here->data(), total.data());
+    lifted_part(v.up.data(), total.data(), dense.data());
+    for (int p = 0; p < kMaxPigments; ++p) {
+        float most = 0;
+        for (int k = 0; k < tents.count; ++k) most = std::max(most, params.film[p][tents.node[k]]);
+        const bool there = canvas.plane(slot, p) != nullptr;
+        if (!(most > 0) && !there) continue;
+        interpolate(film, tents, params.film[p]);
+        Plane& here = canvas.touch(slot, p);
+        before = here;
+        move(here.data(), up.data(), v.up.data(), part.data(), film.data());
+        booked.stored[p] = change_sum(here.data(), before.data(), area.data());
+        for (int k = 0; k < tents.count && there; ++k)
+            booked.taken[k][p] = static_cast<double>(tent_sum(tents.weight[k], up.data(), area));
+    }
+    settle(booked, tents, params, given);
+}
+
+}  // namespace tuft::ink

@@ -1,0 +1,166 @@
+#include "stroke/hand/lead.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brush/sweep.h"
+#include "core/ease.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kUpright = 0.05, kLeans = 0.15;  // radians
+
+/// Where x lies between the grid's values, held to its ends.
+template <std::size_t N>
+std::pair<std::size_t, double> cell_of(const std::array<double, N>& grid, double x) {
+    std::size_t i = 0;
+    while (i + 2 < N && x >= grid[i + 1]) ++i;
+    return {i, std::clamp((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0)};
+}
+
+}  // namespace
+
+const std::vector<Vec2>& LeanedLead::node(std::size_t i, std::size_t j) {
+    std::vector<Vec2>& leads = nodes_[i * kAcross.size() + j];
+    if (leads.empty()) {
+        for (const double part : kDepths) {
+            const brush::LinePlace place =
+                brush::line_place(preset_, part * working_depth(preset_), {kAlong[i], kAcross[j]});
+            leads.push_back({place.behind, -place.aside});
+        }
+    }
+    return leads;
+}
+
+Vec2 LeanedLead::of_node(std::size_t i, std::size_t j, double depth) {
+    const double part = depth / working_depth(preset_);
+    if (part < kDepths[0]) return part / kDepths[0] * node(i, j)[0];
+    const auto [k, f] = cell_of(kDepths, part);
+    return glm::mix(node(i, j)[k], node(i, j)[k + 1], f);
+}
+
+Vec2 LeanedLead::at(double depth, const Vec2& lean) {
+    const double part = smooth_step((glm::length(lean) - kUpright) / (kLeans - kUpright));
+    if (part <= 0 || depth <= 0) return Vec2{0};
+    const auto [i, f] = cell_of(kAlong, lean.x);
+    const auto [j, g] = cell_of(kAcross, std::abs(lean.y));
+    Vec2 leaned{0};
+    for (const auto& [a, wa] : {std::pair{i, 1 - f}, std::pair{i + 1, f}})
+        for (const auto& [b, wb] : {std::pair{j, 1 - g}, std::pair{j + 1, g}})
+            if (wa * wb > 0) leaned += wa * wb * of_node(a, b, depth);
+    // Leaning to the other side is the mirror image.
+    if (lean.y < 0) leaned.y = -leaned.y;
+    constexpr std::size_t kUprightNode = 3;
+    static_assert(kAlong[kUprightNode] == 0 && kAcross[0] == 0);
+    return part * (leaned - of_node(kUprightNode, 0, depth));
+}
+
+std::vector<Lead> drag_lead(const brush::Preset& preset) {
+    std::vector<double> depths;
+    for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
+        depths.push_back(part * working_depth(preset));
+    std::vector<Lead> lead{{0, 0}};
+    for (const brush::SweepRow& row : brush::sweep_depth(preset, depths))
+        lead.push_back({row.depth, std::max(0.0, row.offset + 0.5 * row.width)});
+    return lead;
+}
+
+namespace {
+
+double lead_length(std::span<const Lead> table, double depth) {
+    if (table.empty()) return 0;
+    if (depth <= table.front().depth)
+        return table.front().depth > 0 ? table.front().length * depth / table.front().depth
+                                       : table.front().length;
+    for (std::size_t i = 1; i < table.size(); ++i) {
+        const Lead &a = table[i - 1], &b = table[i];
+        if (depth <= b.depth)
+            return a.length + (b.length - a.length) * (depth - a.depth) / (b.depth - a.depth);
+    }
+    return table.back().length;
+}
+
+double depth_of(const HoldOptions& options, double pressure) { return std::clamp(pressure, 0.0, 1.0) * options.working_depth; }
+
+/// What a lean adds to the lead, `along` the path; that is 1 long where the string is taut.
+Vec2 leaned_lead(const HoldOptions& options, const Vec2& tilt, double depth, const Vec2& along) {
+    const double taut = glm::length(along), lean = glm::length(tilt);
+    if (taut < 1e-9 || lean <= 0) return Vec2{0};
+    const Vec2 ahead = along / taut, left{ahead.y, -ahead.x};  // y of a trace is down
+    const Vec2 held = tilt * (std::min(lean, options.max_tilt) / lean);
+    const Vec2 up{std::tan(held.x), std::tan(held.y)};
+    const Vec2 more = options.leaned(depth, {std::atan(glm::dot(up, ahead)), std::atan(glm::dot(up, left))});
+    return taut * (more.x * ahead + more.y * left);
+}
+
+}  // namespace
+
+Vec2 lead_of(const HoldOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead) {
+    const double depth = depth_of(options, pressure);
+    const Vec2 lead = lead_length(options.lead, depth) * ahead;
+    return options.leaned ? lead + leaned_lead(options, tilt, depth, ahead) : lead;
+}
+
+namespace {
+
+// The hand of a trace that begins pressed goes the lead while it presses: the tip touches where the trace
+// begins and trails from there. Set down from above it would bend to any side, and a tuft that is
+// pushed before the hand turns over only after centimetres.
+void set_down(Trace& trace, const HoldOptions& options) {
+    constexpr double kStep = 2.5e-4;                 // metres between samples
+    constexpr double kShortest = 0.01, kLongest = 0.3;  // seconds
+    constexpr double kWay = 3e-3;                    // metres over which the pace is taken
+    const TraceSample first = trace.samples.front();
+    const double way = lead_length(options.lead, depth_of(options, first.pressure));
+    const int n = static_cast<int>(std::min(std::ceil(way / kStep), 100.0));
+    if (n < 2) return;
+    double gone = 0, taken = 0;
+    for (std::size_t i = 1; i < trace.samples.size() && gone < kWay; ++i) {
+        gone += glm::length(trace.samples[i].position - trace.samples[i - 1].position);
+        taken = trace.samples[i].time - first.time;
+    }
+    if (gone <= 0) return;
+    const double duration = std::clamp(taken / gone * way, kShortest, kLongest);
+    for (TraceSample& s : trace.samples) s.time += duration;
+    std::vector<TraceSample> touch(static_cast<std::size_t>(n), first);
+    for (int i = 0; i < n; ++i) {
+        TraceSample& s = touch[static_cast<std::size_t>(i)];
+        s.pressure = first.pressure * i / n;
+        s.time = first.time + duration * i / n;
+    }
+    trace.samples.insert(trace.samples.begin(), touch.begin(), touch.end());
+}
+
+}  // namespace
+
+Trace lead_hand(Trace trace, const HoldOptions& options) {
+    if (options.lead.empty() || trace.samples.empty() || !trace.flat) return trace;
+    set_down(trace, options);
+    // The hand knows where it is going to start: the string is taut from the first touch.
+    const Vec2 first(trace.samples.front().position);
+    Vec2 dragged = first;
+    for (const TraceSample& s : trace.samples) {
+        const Vec2 way = Vec2(s.position) - first;
+        if (glm::length(way) >= 0.5 * options.lead_turn) {
+            dragged = first - way * (options.lead_turn / glm::length(way));
+            break;
+        }
+    }
+    for (TraceSample& s : trace.samples) {
+        const Vec2 p(s.position);
+        Vec2 string = p - dragged;
+        const double length = glm::length(string);
+        if (length > options.lead_turn) {
+            string *= options.lead_turn / length;
+            dragged = p - string;
+        }
+        const double depth = depth_of(options, s.pressure);
+        Vec2 ahead = p + (lead_length(options.lead, depth) / options.lead_turn) * string;
+        if (options.leaned) ahead += leaned_lead(options, s.tilt, depth, string / options.lead_turn);
+        s.position = Vec3(ahead, s.position.z);
+    }
+    return trace;
+}
+
+}  // namespace tuft::stroke

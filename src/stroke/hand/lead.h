@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "brush/preset.h"
+#include "core/types.h"
+#include "stroke/hand/placement.h"
+
+/// How far the hand runs ahead of the ink.
+namespace tuft::stroke {
+
+/// The lead of a brush at depths up to its working depth: from the foot of the holder's
+/// axis back to the widest place of the steady contact patch, which lies half a line's
+/// width behind its end (`brush::sweep_depth`; takes some 50 ms).
+std::vector<Lead> drag_lead(const brush::Preset& preset);
+
+/// What a lean of the holder adds to the lead of one brush (see `drag_lead`), from steady strokes of
+/// it at a grid of leans and depths, made as they are asked for (some 25 ms for each of the grid's
+/// leans). Up to 0.05 rad, as a hand holds a brush upright, it adds nothing; from 0.15 rad all.
+class LeanedLead {
+  public:
+    explicit LeanedLead(brush::Preset preset) : preset_(std::move(preset)) {}
+
+    /// Metres ahead along the path and to its left that the hand must be further than that of an upright holder,
+    /// so that the line lies where the path is. `lean`: radians along the path and to its left, the
+    /// axis' up ∝ normal + tan(lean.x) ahead + tan(lean.y) left. `depth`: metres of the unbent tip
+    /// below the surface.
+    Vec2 at(double depth, const Vec2& lean);
+
+  private:
+    static constexpr std::array kAlong{-0.8, -0.4, -0.2, 0.0, 0.2, 0.4, 0.8};
+    static constexpr std::array kAcross{0.0, 0.4, 0.8};
+    static constexpr std::array kDepths{0.05, 0.15, 0.3, 0.5, 0.7, 1.0};  // of the working depth
+
+    const std::vector<Vec2>& node(std::size_t i, std::size_t j);
+    Vec2 of_node(std::size_t i, std::size_t j, double depth);
+
+    brush::Preset preset_;
+    std::array<std::vector<Vec2>, kAlong.size() * kAcross.size()> nodes_;  // ahead and left by depth
+};
+
+/// The lead at one place of a path, metres to the right and down in the axes of `tilt` (radians, as in
+/// LaidSample). `ahead`: unit, the path's direction in them.
+Vec2 lead_of(const HoldOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead);
+
+/// A dragged tuft paints behind the hand, and under a leaning holder aside of it. Moves the samples
+/// of a flat trace ahead along the path by the lead for their depth, and by what their lean
+/// adds, so that the ink will lie where the trace was. The
+/// direction is that of a point dragged behind the trace on a string of `lead_turn` (a
+/// tractrix), taut from the first touch in the direction in which the trace sets out;
+/// where the path reverses, the lead passes through zero. A trace that begins pressed gets samples
+/// before its first, at the same place, in which the pressure rises to it at the trace's pace: the tip
+/// touches first and trails then.
+Trace lead_hand(Trace trace, const HoldOptions& options);
+
+}  // namespace tuft::stroke

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "stroke/journal/layers.h"
+#include "stroke/painting/fill.h"
+#include "stroke/painting/mask.h"
+
+/// The parts of a journal's entry as JSON; included by sources of this room only. Readers
+/// throw `Error` for wrong types and values.
+namespace tuft::stroke {
+
+nlohmann::json json_of(const LayerEdit& edit);
+LayerEdit layer_edit_of(const nlohmann::json& json);
+
+nlohmann::json json_of(const Fill& fill);
+Fill fill_of(const nlohmann::json& json);
+
+nlohmann::json json_of(const MaskEdit& edit);
+MaskEdit mask_edit_of(const nlohmann::json& json);
+
+}  // namespace tuft::stroke

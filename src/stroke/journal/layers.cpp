@@ -1,0 +1,141 @@
+#include "stroke/journal/layers.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "stroke/journal/entry_json.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr const char* kChanges[] = {"add", "change", "remove"};
+
+std::vector<Layer>::iterator place_of(LayerTable& table, std::uint32_t id) {
+    const auto at = std::find_if(table.layers.begin(), table.layers.end(),
+                                 [id](const Layer& l) { return l.id == id; });
+    if (at == table.layers.end()) throw Error("there is no layer " + std::to_string(id));
+    return at;
+}
+
+void check_layer(const LayerTable& table, const Layer& layer) {
+    check_name(layer.name, "layer");
+    if (!(layer.opacity >= 0 && layer.opacity <= 1)) throw Error("the opacity of a layer is 0 to 1");
+    const Layer* same = table.find(layer.name);
+    if (same && same->id != layer.id) throw Error("there is a layer '" + layer.name + "' already");
+}
+
+}  // namespace
+
+void check_name(std::string_view name, const char* of_what) {
+    const std::string what = std::string("the name of a ") + of_what;
+    if (name.empty()) throw Error(what + " is empty");
+    if (name.size() > kMaxNameBytes)
+        throw Error(what + " is longer than " + std::to_string(kMaxNameBytes) + " bytes");
+    int following = 0;  // bytes of a UTF-8 sequence still to come
+    for (const char c : name) {
+        const auto b = static_cast<unsigned char>(c);
+        const bool continues = (b & 0xc0) == 0x80;
+        if (continues != (following > 0) || b < 0x20 || b == 0x7f || b > 0xf4)
+            throw Error(what + " is no readable text");
+        if (continues) --following;
+        else following = b >= 0xf0 ? 3 : b >= 0xe0 ? 2 : b >= 0xc0 ? 1 : 0;
+    }
+    if (following > 0) throw Error(what + " is no readable text");
+}
+
+const Layer* LayerTable::find(std::uint32_t id) const {
+    const auto at = std::find_if(layers.begin(), layers.end(), [id](const Layer& l) { return l.id == id; });
+    return at == layers.end() ? nullptr : &*at;
+}
+
+const Layer* LayerTable::find(std::string_view name) const {
+    const auto at = std::find_if(layers.begin(), layers.end(), [name](const Layer& l) { return l.name == name; });
+    return at == layers.end() ? nullptr : &*at;
+}
+
+void apply(LayerTable& table, const LayerEdit& edit) {
+    std::vector<Layer>& layers = table.layers;
+    if (edit.what == LayerChange::remove) {
+        const auto at = place_of(table, edit.layer.id);
+        if (layers.size() == 1) throw Error("the last layer cannot be removed");
+        layers.erase(at);
+        return;
+    }
+    check_layer(table, edit.layer);
+    if (edit.what == LayerChange::add) {
+        if (layers.size() >= kMaxLayers)
+            throw Error("a painting has at most " + std::to_string(kMaxLayers) + " layers");
+        Layer layer = edit.layer;
+        if (layer.id == 0) layer.id = table.next_id;
+        if (layer.id < table.next_id || layer.id >= kPaletteLayer)
+            throw Error("layer " + std::to_string(layer.id) + " cannot be added again");
+        if (edit.place > layers.size()) throw Error("a layer's place is beyond the highest one");
+        table.next_id = layer.id + 1;
+        layers.insert(layers.begin() + edit.place, std::move(layer));
+        return;
+    }
+    const auto at = place_of(table, edit.layer.id);
+    if (edit.place >= layers.size()) throw Error("a layer's place is beyond the highest one");
+    layers.erase(at);
+    layers.insert(layers.begin() + edit.place, edit.layer);
+}
+
+LayerEdit add_on_top(const LayerTable& table, const std::string& name) {
+    return {LayerChange::add, Layer{.id = table.next_id, .name = name},
+            static_cast<std::uint32_t>(table.layers.size())};
+}
+
+LayerEdit changed(const LayerTable& table, const Layer& layer) {
+    const Layer* at = table.find(layer.id);
+    if (!at) throw Error("there is no layer " + std::to_string(layer.id));
+    return {LayerChange::change, layer, static_cast<std::uint32_t>(at - table.layers.data())};
+}
+
+LayerEdit moved(const LayerTable& table, std::uint32_t id, std::uint32_t place) {
+    const Layer* at = table.find(id);
+    if (!at) throw Error("there is no layer " + std::to_string(id));
+    return {LayerChange::change, *at, place};
+}
+
+LayerEdit removed(std::uint32_t id) {
+    return {LayerChange::remove, Layer{.id = id}, 0};
+}
+
+nlohmann::json json_of(const LayerEdit& edit) {
+    nlohmann::json j{{"what", kChanges[static_cast<int>(edit.what)]}, {"id", edit.layer.id}};
+    if (edit.what == LayerChange::remove) return j;
+    j["name"] = edit.layer.name;
+    j["visible"] = edit.layer.visible;
+    j["opacity"] = edit.layer.opacity;
+    j["locked"] = edit.layer.locked;
+    j["place"] = edit.place;
+    return j;
+}
+
+LayerEdit layer_edit_of(const nlohmann::json& j) {
+    LayerEdit edit;
+    try {
+        const std::string what = j.at("what").get<std::string>();
+        const auto at = std::find(std::begin(kChanges), std::end(kChanges), what);
+        if (at == std::end(kChanges)) throw Error("'" + what + "' is no change of a layer");
+        edit.what = static_cast<LayerChange>(at - std::begin(kChanges));
+        const auto whole = [&j](const char* key) {
+            const auto value = j.at(key).get<std::int64_t>();
+            if (value < 0 || value >= std::int64_t{kNone}) throw Error(std::string("the ") + key + " of a layer is out of range");
+            return static_cast<std::uint32_t>(value);
+        };
+        edit.layer.id = whole("id");
+        if (edit.what == LayerChange::remove) return edit;
+        edit.layer.name = j.at("name").get<std::string>();
+        edit.layer.visible = j.at("visible").get<bool>();
+        edit.layer.opacity = j.at("opacity").get<double>();
+        edit.layer.locked = j.at("locked").get<bool>();
+        edit.place = whole("place");
+    } catch (const nlohmann::json::exception&) {
+        throw Error("a change of the layers cannot be read: " + j.dump().substr(0, 80));
+    }
+    return edit;
+}
+
+}  // namespace tuft::stroke

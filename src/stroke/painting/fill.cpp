@@ -1,0 +1,118 @@
+#include "stroke/painting/fill.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "stroke/journal/entry_json.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kThickest = 1000;  // film units: ten millimetres of ink
+constexpr double kFarthest = 1e4;   // metres
+constexpr const char* kRegions[] = {"all", "part", "chart"};
+constexpr const char* kGradients[] = {"none", "along", "round"};
+
+template <class Word, std::size_t N>
+Word word_of(const std::string& name, const char* const (&words)[N], const char* what) {
+    std::string all;
+    for (std::size_t i = 0; i < N; ++i) {
+        if (name == words[i]) return static_cast<Word>(i);
+        all += std::string(i ? ", " : "") + words[i];
+    }
+    throw Error("'" + name + "' is no " + what + "; there are " + all);
+}
+
+nlohmann::json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Vec3 vector_of(const nlohmann::json& j) {
+    const auto v = j.get<std::array<double, 3>>();
+    return {v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+std::string name_of(Region region) { return kRegions[static_cast<int>(region)]; }
+std::string name_of(Gradient gradient) { return kGradients[static_cast<int>(gradient)]; }
+Region region_of(const std::string& name) { return word_of<Region>(name, kRegions, "region to fill"); }
+Gradient gradient_of(const std::string& name) { return word_of<Gradient>(name, kGradients, "gradient"); }
+
+void check_fill(const Fill& f) {
+    for (const double film : {f.film, f.to_film})
+        if (!(film >= 0 && film <= kThickest)) throw Error("the film of a fill is 0 to 1000 film units");
+    for (const Vec3& v : {f.from, f.to, f.at})
+        for (int k = 0; k < 3; ++k)
+            if (!(std::abs(v[k]) <= kFarthest)) throw Error("a point of a fill lies out of range");
+    if (f.gradient != Gradient::none && !(glm::length(f.to - f.from) > 1e-9))
+        throw Error("a gradient needs two points that lie apart");
+}
+
+double along_gradient(const Fill& f, const Vec3& p) {
+    const Vec3 way = f.to - f.from;
+    const double length = glm::length(way);
+    double t = 0;
+    if (f.gradient == Gradient::along) t = glm::dot(p - f.from, way) / (length * length);
+    if (f.gradient == Gradient::round) t = glm::length(p - f.from) / length;
+    return std::clamp(t, 0.0, 1.0);
+}
+
+std::vector<std::uint8_t> charts_of(const Fill& fill, const Model& model) {
+    const std::vector<std::uint32_t>& chart = model.atlas.triangle_chart;
+    std::vector<std::uint8_t> filled(model.atlas.n_charts, fill.region == Region::all);
+    if (fill.region == Region::all) return filled;
+    const auto at = model.query->closest_point(fill.at);
+    if (!at) throw Error("there is no surface to fill");
+    filled[chart[at->triangle]] = 1;
+    if (fill.region == Region::chart) return filled;
+    std::vector<std::uint8_t> seen(model.mesh->n_triangles(), 0);
+    std::vector<std::uint32_t> open{at->triangle};
+    seen[at->triangle] = 1;
+    while (!open.empty()) {
+        const std::uint32_t triangle = open.back();
+        open.pop_back();
+        filled[chart[triangle]] = 1;
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t next = model.mesh->neighbours[3 * std::size_t{triangle} + k];
+            if (next == kNone || seen[next]) continue;
+            seen[next] = 1;
+            open.push_back(next);
+        }
+    }
+    return filled;
+}
+
+nlohmann::json json_of(const Fill& f) {
+    nlohmann::json j{{"film", f.film}, {"region", name_of(f.region)}};
+    if (f.region != Region::all) j["at"] = json_of(f.at);
+    if (f.gradient == Gradient::none) return j;
+    j["gradient"] = name_of(f.gradient);
+    j["to_film"] = f.to_film;
+    j["to_ink"] = f.to_ink;
+    j["from"] = json_of(f.from);
+    j["to"] = json_of(f.to);
+    return j;
+}
+
+Fill fill_of(const nlohmann::json& j) {
+    Fill f;
+    try {
+        f.film = j.at("film").get<double>();
+        f.region = region_of(j.at("region").get<std::string>());
+        if (f.region != Region::all) f.at = vector_of(j.at("at"));
+        f.gradient = gradient_of(j.value("gradient", "none"));
+        if (f.gradient != Gradient::none) {
+            f.to_film = j.at("to_film").get<double>();
+            f.to_ink = j.at("to_ink").get<std::string>();
+            f.from = vector_of(j.at("from"));
+            f.to = vector_of(j.at("to"));
+        }
+    } catch (const nlohmann::json::exception&) {
+        throw Error("a fill cannot be read: " + j.dump().substr(0, 80));
+    }
+    check_fill(f);
+    return f;
+}
+
+}  // namespace tuft::stroke
