@@ -111,7 +111,7 @@ std::vector<stroke::Trace> vase_plum() {
     // Moss on the trunk.
     for (int k = 0; k < 9; ++k) {
         const double x = -27 + 3.8 * k, y = 33 - 3.3 * k + 2.5 * std::sin(2.0 * k);
-        p.add({"moss", {{x, y - 3.4, 0}, {x + 0.4, y - 3.2, 1.8, 0.5}, {x + 0.7, y - 3.4, 0}}}, "wolf-medium", "carbon", 0.02);
+        p.add({"moss", {{x - 1, y - 4, 0}, {x + 0.6, y - 3.2, 1.6, 0.6}, {x + 2.2, y - 2.4, 0}}}, "wolf-medium", "carbon", 0.02);
     }
     // Bamboo behind the rock: indigo with gamboge in the tip.
     const double leaves[][4] = {{5, 31, 0.75, 20}, {4, 32, 1.35, 19}, {6, 30, 0.2, 22}, {19, 35, 0.9, 17}, {20, 34, 0.35, 20}, {3, 32, 1.9, 15}, {20, 33, -0.15, 17}};
