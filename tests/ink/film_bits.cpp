@@ -1,4 +1,4 @@
-// Prints a hash of tiles of the wet film stepped by src/ink/film_kernel.cpp, which is compiled into
+// Prints a hash of tiles of the wet film stepped by src/ink/film/film_kernel.cpp, which is compiled into
 // this program for one instruction set (same_bits.sh compares them). Prints "skipped" where it cannot run.
 #include <cstdio>
 

@@ -1,4 +1,4 @@
-// Prints a hash of tiles coloured by src/ink/composite.cpp, which is compiled into this program
+// Prints a hash of tiles coloured by src/ink/colour/composite.cpp, which is compiled into this program
 // for one instruction set (same_bits.sh compares them). Prints "skipped" where it cannot run.
 #include <cstdio>
 

@@ -275,7 +275,7 @@ bool before(const TexelRef& a, const TexelRef& b) { return std::tie(a.slot, a.te
 
 }  // namespace
 
-BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map) {
+BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, bool only_cells) {
     const std::vector<SeamEdge> seams = find_seams(mesh, atlas);
     constexpr std::size_t kChunk = 64;
     std::vector<std::vector<Crossing>> by_chunk((seams.size() + kChunk - 1) / kChunk);
@@ -286,10 +286,17 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
             const std::size_t last = std::min(seams.size(), (chunk + 1) * kChunk);
             for (std::size_t e = chunk * kChunk; e < last; ++e) cross(mesh, atlas, map, seams[e], samples, beside, by_chunk[chunk]);
             keep_shortest(by_chunk[chunk]);
+            by_chunk[chunk].shrink_to_fit();
         }
     });
     std::vector<Crossing> crossings;
-    for (const auto& c : by_chunk) crossings.insert(crossings.end(), c.begin(), c.end());
+    std::size_t n_crossings = 0;
+    for (const auto& c : by_chunk) n_crossings += c.size();
+    crossings.reserve(n_crossings);
+    for (auto& c : by_chunk) {
+        crossings.insert(crossings.end(), c.begin(), c.end());
+        c = {};
+    }
     keep_shortest(crossings);
 
     std::vector<std::size_t> start;
@@ -297,17 +304,22 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
         if (i == 0 || !(crossings[i].a == crossings[i - 1].a)) start.push_back(i);
     BorderCells result;
     result.cells.resize(start.size());
-    std::vector<std::vector<BorderFace>> faces(start.size());
-    std::vector<std::vector<BorderTap>> taps(start.size());
+    constexpr std::size_t kBlock = 256;
+    std::vector<std::vector<BorderFace>> faces((start.size() + kBlock - 1) / kBlock);
+    std::vector<std::vector<BorderTap>> taps(faces.size());
     start.push_back(crossings.size());
-    parallel_for(result.cells.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Cell cell = cell_of(map, std::span(crossings).subspan(start[i], start[i + 1] - start[i]));
-            result.cells[i] = {crossings[start[i]].a, cell.area};
-            faces[i] = std::move(cell.faces);
-            taps[i] = std::move(cell.taps);
-        }
+    parallel_for(faces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block)
+            for (std::size_t i = block * kBlock; i < std::min(result.cells.size(), (block + 1) * kBlock); ++i) {
+                const Cell cell = cell_of(map, std::span(crossings).subspan(start[i], start[i + 1] - start[i]));
+                result.cells[i] = {crossings[start[i]].a, cell.area};
+                if (only_cells) continue;
+                faces[block].insert(faces[block].end(), cell.faces.begin(), cell.faces.end());
+                taps[block].insert(taps[block].end(), cell.taps.begin(), cell.taps.end());
+            }
     });
+    if (only_cells) return result;
+    crossings = {};
     for (const auto& t : taps) result.taps.insert(result.taps.end(), t.begin(), t.end());
     // Each cell gives half of its faces: on curved surfaces the two do not quite agree.
     const auto is_cell = [&](const TexelRef& t) {

@@ -42,7 +42,7 @@ struct BorderCells {
 /// their charts and cut ones along the seam. A face stands at right angles on the line between its texels, so that
 /// flux = k · conductance · (w_a − w_b) is exact for linear w (Eymard, Gallouët and Herbin 2000, admissible
 /// meshes). Beyond borders of the surface and more than one seam at once, texels are whole. The same bits for any
-/// number of threads.
-BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map);
+/// number of threads. `only_cells`: without taps and faces, in half of the memory.
+BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, bool only_cells = false);
 
 }  // namespace tuft::atlas

@@ -362,7 +362,7 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         map.piece_start.push_back(static_cast<std::uint32_t>(map.piece_chart.size()));
     }
     for (const auto& b : boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
-    for (const BorderCell& c : build_border_cells(mesh, atlas, map).cells)
+    for (const BorderCell& c : build_border_cells(mesh, atlas, map, true).cells)
         map.tiles[c.texel.slot].area[c.texel.texel] = static_cast<float>(c.area);
     report(progress, "texel map", 1);
     return map;
