@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "brush/preset.h"
 #include "brush/sweep.h"
 #include "stroke/hand/placement.h"
 
@@ -183,6 +185,21 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
             {.time = t, .position = Vec3(p, 0), .pressure = table.pressure(width), .tilt = o.tilt});
     }
     return trace;
+}
+
+void Series::add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::Care> before) {
+    WriteOptions options;
+    options.size = 1;  // keys are in millimetres
+    options.centre = {0, 0};
+    options.speed = speed;
+    stroke::Trace t = write(stroke, WidthTable(brush::load_preset(brush)), options);
+    t.placement = place;
+    t.brush = brush;
+    t.ink = ink;
+    t.seed = out.size() + 1;
+    t.label = stroke.name;
+    t.before = std::move(before);
+    out.push_back(std::move(t));
 }
 
 }  // namespace tuft::samples

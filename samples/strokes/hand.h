@@ -55,4 +55,12 @@ struct WriteOptions {
 /// bend with bounded acceleration.
 stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOptions& options);
 
+/// Strokes one after the other, their keys in millimetres from a place on a model.
+struct Series {
+    stroke::Placement place;
+    std::vector<stroke::Trace> out = {};
+
+    void add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::Care> before = {});
+};
+
 }  // namespace tuft::samples

@@ -1,7 +1,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "brush/preset.h"
 #include "compositions.h"
 #include "core/units.h"
 #include "hand.h"
@@ -12,27 +11,6 @@ namespace {
 
 using stroke::Action;
 using stroke::Care;
-
-/// Writes strokes with thick paint on the sheet, keys in millimetres from a place of it.
-struct Knife {
-    stroke::Placement place;
-    std::vector<stroke::Trace> out = {};
-
-    void add(const Stroke& s, const char* brush, const char* ink, double speed, std::vector<Care> before = {}) {
-        WriteOptions options;
-        options.size = 1;  // keys are in millimetres
-        options.centre = {0, 0};
-        options.speed = speed;
-        stroke::Trace t = write(s, WidthTable(brush::load_preset(brush)), options);
-        t.placement = place;
-        t.brush = brush;
-        t.ink = ink;
-        t.seed = out.size() + 1;
-        t.label = s.name;
-        t.before = std::move(before);
-        out.push_back(std::move(t));
-    }
-};
 
 /// Pressed down at its outer end, pulled to the middle and lifted there.
 Stroke petal(double turn, double from, double length, double width) {
@@ -51,7 +29,7 @@ std::vector<stroke::Trace> impasto() {
     constexpr const char* kBlue = "samples/inks/blue-paste.toml";
     constexpr const char* kYellow = "samples/inks/yellow-paste.toml";
     constexpr const char* kGreen = "samples/inks/green-paste.toml";
-    Knife k{{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, stroke::Laying::wrap}};
+    Series k{{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, stroke::Laying::wrap}};
     // Broad strokes side by side, each into the wet paint of the one before.
     for (int row = 0; row < 5; ++row) {
         const double y = -26 + 12.0 * row, left = row % 2 ? 3.0 : 0.0;

@@ -2,7 +2,6 @@
 #include <numbers>
 #include <utility>
 
-#include "brush/preset.h"
 #include "compositions.h"
 #include "core/units.h"
 #include "hand.h"
@@ -27,26 +26,7 @@ const Care kFlank(const char* ink, double side) {
 const Care kDry{.action = Action::dry};
 const Care kWipe(double amount) { return {.action = Action::wipe, .extent = {.amount = amount}}; }
 
-/// Strokes with keys in millimetres from a place on the vase.
-struct Painter {
-    stroke::Placement place;
-    std::vector<stroke::Trace> out = {};
-
-    void add(const Stroke& s, const char* brush, const char* ink, double speed, std::vector<Care> before = {}) {
-        WriteOptions options;
-        options.size = 1;
-        options.centre = {0, 0};
-        options.speed = speed;
-        stroke::Trace t = write(s, WidthTable(brush::load_preset(brush)), options);
-        t.placement = place;
-        t.brush = brush;
-        t.ink = ink;
-        t.seed = out.size() + 1;
-        t.label = s.name;
-        t.before = std::move(before);
-        out.push_back(std::move(t));
-    }
-
+struct Painter : Series {
     /// A stroke along (x, y) places that swells from 0 to `width` at `swell` of its length and runs out.
     static Stroke leaf(const char* name, const Vec2& from, double turn, double length, double width, double bend) {
         const Vec2 u{std::cos(turn), std::sin(turn)}, v{-u.y, u.x};
@@ -91,7 +71,7 @@ struct Painter {
 }  // namespace
 
 std::vector<stroke::Trace> vase_plum() {
-    Painter p{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::Laying::wrap}};
+    Painter p{{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::Laying::wrap}}};
     // The rock: cobalt with a flank of bone black, its faces dragged with a brush that is nearly dry.
     const std::vector<Care> half_dry{kWipe(0.3), kFlank("bone-black", 0.3), kWipe(0.66)};
     p.add({"rock", {{-31, 21, 0, 0.6}, {-38, 23, 8, 0.8}, {-43, 31, 10, 1}, {-47, 45, 8, 1}, {-48, 54, 0, 1}}}, "mixed-large", "cobalt", 0.16, half_dry);

@@ -72,15 +72,6 @@ Reach reach_of(const Footprint& footprint, const Motion& motion) {
     return reach;
 }
 
-Frame frame_of(const atlas::Piece& piece) {
-    Frame f;
-    f.origin = Vec3(piece.centre);
-    f.n = Vec3(piece.normal);
-    f.t = Vec3(piece.tangent);
-    f.b = glm::cross(f.n, f.t);
-    return f;
-}
-
 /// Distance between where one stamp frame and the walk put a piece's centre, metres.
 double disagreement(const Frame& frame, const atlas::Piece& piece, const PlanScratch::Node& n) {
     if (glm::dot(Vec3(piece.normal), frame.n) <= atlas::kLogMapMinCos)

@@ -16,15 +16,6 @@ constexpr double kSeamSearch = 2.0;   // texels from a seam to the nearest texel
 constexpr double kStep = 3;           // texels between the points of a way over a piece
 const double kCreaseCos = std::cos(20 * 0.017453292519943295);
 
-Frame frame_of(const Piece& piece) {
-    Frame f;
-    f.origin = Vec3(piece.centre);
-    f.n = Vec3(piece.normal);
-    f.t = Vec3(piece.tangent);
-    f.b = glm::cross(f.n, f.t);
-    return f;
-}
-
 Vec3f position(const TexelShape& shape, int t) { return {shape.px[t], shape.py[t], shape.pz[t]}; }
 Vec3f normal(const TexelShape& shape, int t) { return {shape.nx[t], shape.ny[t], shape.nz[t]}; }
 
@@ -348,6 +339,15 @@ void find_open_borders(const mesh::TriangleMesh& mesh, const Atlas& atlas, const
 }
 
 }  // namespace
+
+Frame frame_of(const Piece& piece) {
+    Frame f;
+    f.origin = Vec3(piece.centre);
+    f.n = Vec3(piece.normal);
+    f.t = Vec3(piece.tangent);
+    f.b = glm::cross(f.n, f.t);
+    return f;
+}
 
 TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
                   std::uint32_t triangle, const Vec3& position) {

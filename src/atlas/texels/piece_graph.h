@@ -26,6 +26,9 @@ struct Piece {
     std::uint8_t first_row = 0, last_row = 0;  ///< rows of the tile it lies in, inclusive
 };
 
+/// Centre, tangent, b and normal of a piece.
+Frame frame_of(const Piece& piece);
+
 /// From piece i to piece `to` (j). A point known in j's frame as x_j is in i's frame
 /// hop + R x_j with R = [[c, −s], [s, c]]: both unfolded over their common border.
 /// The edge j → i holds the inverse motion.
