@@ -70,15 +70,36 @@ TEST(LineWidth, ATraceThatBeginsPressedStaysOnItsLine) {
         }
 }
 
-TEST(LineWidth, AClosedLineHasNoGapWhereItsEndsMeet) {
-    const double width = 0.002, radius = 0.008;
-    Stroke stroke = straight("wolf-small", width, 0);
+Stroke circle(const std::string& brush, double width, double radius) {
+    Stroke stroke = straight(brush, width, 0);
     stroke.trace.samples.clear();
     for (int i = 0; i <= 200; ++i) {
         const double a = 2 * std::numbers::pi * (i % 200) / 200;
         stroke.trace.samples.push_back({.time = i / 120.0, .position = radius * Vec3{std::cos(a), std::sin(a), 0}, .pressure = 0.5});
     }
-    draw_to_width(stroke.trace, LineWidths(brush::load_preset("wolf-small")));
+    draw_to_width(stroke.trace, LineWidths(brush::load_preset(brush)));
+    return stroke;
+}
+
+TEST(LineWidth, AFineBrushSetsDownOnItsLineToo) {
+    // One that goes less than a texel ahead of its ink trails from the start as a large one does.
+    const double width = 0.0007, radius = 0.0084;
+    const Model model = sheet();
+    Painting painting(model);
+    painting.paint(circle("wolf-medium*0.1074", width, radius));
+    double farthest = 0;
+    for (const std::uint32_t slot : painting.canvas().touched_slots())
+        if (const ink::Plane* plane = painting.canvas().plane(slot, 0))
+            for (int t = 0; t < atlas::kTileTexels; ++t)
+                if (model.texels.tiles[slot].area[t] > 0 && (*plane)[t] >= 0.1f)
+                    farthest = std::max(farthest, std::abs(glm::length(Vec3(model.texels.position(slot, t))) - radius));
+    // Half of a line that may be a tenth wider, and a texel.
+    EXPECT_LT(farthest, 0.55 * width + 6e-5);
+}
+
+TEST(LineWidth, AClosedLineHasNoGapWhereItsEndsMeet) {
+    const double width = 0.002, radius = 0.008;
+    const Stroke stroke = circle("wolf-small", width, radius);
     EXPECT_TRUE(std::is_sorted(stroke.trace.samples.begin(), stroke.trace.samples.end(), [](auto& a, auto& b) { return a.time < b.time; }));
     const Model model = sheet();
     Painting painting(model);

@@ -108,13 +108,14 @@ namespace {
 // begins and trails from there. Set down from above it would bend to any side, and a tuft that is
 // pushed before the hand turns over only after centimetres.
 void set_down(Trace& trace, const HoldOptions& options) {
-    constexpr double kStep = 2.5e-4;                 // metres between samples
+    constexpr double kStep = 2.5e-4;                 // metres between samples, less where they would be few
+    constexpr double kFewest = 8, kMost = 100;
     constexpr double kShortest = 0.01, kLongest = 0.3;  // seconds
     constexpr double kWay = 3e-3;                    // metres over which the pace is taken
     const TraceSample first = trace.samples.front();
     const double way = lead_length(options.lead, depth_of(options, first.pressure));
-    const int n = static_cast<int>(std::min(std::ceil(way / kStep), 100.0));
-    if (n < 2) return;
+    if (!(way > 0)) return;
+    const int n = static_cast<int>(std::clamp(std::ceil(way / kStep), kFewest, kMost));
     double gone = 0, taken = 0;
     for (std::size_t i = 1; i < trace.samples.size() && gone < kWay; ++i) {
         gone += glm::length(trace.samples[i].position - trace.samples[i - 1].position);

@@ -103,7 +103,8 @@ HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& 
             .working_depth = working_depth(preset),
             .hover = 0.1 * preset.length,
             .steady = drape_radius(mesh),
-            .lead = {}};
+            .lead = {},
+            .lead_turn = std::min(HoldOptions{}.lead_turn, 0.075 * preset.length)};  // a fine tuft turns sooner
 }
 
 std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples,
