@@ -17,10 +17,13 @@ namespace tuft::cli {
 
 namespace {
 
+// Surfaces with more of the normal along z lie: they are written on and looked at from above, not from where they face.
+constexpr double kLies = 0.8;
+
 // Right and down of a drawing at a point: upright as somebody sees it who stands before the
-// surface; on a flat top, x stays to the right.
+// surface; on what lies, x stays to the right.
 std::pair<Vec3, Vec3> upright(const Vec3& n, double turn) {
-    const Vec3 right = std::abs(n.z) < 0.95 ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n)) : make_frame(Vec3{0}, n).t;
+    const Vec3 right = std::abs(n.z) < kLies ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n)) : make_frame(Vec3{0}, n).t;
     const Vec3 down = glm::cross(right, n);
     return {std::cos(turn) * right - std::sin(turn) * down, std::cos(turn) * down + std::sin(turn) * right};
 }
@@ -149,18 +152,22 @@ void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& mo
 }
 
 void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, const stroke::Model& model) {
-    Vec3 sum{0};
+    Vec3 sum{0}, up{0};
     double count = 0;
     for (const stroke::Stroke& s : strokes) {
         if (s.action != stroke::Action::stroke || s.trace.samples.empty() || s.layer == stroke::kPaletteLayer) continue;
         const auto weight = static_cast<double>(s.trace.samples.size());
         const Vec3 at = s.trace.flat ? s.trace.placement.origin : s.trace.samples[s.trace.samples.size() / 2].position;
         if (const auto near = model.query->closest_point(at)) sum += weight * near->face_normal;
+        if (s.trace.flat) up -= weight * glm::normalize(s.trace.placement.down);
         count += weight;
     }
     if (!(glm::length(sum) > 0.7 * count)) return;  // they go round the model, or there are none
     const Vec3 n = glm::normalize(sum);
-    if (std::hypot(n.x, n.y) > 0.1) view.azimuth = std::atan2(n.x, -n.y) / kDegree;
+    // On what lies nearly flat the drawing says from which of the four sides it is read, not the slope.
+    if (std::abs(n.z) > kLies && std::hypot(up.x, up.y) > 0.5 * count)
+        view.azimuth = 90 * std::round(std::atan2(-up.x, up.y) / kDegree / 90);
+    else if (std::hypot(n.x, n.y) > 0.1) view.azimuth = std::atan2(n.x, -n.y) / kDegree;
     view.elevation = std::clamp(std::asin(n.z) / kDegree + 10, -80.0, 80.0);
     // A wall that leans out is looked at from above the ground, as it stands; an underside from below.
     if (n.z > -0.7) view.elevation = std::max(view.elevation, 5.0);

@@ -136,6 +136,16 @@ TEST_F(Place, WhatLiesFlatIsWrittenOnFromAbove) {
     EXPECT_GT(painted("lines.inkml", "").low[2], 2) << "over the top";
 }
 
+TEST_F(Place, WhatLiesOnASlopeIsShownTheWayItReads) {
+    // The lid falls by 18 degrees to the back; the drawing stands upright seen from the front.
+    write("lid.obj", "v -40 -30 0\nv 40 -30 0\nv 40 30 0\nv -40 30 0\nv -40 -30 40\nv 40 -30 40\nv 40 30 20\nv -40 30 20\n"
+                     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    write("lines.inkml", lines(0, 0, 20));
+    EXPECT_EQ(picture_of("lid.obj", "0,5,28", ""), picture_of("lid.obj", "0,5,28", " --view 0,80"));
+    EXPECT_EQ(picture_of("lid.obj", "0,5,28 --place-turn 30", ""), picture_of("lid.obj", "0,5,28 --place-turn 30", " --view 0,80"));
+    EXPECT_EQ(picture_of("lid.obj", "0,5,28 --place-turn 90", ""), picture_of("lid.obj", "0,5,28 --place-turn 90", " --view 90,80"));
+}
+
 TEST_F(Place, TheUnitIsGuessedWhereNothingSaysIt) {
     // A box of 0.6 x 0.06 x 0.04: metres, as `inspect` says too.
     std::string metres = box(false);
