@@ -13,6 +13,7 @@
 #include "core/files.h"
 #include "core/units.h"
 #include "io/image.h"
+#include "stroke/hand/placement.h"
 
 namespace tuft::cli {
 namespace {
@@ -112,8 +113,9 @@ int run(const Brush& a) {
         io::write_image(a.picture, io::view_of(picture.width, picture.height, 3, picture.rgb.data()));
     }
     if (!a.sweep_depth.empty()) {
+        const double most = stroke::working_depth(preset), step = std::min(kMillimetre, 0.1 * most);
         std::vector<double> depths;
-        for (int mm = 0; mm <= 17; ++mm) depths.push_back(mm * kMillimetre);
+        for (int i = 0; i * step <= most + 0.5 * step; ++i) depths.push_back(i * step);
         const std::string csv = brush::sweep_csv(brush::sweep_depth(preset, depths));
         write_file(a.sweep_depth, csv.data(), csv.size());
     }

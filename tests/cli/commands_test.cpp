@@ -139,6 +139,8 @@ TEST_F(Commands, BrushPrintsItsTableAndListsItself) {
         last = row["moment_mNm"];
     }
     EXPECT_TRUE(read(path("b.csv")).starts_with("z_mm,width_mm,drag_mm,offset_mm\n"));
+    ASSERT_EQ(tuft("brush wolf*0.1 --sweep-depth " + path("fine.csv")).status, 0);
+    EXPECT_EQ(std::ranges::count(read(path("fine.csv")), char(10)), 12) << "a tenth of the working depth to the next";
 }
 
 TEST_F(Commands, ABrushIsCarriedOnAndReplaysTheSame) {
