@@ -81,6 +81,18 @@ Stroke circle(const std::string& brush, double width, double radius) {
     return stroke;
 }
 
+TEST(LineWidth, ALeanAgainstTheWayDoesNotTurnTheTuftOver) {
+    // Ground that is not quite as the hand takes it: three and six degrees tip ahead, and to the sides.
+    for (const char* brush : {"wolf-medium*0.168", "goat-medium", "mixed-small"})
+        for (const Vec2& lean : {Vec2{-0.05, 0}, Vec2{-0.1, 0}, Vec2{-0.05, 0.05}, Vec2{0, -0.05}}) {
+            const double width = brush == std::string("goat-medium") ? 0.002 : 0.0012;
+            Stroke stroke = straight(brush, width, 0.3);
+            for (TraceSample& s : stroke.trace.samples) s.tilt = lean;
+            draw_to_width(stroke.trace, LineWidths(brush::load_preset(brush)));
+            EXPECT_LT(drawn(stroke).farthest, 0.75 * width + 6e-5) << brush << ' ' << lean.x << ' ' << lean.y;  // as above, and a texel
+        }
+}
+
 TEST(LineWidth, AFineBrushSetsDownOnItsLineToo) {
     // One that goes less than a texel ahead of its ink trails from the start as a large one does.
     const double width = 0.0007, radius = 0.0084;

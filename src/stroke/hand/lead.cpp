@@ -5,6 +5,7 @@
 
 #include "brush/sweep.h"
 #include "core/ease.h"
+#include "core/ease.h"
 
 namespace tuft::stroke {
 namespace {
@@ -104,24 +105,27 @@ Vec2 lead_of(const HoldOptions& options, double pressure, const Vec2& tilt, cons
 
 namespace {
 
+constexpr double kLean = 0.12;      // radians by which the holder tips ahead where it sets down pressed
+constexpr double kLeanTurns = 4;    // over so many `lead_turn` of travel it comes upright
+
 // The hand of a trace that begins pressed goes the lead while it presses: the tip touches where the trace
 // begins and trails from there. Set down from above it would bend to any side, and a tuft that is
 // pushed before the hand turns over only after centimetres.
-void set_down(Trace& trace, const HoldOptions& options) {
+bool set_down(Trace& trace, const HoldOptions& options) {
     constexpr double kStep = 2.5e-4;                 // metres between samples, less where they would be few
     constexpr double kFewest = 8, kMost = 100;
     constexpr double kShortest = 0.01, kLongest = 0.3;  // seconds
     constexpr double kWay = 3e-3;                    // metres over which the pace is taken
     const TraceSample first = trace.samples.front();
     const double way = lead_length(options.lead, depth_of(options, first.pressure));
-    if (!(way > 0)) return;
+    if (!(way > 0)) return false;
     const int n = static_cast<int>(std::clamp(std::ceil(way / kStep), kFewest, kMost));
     double gone = 0, taken = 0;
     for (std::size_t i = 1; i < trace.samples.size() && gone < kWay; ++i) {
         gone += glm::length(trace.samples[i].position - trace.samples[i - 1].position);
         taken = trace.samples[i].time - first.time;
     }
-    if (gone <= 0) return;
+    if (gone <= 0) return false;
     const double duration = std::clamp(taken / gone * way, kShortest, kLongest);
     for (TraceSample& s : trace.samples) s.time += duration;
     std::vector<TraceSample> touch(static_cast<std::size_t>(n), first);
@@ -131,20 +135,35 @@ void set_down(Trace& trace, const HoldOptions& options) {
         s.time = first.time + duration * i / n;
     }
     trace.samples.insert(trace.samples.begin(), touch.begin(), touch.end());
+    return true;
+}
+
+// Ground that is not quite as the hand takes it leans the tuft, and one that leans tip ahead is pushed. The holder is
+// tipped ahead by more than that until the tuft trails.
+void lean_ahead(Trace& trace, const HoldOptions& options, const Vec2& ahead) {
+    const double until = kLeanTurns * options.lead_turn;
+    double gone = 0;
+    for (std::size_t i = 0; i < trace.samples.size() && gone < until; ++i) {
+        TraceSample& s = trace.samples[i];
+        s.tilt += kLean * (1 - smooth_step(gone / until)) * ahead;
+        if (i + 1 < trace.samples.size()) gone += glm::length(trace.samples[i + 1].position - s.position);
+    }
 }
 
 }  // namespace
 
 Trace lead_hand(Trace trace, const HoldOptions& options) {
     if (options.lead.empty() || trace.samples.empty() || !trace.flat) return trace;
-    set_down(trace, options);
+    const bool pressed = set_down(trace, options);
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
     Vec2 dragged = first;
     for (const TraceSample& s : trace.samples) {
         const Vec2 way = Vec2(s.position) - first;
         if (glm::length(way) >= 0.5 * options.lead_turn) {
-            dragged = first - way * (options.lead_turn / glm::length(way));
+            const Vec2 ahead = glm::normalize(way);
+            dragged = first - options.lead_turn * ahead;
+            if (pressed) lean_ahead(trace, options, ahead);
             break;
         }
     }

@@ -102,7 +102,7 @@ HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& 
     return {.tuft_length = preset.length,
             .working_depth = working_depth(preset),
             .hover = 0.1 * preset.length,
-            .steady = drape_radius(mesh),
+            .steady = std::min(drape_radius(mesh), 0.4 * preset.length),  // a fine tuft feels finer ground
             .lead = {},
             .lead_turn = std::min(HoldOptions{}.lead_turn, 0.075 * preset.length)};  // a fine tuft turns sooner
 }
