@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -16,7 +17,7 @@
 /// way. In this proportion, with κ = κ0, their operator is κ (1 - λ² d²/dx²)² where r is even: a
 /// push at one node is felt over some λ and nowhere drawn in. u = u' = 0 at the ferrule, both free
 /// at the tip; a side node that meets a wall (c_i away) is pushed back by κ_w. Closed solve:
-/// banded Cholesky, repeated while the set of nodes at walls changes (at most kWallPasses).
+/// banded L D Lᵀ, repeated while the set of nodes at walls changes (at most kWallPasses).
 /// Source: Chu and Tai 2002, 4.1.1 and 4.2.2 (lateral nodes, stretch and bend springs).
 namespace tuft::brush {
 
@@ -36,10 +37,20 @@ struct LateralSide {
     std::vector<double> clear; ///< c, m, displacement at which a wall is met; infinite: none
 };
 
+/// The springs of one row of side nodes, made once for all that is solved with them.
+struct LateralRow {
+    std::vector<std::array<double, 3>> band;  ///< of their matrix over v, lower half: [i][d] is the
+                                              ///< element (i, i - d); that of the root holds it at 0
+    std::vector<double> weight, taper;        ///< w_i, metres; r_i / r_0
+    double wall = 0;                          ///< κ_w, N/m²
+};
+LateralRow lateral_row(const std::vector<double>& at, const LateralSprings& springs);
+
 /// Displacements u, metres, outward, of the nodes at arc lengths `at` (metres from the ferrule,
 /// strictly growing). [n+1]; u_0 = 0.
 std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSprings& springs,
                                   const LateralSide& side);
+std::vector<double> solve_lateral(const LateralRow& row, const LateralSide& side);
 
 /// E and its gradient at displacements u, for tests. [n+1]; the gradient at the root is 0.
 struct LateralEnergy {
@@ -58,6 +69,7 @@ double stored_at_rest(const std::vector<double>& at, const LateralSprings& sprin
 struct LateralFriction {
     std::vector<double> most;   ///< T >= 0, N/m on both sides together. [n+1]
     std::vector<double> stuck;  ///< d, m, displacement at which they would stick to the surface. [n+1]
+    std::vector<signed char> slips;  ///< which are thought to slip, as in LateralShift; or none
 };
 
 /// Displacements δ, metres, by which both side nodes of each pair shift to the same side while the
@@ -66,13 +78,16 @@ struct LateralFriction {
 ///   min S(δ) + Σ w_i T_i |δ_i - d_i|,
 ///
 /// S what the springs of both sides store without walls. Slip loses w T |δ - d|, so that S grows by
-/// no more than friction brings. Passes over the set of nodes that stick, at most kDragPasses.
+/// no more than friction brings. Passes over the set of nodes that stick, at most kDragPasses, from
+/// the set that is given.
 struct LateralShift {
     std::vector<double> shift;  ///< δ. [n+1]
     double stored = 0;          ///< S, joules
+    std::vector<signed char> slips;  ///< 0: sticks; else the sign of the force of the surface. [n+1] or none
 };
 LateralShift drag_lateral(const std::vector<double>& at, const LateralSprings& springs,
                           const LateralFriction& friction);
+LateralShift drag_lateral(const LateralRow& row, const LateralFriction& friction);
 
 /// Half-width r (1 + v): v = u/r with the outward part bent over to stay below `most` - 1, the
 /// inward part to stay above -0.6: hair packs, and cannot pass through itself.

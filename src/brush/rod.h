@@ -17,7 +17,7 @@
 /// of one length, so that a point gives a way s along itself, by the potential
 /// min_s ½ k_e s² + contact(r*-z_i - s c_i).
 ///
-/// over unit tangents t_j by Newton with a dense Cholesky factorisation; N̂ is the normal
+/// over unit tangents t_j by Newton, whose steps are found by elimination along the rod; N̂ is the normal
 /// force of the pass before (outer fixed point), a_i the sticking anchor. Twist is carried
 /// by the clamp. Valid for any deflection; second order in the segment length.
 ///
@@ -175,13 +175,16 @@ std::vector<Vec3> nodes(const Rod& rod, const Memory& memory);
 Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
              std::span<const Obstacle> obstacles, const Law& law, const Load& load = {});
 
-/// Value and gradient of Π for frozen friction, for tests: x holds 2n steps along each
+/// Value and derivatives of Π for frozen friction, for tests: x holds 2n steps along each
 /// segment's two normals from the state in `memory`.
 struct Probe {
     double value = 0;
     std::vector<double> gradient;
+    std::vector<double> hessian;       ///< [2n × 2n] its lower half, column major
+    std::vector<double> step;          ///< Newton's, each segment's pivot raised by `damping` times the
+                                       ///< stiffness of its joints; none where it is not positive definite
 };
 Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles,
-                   const Law& law, const Load& load, std::span<const double> x);
+                   const Law& law, const Load& load, std::span<const double> x, double damping = 0);
 
 }  // namespace tuft::brush::rod

@@ -12,11 +12,6 @@ namespace {
 constexpr double kFullBend = 1.2;
 constexpr double kFullBendStiffness = 20;  ///< times the joint's own
 
-/// φ = θ/sin θ, χ = -dφ/dc and dχ/dc as functions of c = cos θ.
-struct AngleFunctions {
-    double phi, chi, dchi;
-};
-
 AngleFunctions angle_functions(double c, double s) {
     const double theta = std::atan2(s, c);
     if (theta < 0.05) {
@@ -58,10 +53,22 @@ void add_full_bend(double k, const Vec2& w, JointForce& out) {
 
 }  // namespace
 
-Vec2 bend_of(const Vec3& a, const Vec3& side, const Vec3& outer) {
+namespace {
+
+struct Bend {
+    Vec2 w{0};
+    AngleFunctions angle;
+};
+
+Bend bend_between(const Vec3& a, const Vec3& side, const Vec3& outer) {
     const Vec2 p{glm::dot(side, outer), glm::dot(glm::cross(a, side), outer)};
-    return angle_functions(glm::dot(a, outer), glm::length(p)).phi * p;
+    const AngleFunctions f = angle_functions(glm::dot(a, outer), glm::length(p));
+    return {f.phi * p, f};
 }
+
+}  // namespace
+
+Vec2 bend_of(const Vec3& a, const Vec3& side, const Vec3& outer) { return bend_between(a, side, outer).w; }
 
 JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const Vec2& w) {
     JointForce out;
@@ -205,7 +212,9 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     out.node[0] = frozen.clamp.position;
     for (int j = 0; j < n; ++j) {
         const Vec3& b = shape.tangent[j];
-        out.joint[j] = joint_force(rod, j, (*frozen.joint)[j], bend_of(a, side, b));
+        const Bend bend = bend_between(a, side, b);
+        out.joint[j] = joint_force(rod, j, (*frozen.joint)[j], bend.w);
+        out.joint[j].angle = bend.angle;
         // A dead moment at the end does the same work in every joint.
         value += out.joint[j].energy - glm::dot(moment, out.joint[j].bend);
         out.joint[j].moment -= moment;
@@ -224,124 +233,6 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
         value += add_contact(frozen, p, out);
     }
     out.value = value;
-}
-
-namespace {
-
-struct Mat2 {
-    double m[2][2] = {{0, 0}, {0, 0}};
-};
-
-/// Blocks of the gradient and Hessian of one joint between inner segment a and outer b.
-struct JointBlocks {
-    Vec2 ga, gb;
-    Mat2 aa, ab, bb;
-};
-
-JointBlocks joint_blocks(const JointForce& jf, const Vec3& a, const Vec3& a1, const Vec3& b,
-                         const Vec3& b1) {
-    const Vec3 a2 = glm::cross(a, a1), b2 = glm::cross(b, b1);
-    const double c = glm::dot(a, b);
-    const double p[2] = {glm::dot(a1, b), glm::dot(a2, b)};
-    const double q[2] = {glm::dot(b1, a), glm::dot(b2, a)};
-    const double r[2][2] = {{glm::dot(a1, b1), glm::dot(a1, b2)}, {glm::dot(a2, b1), glm::dot(a2, b2)}};
-    const AngleFunctions f = angle_functions(c, std::hypot(p[0], p[1]));
-    const double m[2] = {jf.moment.x, jf.moment.y};
-    const double d[2][2] = {{jf.d00, jf.d01}, {jf.d01, jf.d11}};
-    const double mp = m[0] * p[0] + m[1] * p[1];
-    const double rm[2] = {r[0][0] * m[0] + r[1][0] * m[1], r[0][1] * m[0] + r[1][1] * m[1]};
-
-    double ja[2][2], jb[2][2], dja[2][2], djb[2][2];
-    for (int i = 0; i < 2; ++i) {
-        for (int k = 0; k < 2; ++k) {
-            ja[i][k] = -f.chi * p[i] * p[k] - (i == k ? f.phi * c : 0);
-            jb[i][k] = -f.chi * p[i] * q[k] + f.phi * r[i][k];
-        }
-    }
-    JointBlocks out;
-    for (int k = 0; k < 2; ++k) {
-        out.ga[k] = ja[0][k] * m[0] + ja[1][k] * m[1];
-        out.gb[k] = jb[0][k] * m[0] + jb[1][k] * m[1];
-        for (int i = 0; i < 2; ++i) {
-            dja[i][k] = d[i][0] * ja[0][k] + d[i][1] * ja[1][k];
-            djb[i][k] = d[i][0] * jb[0][k] + d[i][1] * jb[1][k];
-        }
-    }
-    // Jᵀ D J plus the moment times the second derivative of w.
-    for (int i = 0; i < 2; ++i) {
-        for (int k = 0; k < 2; ++k) {
-            const double id = i == k ? 1 : 0;
-            out.aa.m[i][k] = ja[0][i] * dja[0][k] + ja[1][i] * dja[1][k] +
-                             (f.chi * c - 0.5 * f.phi) * (m[i] * p[k] + p[i] * m[k]) +
-                             f.chi * c * mp * id - f.dchi * mp * p[i] * p[k];
-            out.bb.m[i][k] = jb[0][i] * djb[0][k] + jb[1][i] * djb[1][k] +
-                             (f.chi * c - f.phi) * mp * id -
-                             f.chi * (q[i] * rm[k] + rm[i] * q[k]) - f.dchi * mp * q[i] * q[k];
-            out.ab.m[i][k] = ja[0][i] * djb[0][k] + ja[1][i] * djb[1][k] +
-                             (f.chi * c - f.phi) * m[i] * q[k] - f.chi * p[i] * rm[k] -
-                             f.chi * mp * r[i][k] - f.dchi * mp * p[i] * q[k];
-        }
-    }
-    return out;
-}
-
-}  // namespace
-
-void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at,
-                   std::vector<double>& gradient, std::vector<double>& hessian) {
-    const Rod& rod = *frozen.rod;
-    const int n = rod.segments(), size = 2 * n;
-    gradient.assign(size, 0);
-    hessian.assign(static_cast<std::size_t>(size) * size, 0);
-    const auto h = [&](int row, int col) -> double& {
-        return hessian[static_cast<std::size_t>(col) * size + row];
-    };
-
-    Vec3 a = frozen.clamp.tangent, side = frozen.clamp.side;
-    for (int j = 0; j < n; ++j) {
-        const JointBlocks jb = joint_blocks(at.joint[j], a, side, shape.tangent[j], shape.side[j]);
-        for (int i = 0; i < 2; ++i) {
-            gradient[2 * j + i] += jb.gb[i];
-            if (j > 0) gradient[2 * (j - 1) + i] += jb.ga[i];
-            for (int k = 0; k < 2; ++k) {
-                h(2 * j + i, 2 * j + k) += jb.bb.m[i][k];
-                if (j > 0) {
-                    h(2 * (j - 1) + i, 2 * (j - 1) + k) += jb.aa.m[i][k];
-                    h(2 * j + k, 2 * (j - 1) + i) += jb.ab.m[i][k];
-                }
-            }
-        }
-        a = shape.tangent[j];
-        side = shape.side[j];
-    }
-
-    // Forces and stiffness outboard of segment b, seen through the lever arms.
-    Vec3 slope{0};
-    Mat3 stiffness(0.0);
-    std::vector<Vec3> second(n);
-    for (int j = 0; j < n; ++j) second[j] = glm::cross(shape.tangent[j], shape.side[j]);
-    for (int b = n - 1; b >= 0; --b) {
-        slope += at.slope[b + 1];
-        stiffness += at.curvature[b + 1];
-        if (b + 1 < n) stiffness += 2.0 * at.coupling[b + 1];
-        // Segments inboard of b also move the node at its inner end.
-        const Mat3 inboard = stiffness + at.coupling[b];
-        const double lb = rod.length[b];
-        const Vec3 tb[2] = {shape.side[b], second[b]};
-        const double straight = -lb * glm::dot(shape.tangent[b], slope);
-        for (int k = 0; k < 2; ++k) {
-            gradient[2 * b + k] += lb * glm::dot(tb[k], slope);
-            h(2 * b + k, 2 * b + k) += straight;
-            const Vec3 own = lb * (stiffness * tb[k]), y = lb * (inboard * tb[k]);
-            h(2 * b + k, 2 * b) += lb * glm::dot(shape.side[b], own);
-            h(2 * b + k, 2 * b + 1) += lb * glm::dot(second[b], own);
-            for (int c = 0; c < b; ++c) {
-                const double lc = rod.length[c];
-                h(2 * b + k, 2 * c) += lc * glm::dot(shape.side[c], y);
-                h(2 * b + k, 2 * c + 1) += lc * glm::dot(second[c], y);
-            }
-        }
-    }
 }
 
 void advance(const Shape& from, std::span<const double> u, double scale, Shape& to) {

@@ -74,8 +74,14 @@ struct Shape {
     std::vector<Vec3> tangent, side;
 };
 
+/// φ = θ/sin θ, χ = -dφ/dc and dχ/dc as functions of c = cos θ.
+struct AngleFunctions {
+    double phi = 1, chi = 0, dchi = 0;
+};
+
 struct JointForce {
     Vec2 bend{0};            ///< w: log of the outer tangent at the inner one
+    AngleFunctions angle;    ///< of its angle
     Vec2 moment{0};          ///< ∂ψ/∂w
     double d00 = 0, d01 = 0, d11 = 0;  ///< ∂²ψ/∂w²
     double energy = 0;
@@ -102,10 +108,43 @@ Vec2 end_moment(const Frozen& frozen);
 /// Joint moments in `out` are less the end moment, whose work is part of Π.
 void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out);
 
-/// Gradient [2n] and lower half of the Hessian [2n × 2n, column major] over steps along
-/// (side, tangent × side) of every segment.
-void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at,
-                   std::vector<double>& gradient, std::vector<double>& hessian);
+struct Mat2 {
+    double m[2][2] = {{0, 0}, {0, 0}};
+};
+
+/// First and second derivatives of Π over steps along (side, tangent × side) of every segment; the
+/// second ones but for what the nodes' curvatures add through the lever arms.
+struct Derivatives {
+    struct Segment {
+        Mat2 own;      ///< over its own steps
+        Mat2 inboard;  ///< [i][k] over step i of the segment inboard and its own step k
+    };
+    std::vector<double> gradient;  ///< [2n]
+    std::vector<Vec3> second;      ///< [n] tangent × side
+    std::vector<Segment> segment;  ///< [n]
+};
+void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out);
+
+/// Buffer of `descend`: steps of each segment by the move of its inner node and the steps inboard.
+struct Elimination {
+    struct Gain {
+        double rest[2] = {0, 0};
+        Vec3 move[2] = {Vec3{0}, Vec3{0}};
+        Mat2 inner;
+    };
+    std::vector<Gain> gain;
+};
+
+/// Solves (H + damping · (stiffness of the joints beside each segment)) u = -gradient for the steps
+/// u [2n], by elimination from the tip to the root: with the moves of the nodes as further unknowns,
+/// x_{j+1} = x_j + l_j T_j u_j, each segment only meets its neighbours. O(n). False where the matrix
+/// is not positive definite.
+bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& derivatives, double damping,
+             Elimination& work, std::vector<double>& step);
+
+/// Lower half of H [2n × 2n, column major].
+void fill_hessian(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& derivatives,
+                  std::vector<double>& hessian);
 
 /// The shape after steps u [2n] scaled by `scale`.
 void advance(const Shape& from, std::span<const double> u, double scale, Shape& to);

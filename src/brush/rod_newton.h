@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <vector>
 
@@ -15,9 +14,10 @@ using DenseMatrix = Eigen::MatrixXd;
 struct Workspace {
     Evaluation at, trial;
     Shape next;
-    std::vector<double> gradient, hessian, step;
+    Derivatives derivatives;
+    Elimination elimination;
+    std::vector<double> hessian, step;
     DenseMatrix matrix;
-    Eigen::LLT<DenseMatrix> factor;
     Eigen::SelfAdjointEigenSolver<DenseMatrix> eigen;
 };
 
@@ -26,7 +26,8 @@ struct NewtonResult {
     int iterations = 0;
 };
 
-/// Descends Π from `shape` for at most `limit` iterations; Π never rises. ws.at holds the end.
+/// Descends Π from `shape`, of which ws.at is the evaluation, for at most `limit` iterations; Π never
+/// rises. ws.at holds the end.
 NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit);
 
 }  // namespace tuft::brush::rod

@@ -79,16 +79,21 @@ struct Layer {
     /// The planes of the nodes beside a point, or a node's own and the one next to it that
     /// differs most, where they part.
     void lay_parted(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
-        Obstacle a = from, b = to;
-        if (at.s == 0 || at.s == 1) {
-            const int i = at.s == 0 ? at.node : at.node + 1;
-            if (at.s == 1) a = to;
-            b = facing(obstacles[i + 1 <= n() ? i + 1 : i - 1], a.normal);
-            if (i > 1 && i < n()) {
-                const Obstacle before = facing(obstacles[i - 1], a.normal);
-                if (glm::dot(a.normal, before.normal) < glm::dot(a.normal, b.normal)) b = before;
-            }
+        if (at.s > 0 && at.s < 1) {
+            lay_parted(p, from, to);
+            return;
         }
+        const int i = at.s == 0 ? at.node : at.node + 1;
+        const Obstacle& own = at.s == 1 ? to : from;
+        Obstacle other = facing(obstacles[i + 1 <= n() ? i + 1 : i - 1], own.normal);
+        if (i > 1 && i < n()) {
+            const Obstacle before = facing(obstacles[i - 1], own.normal);
+            if (glm::dot(own.normal, before.normal) < glm::dot(own.normal, other.normal)) other = before;
+        }
+        lay_parted(p, own, other);
+    }
+
+    void lay_parted(std::size_t p, const Obstacle& a, const Obstacle& b) {
         const double alike = glm::dot(a.normal, b.normal);
         constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°, as over smooth surfaces
         const double share = smooth_step((kAlike - alike) / (kAlike - kApart));
@@ -103,26 +108,34 @@ struct Layer {
     /// Planes, radii and tributary lengths of the contact points.
     void lay_points() {
         if (obstacles.empty()) return;
-        frozen.crease.assign(static_cast<std::size_t>(law.points_per_segment) * n() + 1, {});
         const int per = law.points_per_segment;
         fine.resize(static_cast<std::size_t>(per) * n() + 1);
+        frozen.crease.assign(fine.size(), {});
         frozen.weight.assign(fine.size(), 0);
         for (std::size_t p = 0; p < fine.size(); ++p) {
             const PointPlace at = point_place(static_cast<int>(p), per, n());
-            const Vec3 x = point_at(at, node);
-            const Obstacle a = within_reach(obstacles[at.node], x), b = within_reach(obstacles[at.node + 1], x);
-            const Vec3 normal_sum = (1 - at.s) * a.normal + at.s * b.normal;
-            const double size = glm::length(normal_sum);
-            fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
-            fine[p].normal = size > 1e-6 ? normal_sum / size : a.normal;
-            fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
-            if (law.edge > 0) lay_crease(p, at, a, b);
+            const Obstacle &from = obstacles[at.node], &to = obstacles[at.node + 1];
+            if (from.at_edge() || to.at_edge()) {
+                const Vec3 x = point_at(at, node);
+                lay_point(p, at, within_reach(from, x), within_reach(to, x));
+            } else {
+                lay_point(p, at, from, to);
+            }
             if (p + 1 < fine.size()) {
                 const double half = 0.5 * rod.length[at.node] / per;
                 frozen.weight[p] += half;
                 frozen.weight[p + 1] += half;
             }
         }
+    }
+
+    void lay_point(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b) {
+        const Vec3 normal_sum = (1 - at.s) * a.normal + at.s * b.normal;
+        const double size = glm::length(normal_sum);
+        fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
+        fine[p].normal = size > 1e-6 ? normal_sum / size : a.normal;
+        fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
+        if (law.edge > 0) lay_crease(p, at, a, b);
     }
 
     /// How much the hair's ends give at each contact point: 1/k_e, k_e = 2 P s_e^-2 per length

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "brush/rod.h"
 #include "brush/rod_energy.h"
@@ -166,7 +167,7 @@ struct Solver {
         }
     }
 
-    /// Starts from the shape carried on as it changed in the last solve, if Π is lower there.
+    /// Goes on from the shape carried on as it changed in the last solve, if Π is lower there.
     void guess_onward() {
         if (memory.turn.empty() || memory.moved <= 0) return;
         const double part = std::min(2.0, moved / memory.moved);
@@ -176,9 +177,10 @@ struct Solver {
             ws.next.tangent[j] = glm::normalize(shape.tangent[j] + part * (frame * memory.turn[j]));
         }
         ws.next.side = transported_sides(memory.clamp, ws.next.tangent);
-        evaluate(frozen, shape, ws.at);
         evaluate(frozen, ws.next, ws.trial);
-        if (ws.trial.value < ws.at.value) std::swap(shape, ws.next);
+        if (!(ws.trial.value < ws.at.value)) return;
+        std::swap(shape, ws.next);
+        std::swap(ws.at, ws.trial);
     }
 
     /// Takes the normal forces of the pass; true when they no longer change.
@@ -225,6 +227,7 @@ struct Solver {
         std::vector<Vec3> x = memory.node;
         for (out.passes = 1;; ++out.passes) {
             freeze_friction(x);
+            evaluate(frozen, shape, ws.at);
             if (out.passes == 1) guess_onward();
             const NewtonResult r = newton(frozen, shape, ws, law.max_iterations - out.iterations);
             out.iterations += r.iterations;
@@ -329,7 +332,7 @@ Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
 }
 
 Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles,
-                   const Law& law, const Load& load, std::span<const double> x) {
+                   const Law& law, const Load& load, std::span<const double> x, double damping) {
     Workspace ws;
     Memory copy = memory;
     Solver solver{rod, copy, obstacles, law, {}, {}, {}, {}, {}, {}, ws, 0};
@@ -347,7 +350,10 @@ Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacl
     Probe probe;
     evaluate(solver.frozen, moved, ws.at);
     probe.value = ws.at.value;
-    differentiate(solver.frozen, moved, ws.at, probe.gradient, ws.hessian);
+    differentiate(solver.frozen, moved, ws.at, ws.derivatives);
+    probe.gradient = ws.derivatives.gradient;
+    fill_hessian(rod, moved, ws.at, ws.derivatives, probe.hessian);
+    if (!descend(rod, moved, ws.at, ws.derivatives, damping, ws.elimination, probe.step)) probe.step.clear();
     return probe;
 }
 

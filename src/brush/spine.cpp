@@ -143,6 +143,7 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Qu
     spine.side = std::move(sections.sides);
     spine.wide = sections.wide;
     spine.aside = std::move(sections.aside);
+    spine.slips = std::move(sections.slips);
     out.spread_energy = sections.spread_energy;
     out.aside_gain = sections.aside_energy - spine.aside_energy;
     spine.aside_energy = sections.aside_energy;

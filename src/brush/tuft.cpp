@@ -162,6 +162,7 @@ void reshape(Tuft& tuft) {
     const rod::Clamp clamp = tuft.spine.memory.clamp;
     tuft.spine.side.clear();
     tuft.spine.aside.clear();
+    tuft.spine.slips.clear();
     tuft.spine.aside_energy = 0;
     tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
     tuft.spine.one_sided = Vec2{0};

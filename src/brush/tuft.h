@@ -34,6 +34,7 @@ struct Spine {
     std::vector<Vec3> side;         ///< side nodes of the last step, metres from the root, ferrule
                                     ///< frame, tip first, two to a node; or none
     std::vector<double> aside;      ///< [n+1] m, how far friction has shifted the side nodes along e, or none
+    std::vector<signed char> slips; ///< [n+1] which of them slipped in the last step, or none
     double aside_energy = 0;        ///< J, that their springs hold by this
     double pressed = 0;             ///< contact energy of the last solve, B0/L
 };

@@ -159,7 +159,7 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
     LateralSide plus{std::vector<double>(count, 0),
                      std::vector<double>(count, std::numeric_limits<double>::infinity())};
     LateralSide minus = plus;
-    LateralFriction friction{std::vector<double>(count, 0), std::vector<double>(count, 0)};
+    LateralFriction friction{std::vector<double>(count, 0), std::vector<double>(count, 0), in.spine.slips};
     for (std::size_t i = 0; i < count; ++i) {
         if (i > 0) at[i] = at[i - 1] + in.spine.rod.length[i - 1] * p.length;
         const double moment = i + 1 < count ? in.result.moment[i] : 0;
@@ -180,14 +180,15 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
         plus.push[i] = minus.push[i] = wet * in.spine.rest_radius[i] * widen;
     }
     Widths out;
-    out.shift = drag_lateral(at, springs, friction);
+    const LateralRow row = lateral_row(at, springs);
+    out.shift = drag_lateral(row, friction);
     const std::vector<double>& shift = out.shift.shift;
     for (std::size_t i = 0; i < count && !in.walls.empty(); ++i) {
         plus.clear[i] -= shift[i];
         minus.clear[i] += shift[i];
     }
-    out.plus = solve_lateral(at, springs, plus);
-    out.minus = in.walls.empty() ? out.plus : solve_lateral(at, springs, minus);
+    out.plus = solve_lateral(row, plus);
+    out.minus = in.walls.empty() ? out.plus : solve_lateral(row, minus);
     out.spread_energy = stored_at_rest(at, springs, plus, out.plus) + stored_at_rest(at, springs, minus, out.minus);
     for (std::size_t i = 0; i < count; ++i) {
         const double r = in.spine.rest_radius[i];
@@ -214,6 +215,7 @@ SectionOutput make_sections(const SectionInput& in) {
     Widths widths = side_nodes(in, e);
     SectionOutput out;
     out.aside = std::move(widths.shift.shift);
+    out.slips = std::move(widths.shift.slips);
     out.aside_energy = widths.shift.stored;
     out.spread_energy = widths.spread_energy;
     out.sections.resize(count);

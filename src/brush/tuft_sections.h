@@ -24,6 +24,7 @@ struct SectionOutput {
     std::vector<Section> sections;    ///< tip first
     Vec3 wide{1, 0, 0};               ///< e at the root, ferrule frame
     std::vector<double> aside;        ///< as in Spine
+    std::vector<signed char> slips;   ///< as in Spine
     double aside_energy = 0, spread_energy = 0;  ///< J
     std::vector<Vec3> sides;          ///< side nodes from the root, metres, ferrule frame, tip
                                       ///< first: that of the side of e, that of the other

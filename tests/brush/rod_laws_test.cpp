@@ -210,6 +210,34 @@ TEST(RodLaws, GradientMatchesAtRandomShapesToo) {
     }
 }
 
+TEST(RodLaws, EliminationAlongTheRodSolvesTheFullMatrix) {
+    const Scene scenes[] = {rough_scene(false), rough_scene(true), rough_scene(false, Under::edge),
+                            rough_scene(false, Under::corner), rough_scene(false, Under::rim)};
+    constexpr int kSize = 16;
+    Random random(7);
+    int solved = 0;
+    for (int trial = 0; trial < 50; ++trial) {
+        const Scene& s = scenes[trial % 5];
+        std::vector<double> x(kSize);
+        for (double& u : x) u = trial < 5 ? 0 : random.uniform(-0.2, 0.2);
+        const double damping = trial % 2 == 0 ? 0 : 3;
+        const Probe at = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x, damping);
+        if (at.step.empty()) continue;
+        ++solved;
+        for (int i = 0; i < kSize; ++i) {
+            const double outer = i / 2 + 1 < 8 ? s.rod.stiffness[i / 2 + 1] : 0;
+            double sum = at.gradient[i] + damping * (s.rod.stiffness[i / 2] + outer) * at.step[i], size = std::abs(at.gradient[i]);
+            for (int k = 0; k < kSize; ++k) {
+                const double part = at.hessian[kSize * std::min(i, k) + std::max(i, k)] * at.step[k];
+                sum += part;
+                size += std::abs(part);
+            }
+            EXPECT_NEAR(sum, 0, 1e-9 * size) << trial << " row " << i;  // rounding, by the condition of the pivots
+        }
+    }
+    EXPECT_GT(solved, 30);
+}
+
 TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
     // A run stopped after k iterations is the beginning of a longer one: Π at its end never rises with
     // k. Elastic and without friction, so that nothing but the shape changes from run to run.
