@@ -15,6 +15,9 @@ using namespace tuft::ink::wet;
 float chance(std::uint64_t a, std::uint64_t b) { return static_cast<float>(uniform(a, b)); }
 
 /// Conductances as of a stretched, sheared chart with a hole in it.
+/// Texels outside the charts.
+bool beside(int texel) { return texel % 29 == 7; }
+
 void fill(Geometry& g, std::uint64_t seed) {
     g.valid.fill((1u << (kSide + 2)) - 1);
     if (seed % 2) g.gd = std::make_unique<Geometry::Diagonals>();
@@ -25,7 +28,7 @@ void fill(Geometry& g, std::uint64_t seed) {
     };
     for (int i = 0; i < kTexels; ++i) {
         g.gx[Geometry::right_of(i % kSide, i / kSide)] = i % 37 ? size(0, i) : 0;
-        g.inverse[i] = 0.7f + 0.6f * chance(seed + 1, i);
+        g.inverse[i] = beside(i) ? 0 : 0.7f + 0.6f * chance(seed + 1, i);
     }
     for (int i = 0; i < kTexels + kSide; ++i) g.gy[i] = size(3, i);
     for (int i = 0; i < kSide; ++i) g.gx[Geometry::right_of(-1, i)] = size(5, i);
@@ -56,7 +59,7 @@ int main() {
         std::array<const float*, 9> w_at, s_at, p_at;
         for (std::size_t i = 0; i < 9; ++i) {
             for (int t = 0; t < kTexels; ++t) {
-                const bool wet = chance(round, 9000 * i + t) >= dry;
+                const bool wet = chance(round, 9000 * i + t) >= dry && !(i == 4 && beside(t));
                 w[i][t] = wet ? 0.01f + 6 * chance(round + 100, 9000 * i + t) : 0;
                 s[i][t] = wet && round & 4 ? 3 * chance(round + 200, 9000 * i + t) : 0;
                 p[i][t] = 2 * chance(round + 300, 9000 * i + t);

@@ -284,14 +284,12 @@ TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restr
     }
 }
 
-/// Σ air times area: in float over a column, whose sixteen numbers are alike.
+/// Σ air times area: in float over a column, whose sixteen numbers are alike. Beside charts there is no air; 0 / 0 there,
+/// thrown away or not, is no number, which this file's options forbid (AVX2 then lost other lanes).
 TUFT_CLONES double integral(const float* __restrict air, const float* __restrict inverse) {
     alignas(64) float sums[kLanes] = {};
     for (int t = 0; t < kTexels; t += kLanes)
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const float in = inverse[t + lane];
-            sums[lane] += in > 0 ? air[t + lane] / in : 0;
-        }
+        for (int lane = 0; lane < kLanes; ++lane) sums[lane] += air[t + lane] / larger(inverse[t + lane], kLeast);
     double sum = 0;
     for (const float g : sums) sum += static_cast<double>(g);
     return sum;
