@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <deque>
 #include <mutex>
 
 #include "core/parallel.h"
@@ -58,7 +57,7 @@ struct Worker {
     Work work;
     Ahead ahead;
     std::vector<Carried> carried;
-    std::deque<PlanePtr> spare;  ///< planes that nobody reads any more
+    std::vector<PlanePtr> spare;  ///< planes that nobody reads any more, the last ones still in the cache
 };
 
 /// Copies a plane with a border of one texel from the tiles around; absent planes are zeros, and
@@ -346,8 +345,8 @@ struct WetFilm::State : TileList {
         if (worker.spare.empty()) {
             plane = std::make_unique<Plane>();
         } else {
-            plane = std::move(worker.spare.front());
-            worker.spare.pop_front();
+            plane = std::move(worker.spare.back());
+            worker.spare.pop_back();
         }
     }
 
@@ -375,7 +374,7 @@ struct WetFilm::State : TileList {
     }
 
     /// Puts into the canvas what a step made of a tile, when nobody needs what was there any more.
-    void commit(Canvas& canvas, std::size_t index, float stain, std::deque<PlanePtr>& spare) {
+    void commit(Canvas& canvas, std::size_t index, float stain, std::vector<PlanePtr>& spare) {
         Active& tile = list[index];
         if (tile.idle) return;
         Sources& from = sources[index];
@@ -422,10 +421,10 @@ struct WetFilm::State : TileList {
             worker->ahead.clear();
             for (std::size_t i = begin; i < end; ++i) {
                 // The tile after the next: the next one's side is read already with this one.
-                if (i + 2 < end) look_ahead(i + 2, worker->ahead);
+                if (i + 2 < end) look_ahead(order[i + 2], worker->ahead);
                 else worker->ahead.clear();
-                compute(i, pigments, rates, report.steps, *worker);
-                each_read(i, [&](std::uint32_t read) {
+                compute(order[i], pigments, rates, report.steps, *worker);
+                each_read(order[i], [&](std::uint32_t read) {
                     if (last_reader(readers[read], alone))
                         commit(canvas, read, static_cast<float>(params.stain), worker->spare);
                 });

@@ -70,12 +70,12 @@ TUFT_INLINE Carriers carriers(float g, float flux, const End& e0, const End& e1,
     return {positive(flux) + exchange, smaller(flux, 0) - exchange};
 }
 
-/// Faces side by side.
-template <class Law, int kFaces>
+/// Sixteen faces.
+template <class Law>
 TUFT_INLINE void faces(Faces& f, int k, const float* g, const Ends& from, const Ends& to, const Step& p) {
     float *w = &f.w[k], *s = &f.s[k], *a = &f.a[k], *b = &f.b[k];
 #pragma GCC ivdep
-    for (int x = 0; x < kFaces; ++x) {
+    for (int x = 0; x < kLanes; ++x) {
         const End e0 = from.at(x), e1 = to.at(x);
         const float fw = Law::film_flux(g[x], e0, e1, p);
         float flux = fw;
@@ -91,13 +91,12 @@ TUFT_INLINE void faces(Faces& f, int k, const float* g, const Ends& from, const 
     }
 }
 
-/// What faces need of the texels from k on.
-template <int kWide>
+/// What faces need of the sixteen texels from k on.
 TUFT_INLINE void levels(Work& o, int k, const Step& p) {
     const float *w = &o.w[k], *s = &o.s[k], passing = passing_of(p);
     float *total = &o.total[k], *rate = &o.rate[k], *above = &o.above[k], *free = &o.free[k], *carrying = &o.carrying[k];
 #pragma GCC ivdep
-    for (int x = 0; x < kWide; ++x) {
+    for (int x = 0; x < kLanes; ++x) {
         const float t = w[x] + s[x];
         total[x] = t;
         rate[x] = rate_of(t, p.grip);
@@ -118,36 +117,19 @@ TUFT_INLINE void unpack(Work& o, const Geometry& g) {
     }
 }
 
-/// Faces right of texels.
-template <class Law>
-TUFT_INLINE void across(Work& o, const Geometry& g, int row, const Step& p) {
-    const int k = field_at(-8, row);
-    faces<Law, kRow>(o.x, k, &o.gx[Geometry::right_of(-8, row)], ends(o, g, k), ends(o, g, k + 1), p);
-}
-
-/// Faces above texels, and diagonals. A square has one at most.
-template <class Law>
-TUFT_INLINE void upwards(Work& o, const Geometry& g, int row, const Step& p) {
-    const int k0 = field_at(0, row), k = field_at(-8, row), corner = Geometry::corner_of(-8, row);
-    faces<Law, kSide>(o.y, k0, &o.gy[(row + 1) * kSide], ends(o, g, k0), ends(o, g, k0 + kRow), p);
-    if (g.ups) faces<Law, kRow>(o.up, k, &o.gup[corner], ends(o, g, k), ends(o, g, k + kRow + 1), p);
-    if (g.downs) faces<Law, kRow>(o.down, k, &o.gdown[corner], ends(o, g, k + 1), ends(o, g, k + kRow), p);
-}
-
-/// Row by row, so that the processor divides for one while it multiplies for another.
+/// A square has one diagonal at most.
 template <class Law>
 TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
     const Step p = step;  // where nothing that is written could change it
     unpack(o, g);
-    levels<kRow>(o, field_at(-8, -1), p);
-    levels<kRow>(o, field_at(-8, 0), p);
-    for (int row = 0; row < kSide; ++row) {
-        levels<kRow>(o, field_at(-8, row + 1), p);  // with the column right of the row before
-        upwards<Law>(o, g, row - 1, p);
-        across<Law>(o, g, row, p);
+    for (int k = 0; k < kField; k += kLanes) levels(o, k, p);
+    for (int k = 0; k < kSide * kRow; k += kLanes) faces<Law>(o.x, kRow + k, &o.gx[k], ends(o, g, kRow + k), ends(o, g, kRow + k + 1), p);
+    for (int row = -1; row < kSide; ++row) {
+        const int k = field_at(0, row);
+        faces<Law>(o.y, k, &o.gy[(row + 1) * kSide], ends(o, g, k), ends(o, g, k + kRow), p);
     }
-    levels<8>(o, field_at(kSide, kSide), p);
-    upwards<Law>(o, g, kSide - 1, p);
+    for (int k = 0; g.ups && k < kSquares; k += kLanes) faces<Law>(o.up, k, &o.gup[k], ends(o, g, k), ends(o, g, k + kRow + 1), p);
+    for (int k = 0; g.downs && k < kSquares; k += kLanes) faces<Law>(o.down, k, &o.gdown[k], ends(o, g, k + 1), ends(o, g, k + kRow), p);
 }
 TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) {
     if (p.pores > 0) all_faces<Law<true, false>>(o, g, p);
@@ -299,7 +281,7 @@ TUFT_INLINE float carried(const Faces& f, const float* p, int k, int from, int t
     return f.a[k] * p[from] + f.b[k] * p[to];
 }
 
-/// Each flux is computed for both its texels, from the same numbers.
+/// Each flux is computed from the same numbers for both its texels, upwards once: the row above takes it from `below`.
 template <bool kUp, bool kDown, bool kSeams>
 TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse, const float* __restrict noise) {
     const float* p = o.p.data();
@@ -307,8 +289,9 @@ TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __rest
 #pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
             const int k = field_at(x, row), i = row * kSide + x;
-            float d = (carried(o.x, p, k - 1, k - 1, k) - carried(o.x, p, k, k, k + 1)) +
-                      (carried(o.y, p, k - kRow, k - kRow, k) - carried(o.y, p, k, k, k + kRow));
+            const float above = carried(o.y, p, k, k, k + kRow);
+            float d = (carried(o.x, p, k - 1, k - 1, k) - carried(o.x, p, k, k, k + 1)) + (below[x] - above);
+            below[x] = above;
             float askew = 0;
             if constexpr (kUp) askew = carried(o.up, p, k - kRow - 1, k - kRow - 1, k) - carried(o.up, p, k, k, k + kRow + 1);
             if constexpr (kDown) askew += carried(o.down, p, k - kRow, k - kRow + 1, k) - carried(o.down, p, k - 1, k, k + kRow - 1);
@@ -317,6 +300,11 @@ TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __rest
             if constexpr (kSeams) d += o.dp[i];
             out[i] = sum_of(p[k], d, noise[i]);
         }
+    alignas(64) float below[kSide];
+    for (int x = 0; x < kSide; ++x) {
+        const int k = field_at(x, -1);
+        below[x] = carried(o.y, p, k, k, k + kRow);
+    }
     }
 }
 template <bool kSeams>

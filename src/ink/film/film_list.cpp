@@ -1,6 +1,7 @@
 #include "ink/film/film_list.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 
@@ -8,6 +9,7 @@ namespace tuft::ink::wet {
 namespace {
 
 constexpr std::size_t kMostBeads = 256;
+constexpr std::uint32_t kStrip = 16;  // tiles
 /// Sides of a tile (`Outcome::sides`) that are all wet where the tiles around it may be reached.
 constexpr std::array<std::uint8_t, 9> kTowards{5, 1, 9, 4, 0, 8, 6, 2, 10};
 
@@ -201,6 +203,18 @@ void TileList::spread() {
     readers = std::make_unique<std::atomic<std::uint32_t>[]>(list.size());
     n_readers.assign(list.size(), 0);
     for (std::size_t i = 0; i < list.size(); ++i) each_read(i, [&](std::uint32_t read) { ++n_readers[read]; });
+    put_in_order();
+}
+
+void TileList::put_in_order() {
+    order.clear();
+    const std::uint32_t strips = (map.tiles_per_side + kStrip - 1) / kStrip;
+    std::vector<std::uint32_t> start(strips + 1, 0);
+    const auto strip_of = [&](const Active& tile) { return map.tile_of_slot[tile.slot] % map.tiles_per_side / kStrip; };
+    for (const Active& tile : list) ++start[strip_of(tile) + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    order.resize(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) order[start[strip_of(list[i])]++] = static_cast<std::uint32_t>(i);
 }
 
 bool TileList::changed() {

@@ -60,6 +60,9 @@ struct TileList {
     std::vector<std::unique_ptr<Geometry>> geometry;  ///< [n_slots] null: never wet
     std::vector<Active> list;               ///< ascending slots
     std::unique_ptr<std::atomic<std::uint32_t>[]> readers;  ///< of the list: tiles that still need this one's planes
+    /// Places in the list as a step goes through them: strip by strip of the atlas, so that what a tile and the one
+    /// below it read, and the planes that get free, are still in the second cache.
+    std::vector<std::uint32_t> order;
 
     std::vector<std::uint32_t> n_readers;   ///< of the list: how many there are in a step
 
@@ -109,5 +112,6 @@ struct TileList {
     std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const;
     std::array<std::uint32_t, 9> around(std::uint32_t slot) const;
 };
+    void put_in_order();
 
 }  // namespace tuft::ink::wet

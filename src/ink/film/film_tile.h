@@ -8,14 +8,17 @@
 #include "ink/film/film.h"
 
 /// One tile of the wet film with a border of one texel, as its kernels see it; inside `ink`
-/// only. Field k = (row + 1) * 24 + 8 + column, so that rows begin on 32 bytes; faces: between k
-/// and k + 1, k and k + 24, and the diagonals of the square k, k + 1, k + 24, k + 25.
+/// only. Field k = (row + 1) * 18 + 1 + column, row after row without gaps: what is reckoned for all
+/// of it goes through it from end to end. Faces: between k and k + 1, k and k + 18, and the diagonals
+/// of the square k, k + 1, k + 18, k + 19.
 namespace tuft::ink::wet {
 
 inline constexpr int kTexels = atlas::kTileTexels;
 inline constexpr int kSide = atlas::kTile;
-inline constexpr int kRow = kSide + 8;
-inline constexpr int kField = (kSide + 2) * kRow + 8;
+inline constexpr int kRow = kSide + 2;
+inline constexpr int kSquares = 20 * kSide;  ///< 17 rows of them, in whole sixteens
+inline constexpr int kField = 22 * kSide;    ///< and the ends of those squares' diagonals
+static_assert(kSquares > (kSide + 1) * kRow - 2 && kField >= kSquares + kRow + 1);
 
 struct alignas(64) Field : std::array<float, kField> {};
 
@@ -24,7 +27,7 @@ inline constexpr float kConductanceUnit = 0x1p-14f, kDiagonalUnit = 0x1p-13f;
 
 inline constexpr double kGrainLength = 1.2e-3;  ///< metres over which the pin of a place varies
 
-inline constexpr int field_at(int column, int row) { return (row + 1) * kRow + 8 + column; }
+inline constexpr int field_at(int column, int row) { return (row + 1) * kRow + 1 + column; }
 inline constexpr int field_of(int texel) { return field_at(texel % kSide, texel / kSide); }
 
 /// What the metric says of a tile: made once, never changed.
@@ -33,15 +36,15 @@ struct alignas(64) Geometry {
     static void operator delete(void* geometry, std::size_t bytes);
 
     /// Length over distance of faces, at most 4 times the smaller area, over kConductanceUnit: of texels'
-    /// right sides, rows of columns -8 to 15, 0 before -1; and of the sides below rows 0 to 16.
+    /// right sides, rows of columns -1 to 16, 0 at 16; and of the sides below rows 0 to 16.
     std::array<std::uint16_t, kSide * kRow> gx{};
     std::array<std::uint16_t, kTexels + kSide> gy{};
     std::array<float, kTexels> inverse{};  ///< mean texel's area over the texel's; 0 outside the charts
     std::array<std::uint32_t, kSide + 2> valid{};  ///< bit column + 1: a texel of a chart
     float stiffness = 0;                   ///< greatest Σ conductances over area
-    /// Of diagonals of the squares above and right of columns -8 to 15 of rows -1 to 15, over kDiagonalUnit: > 0 from
+    /// Of diagonals of the squares above and right of texels k of columns and rows -1 to 15, over kDiagonalUnit: > 0 from
     /// that texel, < 0 (its size) from the one to its right; null: none.
-    struct alignas(64) Diagonals : std::array<std::int16_t, (kSide + 1) * kRow> {
+    struct alignas(64) Diagonals : std::array<std::int16_t, kSquares> {
         static void* operator new(std::size_t bytes);
         static void operator delete(void* diagonals, std::size_t bytes);
     };
@@ -49,8 +52,8 @@ struct alignas(64) Geometry {
     bool ups = false, downs = false;       ///< whether there are any > 0, < 0
     Field grain{};                         ///< pin of the place, over the mean
 
-    static constexpr int right_of(int column, int row) { return row * kRow + 8 + column; }
-    static constexpr int corner_of(int column, int row) { return right_of(column, row + 1); }
+    static constexpr int right_of(int column, int row) { return field_at(column, row) - kRow; }
+    static constexpr int corner_of(int column, int row) { return field_at(column, row); }
 };
 /// What lets liquid flow less or more easily, from place to place.
 struct Ground {
@@ -91,7 +94,7 @@ struct alignas(64) Faces {
 struct alignas(64) Work {
     alignas(64) std::array<float, kSide * kRow> gx;  ///< conductances as in `Geometry`
     alignas(64) std::array<float, kTexels + kSide> gy;
-    alignas(64) std::array<float, (kSide + 1) * kRow> gup, gdown;
+    alignas(64) std::array<float, kSquares> gup, gdown;
     Field w{}, s{}, total{};       ///< liquid
     Field rate{};                  ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
     Field above{}, free{};         ///< liquid above threshold, above hold
