@@ -1,5 +1,6 @@
 // Prints a hash of tiles of the wet film stepped by src/ink/film/film_kernel.cpp, which is compiled into
 // this program for one instruction set (same_bits.sh compares them). Prints "skipped" where it cannot run.
+#include <algorithm>
 #include <cstdio>
 
 #include "core/hash.h"
@@ -14,10 +15,10 @@ using namespace tuft::ink::wet;
 
 float chance(std::uint64_t a, std::uint64_t b) { return static_cast<float>(uniform(a, b)); }
 
-/// Conductances as of a stretched, sheared chart with a hole in it.
 /// Texels outside the charts.
 bool beside(int texel) { return texel % 29 == 7; }
 
+/// Conductances as of a stretched, sheared chart with a hole in it.
 void fill(Geometry& g, std::uint64_t seed) {
     g.valid.fill((1u << (kSide + 2)) - 1);
     if (seed % 2) g.gd = std::make_unique<Geometry::Diagonals>();
@@ -55,30 +56,33 @@ int main() {
     for (std::uint64_t round = 0; round < 32; ++round) {
         // Wet all over, or with dry places; with and without pores.
         const float dry = round & 2 ? 0.3f : 0.0f;
-        std::array<std::array<float, kTexels>, 9> w, s, p;
-        std::array<const float*, 9> w_at, s_at, p_at;
+        std::array<std::array<float, kTexels>, 9> w, s, p, z;
+        std::array<const float*, 9> w_at, s_at, p_at, z_at;
         for (std::size_t i = 0; i < 9; ++i) {
             for (int t = 0; t < kTexels; ++t) {
                 const bool wet = chance(round, 9000 * i + t) >= dry && !(i == 4 && beside(t));
                 w[i][t] = wet ? 0.01f + 6 * chance(round + 100, 9000 * i + t) : 0;
                 s[i][t] = wet && round & 4 ? 3 * chance(round + 200, 9000 * i + t) : 0;
                 p[i][t] = 2 * chance(round + 300, 9000 * i + t);
+                z[i][t] = std::max(0.0f, 8 * chance(round + 400, 9000 * i + t) - 4);
             }
-            w_at[i] = w[i].data(), s_at[i] = s[i].data(), p_at[i] = p[i].data();
+            w_at[i] = w[i].data(), s_at[i] = s[i].data(), p_at[i] = p[i].data(), z_at[i] = z[i].data();
         }
         Geometry g;
         fill(g, 50 * round + (round & 1));
         const Step step{.flow = 0.02f, .levelling = 0.01f, .limit = 0.06f, .threshold = 0.1f, .pin = 1, .mixing = 0.02f, .grip = 0.5f,
                         .soak = 0.01f, .pores = round & 4 ? 3.0f : 0.0f, .passing = round & 8 ? 0.2f : 1.0f,
                         .evaporation = 0.004f, .rim = 0.002f,
-                        .hold = 1};
+                        .hold = 1, .relief = 0.015f, .ridge = 0.4f};
         Work work;
         gather(work.w, w_at);
         gather(work.s, s_at);
         gather(work.p, p_at);
+        gather(work.z, z_at);
+        work.on_relief = round % 3 == 2;
         fluxes(work, g, step);
         liquid_changes(work, g, step);
-        const SeamFlux seam = seam_flux(0.7f, 0.6f, {w[0][5], w[1][9]}, {s[0][5], s[1][9]}, {0.9f, 1.1f}, step);
+        const SeamFlux seam = seam_flux(0.7f, 0.6f, {w[0][5], w[1][9]}, {s[0][5], s[1][9]}, {0.9f, 1.1f}, {0.3f, 0.8f}, step);
         work.dw[5] -= seam.w;
         work.dp.fill(seam.a * p[0][5] + seam.b * p[1][9]);
         std::array<float, kTexels> pigment;

@@ -7,6 +7,7 @@
 
 #include "../atlas/analytic_surfaces.h"
 #include "core/parallel.h"
+#include "ink/film/film.h"
 
 // Thin ink over thick dry paint.
 namespace tuft::ink {
@@ -108,11 +109,8 @@ TEST(Pool, KeepsEachPigmentOverSeamsAndOnAnyNumberOfThreads) {
     EXPECT_EQ(hashes[1], hashes[3]);
 }
 
-TEST(Pool, ASeamDoesNotShow) {
-    // The seam at x = 0 runs half way down a furrow's side, that at y = 0 across all of them.
-    Furrowed whole(150, 1, 0.25e-3), cut(150, 2, 0.25e-3);
-    for (Furrowed* f : {&whole, &cut}) f->settle();
-    // Means about ridges and bottoms, 0.5 mm wide and 0.25 mm along: what is beside the seam too.
+/// Means of `film` about ridges and bottoms, 0.5 mm wide and 0.25 mm along: what is beside the seam too.
+void expect_same_means(const Furrowed& whole, const Furrowed& cut) {
     const auto means = [](const Furrowed& f) {
         std::map<std::pair<int, int>, std::pair<double, double>> sums;
         f.each([&](std::uint32_t slot, int t, const Vec3& p) {
@@ -134,6 +132,13 @@ TEST(Pool, ASeamDoesNotShow) {
     }
     EXPECT_LT(least, 0.8) << "it did run off the ridges";
     EXPECT_GT(most, 3.2);
+}
+
+TEST(Pool, ASeamDoesNotShow) {
+    // The seam at x = 0 runs half way down a furrow's side, that at y = 0 across all of them.
+    Furrowed whole(150, 1, 0.25e-3), cut(150, 2, 0.25e-3);
+    for (Furrowed* f : {&whole, &cut}) f->settle();
+    expect_same_means(whole, cut);
 }
 
 TEST(Pool, StopsAtTape) {
@@ -160,6 +165,80 @@ TEST(Pool, LeavesPlainGroundAsItIsPainted) {
     const std::uint64_t hash = thin.canvas.hash();
     thin.settle();
     EXPECT_EQ(thin.canvas.hash(), hash) << "29.5 µm are no relief";
+}
+
+/// Lets 2 film units of liquid that carry the ink run for `seconds` without drying; steps of `shortest` at least.
+FilmParams wash(const Vec3& down = Vec3{0}) {
+    FilmParams p = film_params(load_substrate("porcelain"), down);
+    p.evaporation = p.rim_evaporation = 0;
+    return p;
+}
+void run_wet(Furrowed& f, double seconds, const FilmParams& p) {
+    f.each([&](std::uint32_t slot, int t, const Vec3&) { f.canvas.touch_liquid(slot, Liquid::film)[t] = 2; });
+    const double before = f.canvas.total_liquid(f.map);
+    WetFilm(f.map, f.seams).advance(f.canvas, seconds, p);
+    EXPECT_NEAR(f.canvas.total_liquid(f.map) / before, 1, 1e-6) << "floats";
+}
+
+TEST(WetPool, StandsLevelInTheFurrowsAndThinOnTheRidges) {
+    // With and without weight, which acts against the wall here and moves nothing along it.
+    for (const Vec3& down : {Vec3{0}, Vec3{0, 0, -1}}) {
+        const FilmParams p = wash(down);
+        Furrowed f(150);
+        run_wet(f, 30, p);
+        const double level = level_in(150, p.ridge);
+        double apart = 0, n = 0, thinnest = 9;
+        f.each([&](std::uint32_t slot, int t, const Vec3& at) {
+            if (std::abs(at.x) > 3e-3 || std::abs(at.y) > 3e-3) return;
+            const double w = static_cast<double>((*f.canvas.liquid(slot, Liquid::film))[t]);
+            thinnest = std::min(thinnest, w);
+            apart += std::abs(w - std::max(p.ridge, level - 15 * Furrowed::ridge(at.x)));
+            n += 1;
+        });
+        EXPECT_LT(apart / n, 0.1) << "film units of 2 in the mean, as for still ink";
+        EXPECT_NEAR(thinnest, p.ridge, 0.05);
+    }
+}
+
+TEST(WetPool, KeepsEachPigmentOverSeamsAndOnAnyNumberOfThreads) {
+    std::map<int, std::uint64_t> hashes;
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        Furrowed f(150, 2);
+        const double a = f.canvas.total(f.map, 1), b = f.canvas.total(f.map, 2), thick = f.canvas.total(f.map, 0);
+        run_wet(f, 3, wash());
+        EXPECT_NEAR(f.canvas.total(f.map, 1) / a, 1, 1e-6) << "floats";
+        EXPECT_NEAR(f.canvas.total(f.map, 2) / b, 1, 1e-6);
+        EXPECT_EQ(f.canvas.total(f.map, 0), thick);
+        hashes[threads] = f.canvas.hash();
+    }
+    set_thread_count(0);
+    EXPECT_EQ(hashes[1], hashes[3]);
+}
+
+TEST(WetPool, ASeamDoesNotShow) {
+    Furrowed whole(150, 1, 0.25e-3), cut(150, 2, 0.25e-3);
+    for (Furrowed* f : {&whole, &cut}) run_wet(*f, 10, wash());
+    expect_same_means(whole, cut);
+}
+
+TEST(WetPool, ShorterStepsChangeLittle) {
+    // While it runs off, in steps as long as a film may take and a quarter as long.
+    Furrowed coarse(150), fine(150);
+    FilmParams p = wash();
+    run_wet(coarse, 0.5, p);
+    p.shortest_step /= 4;
+    const double before = 2;
+    run_wet(fine, 0.5, p);
+    double apart = 0, moved = 0, n = 0;
+    coarse.each([&](std::uint32_t slot, int t, const Vec3& at) {
+        if (std::abs(at.x) > 3e-3 || std::abs(at.y) > 3e-3) return;
+        const double a = static_cast<double>((*coarse.canvas.liquid(slot, Liquid::film))[t]);
+        const double b = static_cast<double>((*fine.canvas.liquid(slot, Liquid::film))[t]);
+        apart += std::abs(a - b), moved += std::abs(b - before), n += 1;
+    });
+    EXPECT_GT(moved / n, 0.5) << "film units";
+    EXPECT_LT(apart, 0.03 * moved);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/random.h"
 #include "ink/film/drying.h"
 #include "ink/film/film_list.h"
+#include "ink/film/pool.h"
 
 namespace tuft::ink {
 namespace {
@@ -26,6 +27,7 @@ constexpr double kLeastMixing = 2e-10; // m²/s
 constexpr double kStirring = 0.02;     // film units: mixing over mobility
 constexpr double kMostUneven = 1.2;
 constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
+constexpr float kFilmsPerMicrometre = 0.1f;
 constexpr double kRimLength = 1e-3;    // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// What goes over a link for pigments: dp = −out p(texel) + in p(other).
@@ -111,6 +113,10 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
 
 struct WetFilm::State : TileList {
     std::vector<std::uint8_t> told;
+    /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
+    std::vector<std::unique_ptr<Plane>> relief;
+    std::vector<std::uint8_t> felt;  ///< [n_slots] whether that was looked for
+    bool any_relief = false;
     std::unique_ptr<Drips> drips;
     std::vector<Sources> sources;  ///< of the list; empty: not looked up yet
     std::mutex mutex;
@@ -156,6 +162,22 @@ struct WetFilm::State : TileList {
         return true;
     }
 
+    void forget_relief() {
+        if (any_relief) relief.clear();
+        relief.resize(map.n_slots());
+        felt.assign(map.n_slots(), 0);
+        any_relief = false;
+    }
+
+    void feel(const Canvas& canvas, std::uint32_t slot) {
+        if (felt[slot]) return;
+        felt[slot] = 1;
+        Plane z = dry_relief(canvas, slot);
+        float most = 0;
+        for (float& v : z) most = std::max(most, v = std::max(0.0f, v - static_cast<float>(kPlain)) * kFilmsPerMicrometre);
+        if (most > 0) relief[slot] = std::make_unique<Plane>(z);
+    }
+
     void prepare(const Canvas& canvas) {
         sources.resize(list.size());
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -165,9 +187,11 @@ struct WetFilm::State : TileList {
                 list[i].stiffness = g->stiffness;
                 list[i].geometry = g.get();
                 list[i].diagonals = g->gd.get();
+                feel(canvas, list[i].slot);
                 find_planes(canvas, i);
             }
         });
+        for (const Active& tile : list) any_relief = any_relief || relief[tile.slot];
     }
 
     /// The longest stable step, seconds, and its rates.
@@ -182,8 +206,9 @@ struct WetFilm::State : TileList {
         }
         double dt = beads ? kBeadStep : kLongestStep;
         const double free = std::max(0.0, most_w - p.hold);
+        const double on_relief = any_relief ? p.levelling * std::max(0.0, most_w - p.ridge) : 0;
         const double flow = stiffness / area *
-                            std::max(p.mobility * (most_w - p.threshold) + levelling * free,
+                            std::max(p.mobility * (most_w - p.threshold) + std::max(levelling * free, on_relief),
                                      p.pores > 0 ? p.mobility * most_s : 0.0);
         if (flow > 0) dt = std::min(dt, kFlowPart / flow);
         const double mixing = p.mixing / area * stiffness;
@@ -204,6 +229,8 @@ struct WetFilm::State : TileList {
         step.rim = static_cast<float>(p.rim_evaporation * dt / (map.texel_size * p.rim_depth));
         step.rim_depth = static_cast<float>(p.rim_depth);
         step.hold = static_cast<float>(p.hold);
+        step.relief = static_cast<float>(p.levelling * dt / area);
+        step.ridge = static_cast<float>(p.ridge);
         return dt;
     }
 
@@ -232,8 +259,9 @@ struct WetFilm::State : TileList {
             const float g0 = both ? 0 : g.grain[field_of(l.texel)];
             const float g1 = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
             const float apart = static_cast<float>(l.apart) / 64;
-            const SeamFlux f = first ? seam_flux(l.weight, apart, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, step)
-                                     : seam_flux(l.weight, apart, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, step);
+            const float z0 = at(mine.relief, l.texel), z1 = at(sources[other].relief, l.other_texel);
+            const SeamFlux f = first ? seam_flux(l.weight, apart, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, {z0, z1}, step)
+                                     : seam_flux(l.weight, apart, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, {z1, z0}, step);
             const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
             work.dw[l.texel] += sign * f.w * inverse;
             work.ds[l.texel] += sign * f.s * inverse;
@@ -285,6 +313,7 @@ struct WetFilm::State : TileList {
         if (!any_w) work.w.fill(0);
         const bool any_s = load(work.s, sources, tile.around, [](const Sources& a) { return a.liquid[1]; });
         if (!any_s) work.s.fill(0);
+        work.on_relief = any_relief && load(work.z, sources, tile.around, [](const Sources& a) { return a.relief; });
         Ahead& ahead = worker.ahead;
         ahead.fetch(kLines);
         const bool thin = fluxes(work, g, step);
@@ -371,6 +400,7 @@ struct WetFilm::State : TileList {
         Sources& from = sources[index];
         from.liquid = {canvas.liquid(slot, Liquid::film), canvas.liquid(slot, Liquid::pores)};
         for (int p = 0; p < kMaxPigments; ++p) from.open[p] = canvas.plane(slot, p);
+        from.relief = relief[slot].get();
     }
 
     /// Puts into the canvas what a step made of a tile, when nobody needs what was there any more.
@@ -451,6 +481,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     if (!canvas.wet() || !(seconds > 0)) return report;
     State& s = *state_;
     s.told.assign(s.map.n_slots(), 0);
+    s.forget_relief();
     s.set_unevenness(params.unevenness);
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet

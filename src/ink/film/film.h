@@ -29,6 +29,7 @@ struct FilmParams {
     Vec3 down{0};                    ///< towards the ground, length 1; zero: no weight
     double hold = 2;                 ///< film units that neither weight nor surface tension moves
     double levelling = 1e-8;         ///< L, m²/s per film unit above `hold`: puddles draw together
+    double ridge = 0.4;              ///< film units that stay on the ridges of dry paint
     double bead_angle = 0.15;        ///< radians: contact angle of a bead that runs down
     double bead_speed = 8e-3;        ///< m/s of a bead of √2 times the critical radius
     double drain = 2;                ///< 1/s: part of the liquid above `hold` near a bead that it draws in
@@ -57,6 +58,9 @@ struct FilmReport {
 /// M = w + s (1 − retention): fibres sieve grains out of what seeps between them, so that water runs ahead
 /// of the ink and a line has a dark core. ↑: of the texel the liquid comes from. H = max(T, grip): what liquid
 /// gets thin over stays there, so that a drop dries as it stood and does not draw its pigments into its middle.
+/// On relief of dry paint (z, film units, `dry_relief` less kPlain) the liquid's own surface levels, at any slope: there
+/// (D ⟨w − w_c⟩ + L ⟨w − ridge⟩) ∇(w + z), ⟨w − ridge⟩ of the higher texel and no more than that, so that ink leaves
+/// the ridges and stands in the furrows.
 /// Liquid goes onto a dry texel only from one that has more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
 /// about a millimetre, as surfaces are not clean). With a direction of weight
 /// contact lines keep mounds as they are (L = 0), and what is more than they hold runs down in beads

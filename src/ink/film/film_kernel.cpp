@@ -22,39 +22,49 @@ TUFT_INLINE float rate_of(float total, float grip) { return total > 0 ? 1 / larg
 
 /// One end of a face: what is there, and what of it counts.
 struct End {
-    float w, s, t, rate, grain, above, free, carrying;
+    float w, s, t, rate, grain, above, free, carrying, z;
 };
 /// Rows of them.
 struct Ends {
-    const float *w, *s, *t, *rate, *grain, *above, *free, *carrying;
+    const float *w, *s, *t, *rate, *grain, *above, *free, *carrying, *z;
 
-    TUFT_INLINE End at(int x) const { return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x]}; }
+    TUFT_INLINE End at(int x) const { return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x], z[x]}; }
 };
 TUFT_INLINE Ends ends(const Work& o, const Geometry& g, int k) {
-    return {&o.w[k], &o.s[k], &o.total[k], &o.rate[k], &g.grain[k], &o.above[k], &o.free[k], &o.carrying[k]};
+    return {&o.w[k], &o.s[k], &o.total[k], &o.rate[k], &g.grain[k], &o.above[k], &o.free[k], &o.carrying[k], &o.z[k]};
 }
 /// Fibres hold grains back from what seeps.
 TUFT_INLINE float passing_of(const Step& p) { return p.pores > 0 ? p.passing : 1; }
-TUFT_INLINE End end_of(float w, float s, float grain, const Step& p) {
+TUFT_INLINE End end_of(float w, float s, float grain, float z, const Step& p) {
     const float t = w + s;
-    return {w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.hold), w + passing_of(p) * s};
+    return {w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.hold), w + passing_of(p) * s, z};
 }
 
 /// What differs between tiles; all give the same numbers where they apply.
-template <bool kPores, bool kDry>
+template <bool kPores, bool kDry, bool kRelief>
 struct Law {
     static constexpr bool pores = kPores;
 
     /// Flux of liquid on the surface between two texels, film units · mean area.
     static TUFT_INLINE float film_flux(float g, const End& e0, const End& e1, const Step& p) {
         float above = e0.above + e1.above;  // the mean's double
+        float over0 = 0, over1 = 0;  // what may leave an end on relief
+        if constexpr (kRelief) over0 = positive(e0.w - p.ridge), over1 = positive(e1.w - p.ridge);
         if constexpr (kDry) {
             const float onto0 = e0.t > 0 ? 0 : p.pin * e0.grain, onto1 = e1.t > 0 ? 0 : p.pin * e1.grain;
             const float held = p.threshold + (onto0 + onto1);
-            above = positive(e0.w - held) + positive(e1.w - held);
+            const float over_held0 = positive(e0.w - held), over_held1 = positive(e1.w - held);
+            above = over_held0 + over_held1;
+            if constexpr (kRelief) over0 = smaller(over0, over_held0), over1 = smaller(over1, over_held1);
         }
         const float level = (0.5f * p.levelling) * (e0.free + e1.free);
-        return g * smaller((0.5f * p.flow) * above + (above > 0 ? level : 0), p.limit) * (e0.w - e1.w);
+        const float plain = g * smaller((0.5f * p.flow) * above + (above > 0 ? level : 0), p.limit) * (e0.w - e1.w);
+        if constexpr (!kRelief) return plain;
+        // Down the liquid's own surface, and no more than its upper end has to give.
+        const float drop = (e0.w + e0.z) - (e1.w + e1.z), over = drop > 0 ? over0 : over1;
+        const float run = smaller((0.5f * p.flow) * above + p.relief * over, p.limit) * drop;
+        const float most = p.limit * over;
+        return e0.z + e1.z > 0 ? g * larger(smaller(run, most), -most) : plain;
     }
 
     static TUFT_INLINE float pore_flux(float g, const End& e0, const End& e1, const Step& p) {
@@ -132,12 +142,16 @@ TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
     for (int k = 0; g.downs && k < kSquares; k += kLanes) faces<Law>(o.down, k, &o.gdown[k], ends(o, g, k + 1), ends(o, g, k + kRow), p);
 }
 TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0) all_faces<Law<true, false>>(o, g, p);
-    else all_faces<Law<false, false>>(o, g, p);
+    if (p.pores > 0) all_faces<Law<true, false, false>>(o, g, p);
+    else all_faces<Law<false, false, false>>(o, g, p);
 }
 TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0) all_faces<Law<true, true>>(o, g, p);
-    else all_faces<Law<false, true>>(o, g, p);
+    if (p.pores > 0) all_faces<Law<true, true, false>>(o, g, p);
+    else all_faces<Law<false, true, false>>(o, g, p);
+}
+TUFT_CLONES void faces_on_relief(Work& o, const Geometry& g, const Step& p) {
+    if (p.pores > 0) all_faces<Law<true, true, true>>(o, g, p);
+    else all_faces<Law<false, true, true>>(o, g, p);
 }
 
 struct Least {
@@ -285,6 +299,11 @@ TUFT_INLINE float carried(const Faces& f, const float* p, int k, int from, int t
 template <bool kUp, bool kDown, bool kSeams>
 TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse, const float* __restrict noise) {
     const float* p = o.p.data();
+    alignas(64) float below[kSide];
+    for (int x = 0; x < kSide; ++x) {
+        const int k = field_at(x, -1);
+        below[x] = carried(o.y, p, k, k, k + kRow);
+    }
     for (int row = 0; row < kSide; ++row) {
 #pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
@@ -300,11 +319,6 @@ TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __rest
             if constexpr (kSeams) d += o.dp[i];
             out[i] = sum_of(p[k], d, noise[i]);
         }
-    alignas(64) float below[kSide];
-    for (int x = 0; x < kSide; ++x) {
-        const int k = field_at(x, -1);
-        below[x] = carried(o.y, p, k, k, k + kRow);
-    }
     }
 }
 template <bool kSeams>
@@ -346,7 +360,7 @@ void gather(Field& field, const std::array<const float*, 9>& planes) {
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
     const float depth = step.rim > 0 ? step.rim_depth : 0, least = least_total(work);
     const Least rims = least > 0 && least >= depth ? Least{} : look_for_rims(work, g, depth);
-    (rims.dry ? faces_dry : faces_wet)(work, g, step);
+    (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
     if (rims.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
     else work.rim_slope.fill(0);
     return rims.thin;
@@ -410,11 +424,11 @@ const float* dither(std::uint64_t seed) {
 }
 
 SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, const std::array<float, 2>& s,
-                   const std::array<float, 2>& grain, const Step& step) {
-    const End e0 = end_of(w[0], s[0], grain[0], step), e1 = end_of(w[1], s[1], grain[1], step);
+                   const std::array<float, 2>& grain, const std::array<float, 2>& z, const Step& step) {
+    const End e0 = end_of(w[0], s[0], grain[0], z[0], step), e1 = end_of(w[1], s[1], grain[1], z[1], step);
     SeamFlux out;
-    out.w = Law<true, true>::film_flux(weight, e0, e1, step);
-    if (step.pores > 0) out.s = Law<true, true>::pore_flux(weight, e0, e1, step);
+    out.w = Law<true, true, true>::film_flux(weight, e0, e1, step);
+    if (step.pores > 0) out.s = Law<true, true, true>::pore_flux(weight, e0, e1, step);
     Carriers c = carriers(weight, out.w + step.passing * out.s, e0, e1, step);
     const float more = 0.5f * (smaller(larger(1 / larger(apart, kLeast), 1), 2) - 1) * std::abs(out.w + step.passing * out.s);
     c.a += more;

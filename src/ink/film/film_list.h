@@ -22,6 +22,7 @@ using PlanePtr = std::unique_ptr<Plane>;
 struct alignas(64) Sources {
     std::array<const Plane*, 2> liquid{};
     std::array<const Plane*, kMaxPigments> open{};
+    const Plane* relief = nullptr;          ///< of what is dry, film units; null: plain
 };
 
 /// A tile over a seam from another one.
@@ -59,10 +60,10 @@ struct TileList {
     atlas::SeamLinks seams;                 ///< scaled: what goes over seams stays within what a step allows
     std::vector<std::unique_ptr<Geometry>> geometry;  ///< [n_slots] null: never wet
     std::vector<Active> list;               ///< ascending slots
-    std::unique_ptr<std::atomic<std::uint32_t>[]> readers;  ///< of the list: tiles that still need this one's planes
     /// Places in the list as a step goes through them: strip by strip of the atlas, so that what a tile and the one
     /// below it read, and the planes that get free, are still in the second cache.
     std::vector<std::uint32_t> order;
+    std::unique_ptr<std::atomic<std::uint32_t>[]> readers;  ///< of the list: tiles that still need this one's planes
 
     std::vector<std::uint32_t> n_readers;   ///< of the list: how many there are in a step
 
@@ -111,7 +112,7 @@ struct TileList {
     void close_taps();
     std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const;
     std::array<std::uint32_t, 9> around(std::uint32_t slot) const;
-};
     void put_in_order();
+};
 
 }  // namespace tuft::ink::wet

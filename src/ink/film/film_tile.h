@@ -82,6 +82,8 @@ struct Step {
     float rim = 0;         ///< film units more, per film unit of slope
     float rim_depth = 0;
     float hold = 0;
+    float relief = 0;      ///< L dt / A, on relief
+    float ridge = 0;       ///< film units that stay on relief
 };
 
 /// Through faces: fluxes of w and s, film units · mean area, and the carriers of pigments,
@@ -96,6 +98,8 @@ struct alignas(64) Work {
     alignas(64) std::array<float, kTexels + kSide> gy;
     alignas(64) std::array<float, kSquares> gup, gdown;
     Field w{}, s{}, total{};       ///< liquid
+    Field z{};                     ///< relief, film units; counts where `on_relief`
+    bool on_relief = false;
     Field rate{};                  ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
     Field above{}, free{};         ///< liquid above threshold, above hold
     Field carrying{};              ///< liquid in which pigments move, M
@@ -138,8 +142,8 @@ struct SeamFlux {
     float w = 0, s = 0;  ///< from the first to the second
     float a = 0, b = 0;  ///< pigment: a p1 + b p2
 };
-/// `apart`: their distance, texels. What comes from upstream smears as over a whole texel.
+/// `apart`: their distance, texels. What comes from upstream smears as over a whole texel. z: relief.
 SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, const std::array<float, 2>& s,
-                   const std::array<float, 2>& grain, const Step& step);
+                   const std::array<float, 2>& grain, const std::array<float, 2>& z, const Step& step);
 
 }  // namespace tuft::ink::wet
