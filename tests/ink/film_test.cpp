@@ -293,6 +293,10 @@ TEST(WetFilm, ABlotIsTheSameWithASeamUnderIt) {
     // Askew: the edges of the texels go up in steps, and the halves share the texels along the cut.
     for (const auto& [a, b] : {std::pair{0.0, 15.0}, {0.0, 30.0}, {0.0, 45.0}, {15.0, 15.0}, {15.0, 30.0}, {30.0, 30.0}, {30.0, 36.0}, {45.0, 22.5}, {45.0, 45.0}})
         expect_same({{140.3, 8.4}, a * degree}, {{420.7, 10.2}, b * degree});
+    // Texels of the two halves that nearly lie on each other: their cells' middles lie far from them.
+    for (const Vec2& off : {Vec2{0, 0}, {0.27, 0.41}, {0.5, 0.13}, {0.77, 0.68}})
+        for (const auto& [a, b] : {std::pair{0.0, 30.0}, {15.0, 15.0}, {10.0, 70.0}})
+            expect_same({{140.3, 8.4}, a * degree}, {Vec2{420.7, 10.2} + off, b * degree});
 }
 
 TEST(WetFilm, ABlotIsTheSameHoweverTexelsLie) {

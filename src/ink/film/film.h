@@ -78,7 +78,7 @@ struct FilmReport {
 /// pores never beyond their capacity) for any `seconds`; only tiles that are wet or next to wet
 /// ones are looked at; the same bits for any number of threads and on every instruction set.
 /// Conductances: 1/√g (g22, −g12; −g12, g11), the mixed term by diagonal faces (Selling's
-/// decomposition), made when a tile first gets wet (4 to 5 KiB a tile). Some 13 ns per texel and step
+/// decomposition), made when a tile first gets wet (some 4 KiB a tile). Some 13 ns per texel and step
 /// with four pigments; memory is as much of it as sums.
 class WetFilm {
   public:

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kLanes = kSide;
 constexpr float kLeast = 1e-30f;     // film units: no division by zero in lanes that are dry
+constexpr float kMostNear = 8;       // of what smears between two texels, over that of whole texels side by side
 
 TUFT_INLINE float larger(float a, float b) { return a > b ? a : b; }
 TUFT_INLINE float smaller(float a, float b) { return a < b ? a : b; }
@@ -430,7 +431,10 @@ SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, con
     out.w = Law<true, true, true>::film_flux(weight, e0, e1, step);
     if (step.pores > 0) out.s = Law<true, true, true>::pore_flux(weight, e0, e1, step);
     Carriers c = carriers(weight, out.w + step.passing * out.s, e0, e1, step);
-    const float more = 0.5f * (smaller(larger(1 / larger(apart, kLeast), 1), 2) - 1) * std::abs(out.w + step.passing * out.s);
+    // Nearer cells' middles lie farther apart than their texels, by whose distance their amounts differ: they mix more,
+    // by no more than what could flow.
+    const float near = smaller(larger(1 / larger(apart * apart, kLeast), 1), kMostNear) - 1;
+    const float more = 0.5f * smaller(near * std::abs(out.w + step.passing * out.s), step.limit * weight * smaller(e0.t, e1.t));
     c.a += more;
     c.b -= more;
     out.a = c.a * e0.rate;
