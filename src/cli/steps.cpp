@@ -177,6 +177,7 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
                 if (stroke::has_brush(care.action)) with.dip = "carry";
                 entry.trace.flat = false;
                 entry.trace.brush = trace.brush;
+                entry.trace.seed = trace.seed;  // lays the hair of a fresh one
                 entry.trace.ink = care.ink.empty() ? trace.ink : care.ink;
                 entry.trace.layer = trace.layer;
                 entry.trace.mask = trace.mask;

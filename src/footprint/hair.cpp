@@ -6,6 +6,7 @@
 
 #include "core/random.h"
 #include "core/simd.h"
+#include "footprint/slip.h"
 
 namespace tuft::footprint {
 namespace {
@@ -144,22 +145,22 @@ double breaks_at(const brush::Bundles& bundles, const brush::Bristle& b, double 
                               kRollingPart * (0.5 + 0.5 * rolls) + kBreakingPart * (0.5 + 0.5 * breaks));
 }
 
-/// What lies down of the hair, parts of the tuft's length, and metres that it measures across the motion.
+/// What lies down of the hair, parts of the tuft's length, and what it measures across its motion.
 struct Laid {
     Lying lies;
-    double across = 0;
+    Across across;
 };
 
 /// Where a bristle touches: with all that lies down of it where ink closes the gaps, with a part of it, here or there,
 /// where it must touch itself, since hair is not quite straight and lies over other hair. Drawn sideways it has ink for
 /// no wider a way than drawn along itself.
-Lying touching(const brush::Bundles& bundles, const brush::Bristle& b, double wet, const Laid& laid) {
+Lying touching(const brush::Bundles& bundles, const brush::Bristle& b, double wet, double x, const Laid& laid) {
     const Lying& lies = laid.lies;
     if (wet >= 1) return {-4, 4};
     // Water draws the ends to a point.
     const double end = static_cast<double>(b.end) + (1 - static_cast<double>(b.end)) * std::max(0.0, 2 * wet - 1);
     const double way = 2 * kMark * std::max(1.0, 0.5 * wet / ((1 - wet) * (1 - wet)));
-    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, way / std::max(laid.across, 1e-9)});
+    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, way / std::max(laid.across.at(x), 1e-9)});
     const double rest = (1 - part) * std::max(0.0, end - lies.begin), behind = uniform(own_seed(bundles, b), 2);
     return {part < 1 ? lies.begin + (1 - behind * behind) * rest : -4, part < 1 ? end - behind * behind * rest : end};
 }
@@ -180,7 +181,7 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
         if (!(active > 0)) continue;
         const double bridge = wet >= 1 ? 8 * a : active * std::max(kMark, kBridge * spacing * wet / (1 - wet));
         const double mark = active * kMark;
-        const Lying on = touching(bundles, b, wet, laid);
+        const Lying on = touching(bundles, b, wet, lower[i].x, laid);
         const double past_lo = i == 0 && wet >= 1 ? bridge : mark;
         const double past_hi = i + 1 == lower.size() && wet >= 1 ? bridge : mark;
         const double gap = strands.empty() ? 1e9 : (lower[i].x - strands.back().hi) * a;
@@ -342,7 +343,7 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
     std::vector<Lower> lower;
     const auto draw = [&](const Trail& trail, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
-        Laid laid{.lies = {trail.along[end - 1], trail.along[begin]}};
+        const Laid laid{{trail.along[end - 1], trail.along[begin]}, {trail, begin, end, ink.before, ink.way}};
         double widest = 0;
         // Heights over the middle, of all sections together: one of them would be another at every stamp, and hair that
         // sticks together lies on the same side.
@@ -351,8 +352,6 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
             const Cut& cut = trail.cuts[i];
             widest = std::max(widest, cut.a);
             if (i + 1 == end) break;
-            const Vec2 run = trail.cuts[i + 1].centre - cut.centre;
-            laid.across += std::abs(run.x * ink.way.y - run.y * ink.way.x);
             height += std::abs(trail.along[i + 1] - trail.along[i]) * Vec2{cut.a * cut.e.z, cut.b * cut.m.z};
         }
         lower.clear();

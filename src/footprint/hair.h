@@ -36,6 +36,7 @@ struct HairInk {
                                   ///< gaps between its hairs; 1 and more: closed
     double travel = 0;            ///< metres of the stroke so far: bristles roll as they are drawn
     Vec2 way{0};                  ///< unit, where the tuft is drawn, in the stamp's (u, v); zero: it stands
+    std::span<const Trail> before = {};  ///< of the stamp before, in this one's frame: each hair's own way; none: all go `way`
 };
 
 /// Film that a bundle brings over the film that closes its gaps,
@@ -58,7 +59,7 @@ struct HairMarks {
 /// ones first, and along the way, over 12 mm for all of a bundle and over 4 mm for it alone. Dry hair touches with a part of what
 /// lies down of it,
 ///
-///     0.1 + 1.25 wet²,   and no more than measures max(1, wet / (2 (1 − wet)²)) streaks across the motion:
+///     0.1 + 1.25 wet²,   and no more than measures max(1, wet / (2 (1 − wet)²)) streaks across its motion (`Across`):
 ///
 /// drawn sideways it has ink for no wider a way. All this is of the hair and of the way, in metres, and the same for any
 /// sampling and texel. Areas are exact at the edges. With wetness 1 in every bundle it is the picture

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "brush/tuft.h"
+#include "footprint/slip.h"
 
 namespace tuft::footprint {
 namespace {
@@ -198,6 +200,38 @@ TEST(Hair, DrawnSidewaysHasInkForNoWiderAWay) {
     EXPECT_NEAR(area({1, 0}), area({0, 0}), 0.02 * area({0, 0})) << "a drag along the hair, which is bent a little";
     EXPECT_LT(area({0, 1}), 0.3 * area({1, 0}));
     EXPECT_GT(area({0, 1}), 0);
+}
+
+TEST(Hair, SidewaysByItselfHasInkForNoWiderAWay) {
+    // The hand stands; hair that goes aside, or spreads, or turns about a point, leaves no more than lying hair of its width
+    // drawn that way, and hair that goes along itself leaves what a drag does.
+    const Pressed& p = pressed();
+    const std::vector<double> wet(p.tuft.bundles.place.size(), 0.4);
+    const auto area = [&](const std::function<void(Cut&)>& was) {
+        std::vector<Trail> before = p.trails;
+        for (Trail& trail : before)
+            for (Cut& cut : trail.cuts) was(cut);
+        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, {}, before}, kFlat, 0, kCell).footprint);
+    };
+    const double stays = area([](Cut&) {}), along = area([](Cut& c) { c.centre.x -= 3e-5; });
+    EXPECT_NEAR(along, stays, 0.02 * stays);
+    EXPECT_LT(area([](Cut& c) { c.centre.y -= 3e-5; }), 0.3 * stays) << "aside";
+    // About a tenth of the bristles stand in the middle, where nothing goes aside.
+    EXPECT_LT(area([](Cut& c) { c.a *= 0.98; }), 0.45 * stays) << "spreads";
+}
+
+TEST(Hair, CarriedTrailsLieWhereTheyLay) {
+    std::vector<Trail> trails = pressed().trails;
+    Frame other;
+    other.origin = {1e-3, -2e-3, 0};
+    other.t = {0.6, 0.8, 0};
+    other.b = {-0.8, 0.6, 0};
+    carry(trails, kFlat, other);
+    for (std::size_t i = 0; i < trails[0].cuts.size(); ++i) {
+        const Cut &now = trails[0].cuts[i], &was = pressed().trails[0].cuts[i];
+        EXPECT_NEAR(glm::distance(Vec2(other.to_world(Vec3(now.centre, 0))), was.centre), 0, 1e-15);
+        EXPECT_NEAR(glm::distance(now.e.x * other.t + now.e.y * other.b + now.e.z * other.n, was.e), 0, 1e-12);
+    }
 }
 
 TEST(Hair, FollowsInItsTrack) {

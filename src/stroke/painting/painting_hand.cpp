@@ -6,6 +6,7 @@
 
 #include "core/simd.h"
 #include "footprint/hair.h"
+#include "footprint/slip.h"
 #include "ink/touch/stir.h"
 #include "stroke/hand/line_width.h"
 
@@ -177,6 +178,12 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
     closed_area = 0;
     const double amount = closed ? 0 : std::clamp((1 - mean) / kSplays, 0.0, 1.0);
     footprint::splay(trails, tracks, slid, tuft.preset.length, amount);
+    std::vector<footprint::Trail> lying;
+    if (!closed) {
+        if (!was_touching) lay.clear();
+        footprint::carry(lay, lay_frame, contact.frame);
+        lying = trails;
+    }
     if (!contact.planes.empty())
         footprint::cover_foot(trails, brush::foot_of(tuft, contact.planes.front()), contact.frame, kSkinFilm);
     std::vector<footprint::Outline> outlines;
@@ -188,13 +195,15 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, cell);
     } else {
         footprint::HairMarks marks = footprint::hair_marks(trails, outlines, tuft.bundles, branches,
-                                                           {wetness, travel, heading}, contact.frame, contact.triangle, cell);
+                                                           {wetness, travel, heading, lay}, contact.frame, contact.triangle, cell);
         stamp.footprint = std::move(marks.footprint);
         stamp.by_hair = true;
         const double dry = std::max(1e-3, 1 - mean);
         stamp.grain_film = kGrainFilm * 2 * mean / (dry * dry) - kRests * static_cast<double>(substrate->relief) * dry;
         closed_area = marks.closed_area;
     }
+    lay = std::move(lying);
+    lay_frame = contact.frame;
     if (wet || mixed || paste) place_nodes(stamp, trails, outlines);
     if ((paste || wet) && !trails.empty()) {
         const Vec2 e(trails.front().cuts[trails.front().cuts.size() / 2].e);

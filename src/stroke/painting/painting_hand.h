@@ -41,6 +41,8 @@ struct Painting::Hand {
     double slid = 0;               // metres that hair went over the surface since it was touched
     Vec2 heading{0};               // unit, of the hair's last motion over it; zero before the first
     footprint::HairTracks tracks;  // of the hair that lies there
+    std::vector<footprint::Trail> lay;  // of the last stamp by hair, in the frame `lay_frame`
+    Frame lay_frame;
     ink::Touch touched;            // by the last stamp
     ink::Touch touch;              // of the stamps since the last flush, summed
     double closed_area = 0;        // m², of the last stamp with its gaps; 0: it has none
