@@ -11,6 +11,7 @@
 #include "brush/preset.h"
 #include "core/units.h"
 #include "stroke/hand/line_width.h"
+#include "stroke/hand/practise.h"
 #include "stroke/hand/room.h"
 
 namespace tuft::cli {
@@ -60,17 +61,20 @@ void size_brushes(std::vector<stroke::Stroke>& strokes, const std::vector<stroke
 void press_to_widths(std::vector<stroke::Stroke>& strokes, stroke::WidthTables& tables, Console& console) {
     double least = 1e30, most = 0;
     const stroke::Stroke* missed = nullptr;
+    std::vector<stroke::Trace*> drawn;
     for (stroke::Stroke& s : strokes) {
         if (has_width(s)) {
             const stroke::LineWidths& widths = tables.of(s.trace.brush);
             stroke::draw_to_width(s.trace, widths);
+            drawn.push_back(&s.trace);
             if (s.trace.line_width < widths.least() || s.trace.line_width > widths.most()) {
                 missed = &s;
                 least = std::min(least, s.trace.line_width), most = std::max(most, s.trace.line_width);
             }
         }
-        s.trace.line_width = 0;
     }
+    stroke::practise(drawn, tables);
+    for (stroke::Stroke& s : strokes) s.trace.line_width = 0;
     if (!missed) return;
     const stroke::LineWidths& widths = tables.of(missed->trace.brush);
     const std::string asked = most > least ? fmt::format("{:.3g} to {:.3g}", least / kMillimetre, most / kMillimetre) : fmt::format("{:.3g}", most / kMillimetre);

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "io/svg.h"
 #include "stroke/hand/line_width.h"
+#include "stroke/hand/practise.h"
 #include "stroke/hand/placement.h"
 
 namespace tuft::app {
@@ -83,13 +84,16 @@ bool has_widths(const Writing& w) {
 
 void draw_to_widths(std::vector<stroke::Trace>& traces) {
     stroke::WidthTables widths;
+    std::vector<stroke::Trace*> drawn;
     for (stroke::Trace& trace : traces) {
         if (trace.line_width > 0) {
             trace.brush = stroke::brush_for_width(trace.brush, widths.of(trace.brush), trace.line_width);
             stroke::draw_to_width(trace, widths.of(trace.brush));
+            drawn.push_back(&trace);
         }
-        trace.line_width = 0;
     }
+    stroke::practise(drawn, widths);
+    for (stroke::Trace& trace : traces) trace.line_width = 0;
 }
 
 std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& w, const stroke::Placement& placement, std::size_t most) {

@@ -6,7 +6,9 @@
 
 #include "brush/sweep.h"
 #include "core/ease.h"
+#include "stroke/hand/hold.h"
 #include "stroke/hand/laying.h"
+#include "stroke/hand/lead.h"
 #include "stroke/hand/placement.h"
 
 namespace tuft::stroke {
@@ -45,6 +47,15 @@ double LineWidths::pressure(double width) const {
 const LineWidths& WidthTables::of(const std::string& brush) {
     const auto at = known_.find(brush);
     return at != known_.end() ? at->second : known_.emplace(brush, brush::load_preset(brush)).first->second;
+}
+
+const HoldOptions& WidthTables::hold(const std::string& brush) {
+    const auto at = holds_.find(brush);
+    if (at != holds_.end()) return at->second;
+    const brush::Preset preset = brush::load_preset(brush);
+    HoldOptions options = hold_options(preset);
+    options.lead = drag_lead(preset);
+    return holds_.emplace(brush, std::move(options)).first->second;
 }
 
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width) {

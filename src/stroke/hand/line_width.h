@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "brush/preset.h"
+#include "stroke/hand/placement.h"
 #include "stroke/journal/trace.h"
 
 /// Lines as wide as a drawing has them: how hard, and with which size of a brush, to press.
@@ -35,9 +36,12 @@ class LineWidths {
 class WidthTables {
   public:
     const LineWidths& of(const std::string& brush);
+    /// An upright holder over a plane that leads its line (`drag_lead`).
+    const HoldOptions& hold(const std::string& brush);
 
   private:
     std::map<std::string, LineWidths> known_;
+    std::map<std::string, HoldOptions> holds_;
 };
 
 /// The brush in the size that its name has if a pressure from 0.3 to 0.7 draws the width, else in the size

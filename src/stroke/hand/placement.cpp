@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stroke/hand/ground.h"
+#include "stroke/hand/hold.h"
 #include "stroke/hand/laying.h"
 #include "stroke/hand/lead.h"
 
@@ -12,21 +13,21 @@ namespace tuft::stroke {
 namespace {
 
 /// The surface as a steady hand takes it, for each sample.
-struct Held {
+struct Steady {
     Vec3 normal;
     double height = 0;  ///< metres above the sample, along `normal`
 };
 
 /// The mean of the normals within `steady` of travel, as far to one side as to the other, so that ends do not pull.
-std::vector<Held> steady_normals(std::span<const LaidSample> samples, std::span<const double> along, double steady) {
+std::vector<Steady> steady_normals(std::span<const LaidSample> samples, std::span<const double> along, double steady) {
     constexpr std::size_t kMost = 64;  // samples looked at to each side
     constexpr double kNear = 0.5;      // radians: normals further off belong to a groove's wall
-    std::vector<Held> held;
+    std::vector<Steady> held;
     held.reserve(samples.size());
     std::vector<std::size_t> window;
     std::size_t first = 0, last = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        Held h{samples[i].normal, 0};
+        Steady h{samples[i].normal, 0};
         while (along[i] - along[first] > steady) ++first;
         while (last + 1 < samples.size() && along[last + 1] - along[i] <= steady) ++last;
         const double reach = std::min(along[i] - along[first], along[last] - along[i]);
@@ -55,7 +56,7 @@ std::vector<Held> steady_normals(std::span<const LaidSample> samples, std::span<
 /// The heights: the ground is felt at nodes along the way, and a straight line through those within `kSoft` of the
 /// radius, the nearest counting most, is what the hand does.
 void level_out(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples, std::span<const double> along,
-               double radius, std::vector<Held>& held) {
+               double radius, std::vector<Steady>& held) {
     constexpr double kApart = 1.0 / 16, kSoft = 0.25;  // radii
     if (radius <= 0) return;
     struct Node {
@@ -98,13 +99,32 @@ double working_depth(const brush::Preset& preset) {
     return 0.5 * preset.length;
 }
 
-HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {
+HoldOptions hold_options(const brush::Preset& preset) {
     return {.tuft_length = preset.length,
             .working_depth = working_depth(preset),
             .hover = 0.1 * preset.length,
-            .steady = std::min(drape_radius(mesh), 0.4 * preset.length),  // a fine tuft feels finer ground
+            .steady = 0,
             .lead = {},
             .lead_turn = std::min(HoldOptions{}.lead_turn, 0.075 * preset.length)};  // a fine tuft turns sooner
+}
+
+HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {
+    HoldOptions options = hold_options(preset);
+    options.steady = std::min(drape_radius(mesh), 0.4 * preset.length);  // a fine tuft feels finer ground
+    return options;
+}
+
+brush::Pose hold_over(const Vec3& place, double height, const Held& held, const HoldOptions& options) {
+    const double lean = std::min(glm::length(held.tilt), options.max_tilt);
+    const Vec2 tilt = lean > 0 ? held.tilt * (lean / glm::length(held.tilt)) : Vec2{0};
+    const Vec3 up = glm::normalize(held.normal + std::tan(tilt.x) * held.right + std::tan(tilt.y) * held.down);
+    const double depth = held.pressure > 0 ? held.pressure * options.working_depth : -options.hover;
+    const Vec3 x = into_plane(held.right, up);
+    brush::Pose pose;
+    pose.position = place + (height - depth) * held.normal + options.tuft_length * up;
+    pose.rotation = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up)));
+    pose.time = held.time;
+    return pose;
 }
 
 std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples,
@@ -112,29 +132,18 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const L
     std::vector<brush::Pose> poses;
     poses.reserve(samples.size());
     const std::vector<double> along = travelled(samples);
-    std::vector<Held> held = steady_normals(samples, along, options.steady);
+    std::vector<Steady> held = steady_normals(samples, along, options.steady);
     level_out(query, samples, along, options.steady, held);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const LaidSample& s = samples[i];
-        const Held& ground = held[i];
+        const Steady& ground = held[i];
         const Axes axes = axes_across(ground.normal, s.right, s.down);
-        const double lean = std::min(glm::length(s.tilt), options.max_tilt);
-        const Vec2 tilt = lean > 0 ? s.tilt * (lean / glm::length(s.tilt)) : Vec2{0};
-        const Vec3 up = glm::normalize(ground.normal + std::tan(tilt.x) * axes.right +
-                                       std::tan(tilt.y) * axes.down);
         const Vec3 ahead = s.lead.x * axes.right + s.lead.y * axes.down;
         double height = ground.height;
         // A tuft that has not trailed yet touches where the hand is.
         if (const double lead = glm::length(s.lead); along[i] < lead)
             height += (1 - along[i] / lead) * rise(query, s.position, ahead, ground.normal, options.steady);
-        const double depth = s.pressure > 0 ? s.pressure * options.working_depth : -options.hover;
-        const Vec3 x = into_plane(axes.right, up);
-        brush::Pose pose;
-        pose.position =
-            s.position + ahead + (height - depth) * ground.normal + options.tuft_length * up;
-        pose.rotation = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up)));
-        pose.time = s.time;
-        poses.push_back(pose);
+        poses.push_back(hold_over(s.position + ahead, height, {ground.normal, axes.right, axes.down, s.pressure, s.tilt, s.time}, options));
     }
     return poses;
 }

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "stroke/hand/placement.h"
+
+/// A holder over one place.
+namespace tuft::stroke {
+
+/// What a holder is held over, and how.
+struct Held {
+    Vec3 normal{0, 0, 1};  ///< unit, of the surface
+    Vec3 right{1, 0, 0};   ///< unit, along it: what a tilt's axes are
+    Vec3 down{0, -1, 0};
+    double pressure = 0;  ///< 0–1 of the working depth
+    Vec2 tilt{0};         ///< radians, towards right, towards down
+    double time = 0;
+};
+
+/// The ferrule over a place, as `hold` has it; `height`: metres of the ground over that place.
+brush::Pose hold_over(const Vec3& place, double height, const Held& held,
+                      const HoldOptions& options);
+
+/// Options for a brush over a plane, without a lead.
+HoldOptions hold_options(const brush::Preset& preset);
+
+}  // namespace tuft::stroke
