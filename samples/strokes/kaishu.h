@@ -7,7 +7,7 @@
 namespace tuft::samples {
 
 /// 横, left to right: a cut entry from above, a body that thins towards the middle and
-/// bows up a little, a shoulder pressed down to the lower right and lifted where it stands.
+/// bows up a little, a shoulder pressed down to the lower right, turned back along the stroke as it lifts.
 Stroke heng(Vec2 from, Vec2 to, double w, double bow = 0.02);
 /// A short 横 that only lands and swells, as in 上 or 步.
 Stroke short_heng(Vec2 from, Vec2 to, double w);
