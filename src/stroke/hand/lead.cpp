@@ -5,12 +5,12 @@
 
 #include "brush/sweep.h"
 #include "core/ease.h"
-#include "core/ease.h"
 
 namespace tuft::stroke {
 namespace {
 
 constexpr double kUpright = 0.05, kLeans = 0.15;  // radians
+constexpr double kPlumb = 0.3;                    // of the tuft's length, of travel over which an upright holder comes to its lean
 
 /// Where x lies between the grid's values, held to its ends.
 template <std::size_t N>
@@ -150,11 +150,25 @@ void lean_ahead(Trace& trace, const HoldOptions& options, const Vec2& ahead) {
     }
 }
 
+// A hand that holds the brush upright, give or take a little, sets it down plumb: hair that touches ahead of the hand by
+// a lean that nobody meant would be pushed, and turn over late. The lean comes as the hair is drawn to one side.
+void set_down_plumb(Trace& trace, const HoldOptions& options) {
+    const double whole = kPlumb * options.tuft_length;
+    double along = 0;
+    for (std::size_t i = 0; i < trace.samples.size() && along < whole; ++i) {
+        TraceSample& s = trace.samples[i];
+        if (i > 0) along += glm::length(s.position - trace.samples[i - 1].position);
+        const double meant = smooth_step((glm::length(s.tilt) - kUpright) / (kLeans - kUpright));
+        s.tilt *= std::lerp(smooth_step(along / whole), 1.0, meant);
+    }
+}
+
 }  // namespace
 
 Trace lead_hand(Trace trace, const HoldOptions& options) {
     if (options.lead.empty() || trace.samples.empty() || !trace.flat) return trace;
     const bool pressed = set_down(trace, options);
+    set_down_plumb(trace, options);
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
     Vec2 dragged = first;
