@@ -52,6 +52,8 @@ Vec2 lead_of(const HoldOptions& options, double pressure, const Vec2& tilt, cons
 /// where the path reverses, the lead passes through zero. A trace that begins pressed gets samples
 /// before its first, at the same place, in which the pressure rises to it at the trace's pace: the tip
 /// touches first and trails then.
+/// A holder that is upright but for 0.05 rad sets the brush down plumb and comes to that lean within 0.3 lengths of the
+/// tuft.
 Trace lead_hand(Trace trace, const HoldOptions& options);
 
 }  // namespace tuft::stroke
