@@ -13,7 +13,7 @@ namespace {
 using Line = std::vector<Vec2>;
 
 constexpr double kStem = 0.36, kCompact = 0.06;  // width of a line: of a stem, of the root of the area
-constexpr double kFirst = 0.475, kNext = 0.45;   // widths from the outline to the first line, and from one to the next
+constexpr double kFirst = 0.475, kNext = 0.425;   // widths from the outline to the first line, and from one to the next
 constexpr double kChord = 0.1;                  // widths, of edges and between points
 constexpr double kSlack = 0.02;                 // widths that a point may lie nearer to an edge than its own
 constexpr double kJoin = 0.35;                  // widths between ends that are one
