@@ -24,14 +24,30 @@ constexpr double kLeastArea = 0.25, kMostArea = 2; // of a whole texel: many sea
 constexpr double kTapRadius = 1.5;    // of a texel's side
 constexpr double kLeastPlane = 0.02;  // of a unit cube's determinant
 
-/// Texel b over the seam as seen from texel a, and the other way round; metres, in their tangent planes.
+/// Texel b over the seam as seen from texel a, and the other way round; metres, in their tangent
+/// planes. a before b.
 struct Crossing {
     TexelRef a, b;
     Vec3f ab{0}, ba{0};
     float way = 0;  ///< from a over the seam to b
-
-    auto pair() const { return std::tie(a.slot, a.texel, b.slot, b.texel); }
 };
+
+/// A texel over the seam as seen from one beside it; metres, in its tangent plane.
+struct Opposite {
+    TexelRef ref;
+    Vec3f to{0};
+};
+
+/// Orders pairs of texels by slot, then texel. Slots are below 2^20: atlases have 16384² texels at
+/// most.
+std::uint64_t pair_key(const TexelRef& a, const TexelRef& b) {
+    const auto place = [](const TexelRef& t) { return std::uint64_t{t.slot} << 8 | t.texel; };
+    return place(a) << 32 | place(b);
+}
+
+bool before(const TexelRef& a, const TexelRef& b) {
+    return std::tie(a.slot, a.texel) < std::tie(b.slot, b.texel);
+}
 
 Vec2 texel_centre(const TexelMap& map, const TexelRef& ref) {
     const std::uint32_t tile = map.tile_of_slot[ref.slot];
@@ -106,20 +122,82 @@ void cross(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& m
                 if (along_ab * along_ab + across * across > farthest * farthest || a.ref == b.ref || grid_neighbours(map, a.ref, b.ref)) continue;
                 const Vec3f ab(along_ab * along - across * in_a), ba(-along_ab * along - across * in_b);
                 const auto way = static_cast<float>(std::hypot(a.along, a.across) + std::hypot(b.along, b.across));
-                found.push_back({a.ref, b.ref, ab, ba, way});
-                found.push_back({b.ref, a.ref, ba, ab, way});
+                if (before(a.ref, b.ref))
+                    found.push_back({a.ref, b.ref, ab, ba, way});
+                else
+                    found.push_back({b.ref, a.ref, ba, ab, way});
             }
     }
 }
 
-/// Keeps the shortest way of each pair, the first found of equal ones.
+/// Keeps the shortest way of each pair, the first found of equal ones; in order of the pairs.
 void keep_shortest(std::vector<Crossing>& crossings) {
-    std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& x, const Crossing& y) {
-        return x.pair() != y.pair() ? x.pair() < y.pair() : x.way < y.way;
+    struct Key {
+        std::uint64_t pair;
+        float way;
+        std::uint32_t index;
+    };
+    std::vector<Key> keys(crossings.size());
+    for (std::uint32_t i = 0; i < keys.size(); ++i)
+        keys[i] = {pair_key(crossings[i].a, crossings[i].b), crossings[i].way, i};
+    std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
+        return std::tie(x.pair, x.way, x.index) < std::tie(y.pair, y.way, y.index);
     });
-    crossings.erase(std::unique(crossings.begin(), crossings.end(), [](const Crossing& x, const Crossing& y) { return x.pair() == y.pair(); }),
-                    crossings.end());
+    keys.erase(std::unique(keys.begin(), keys.end(),
+                           [](const Key& x, const Key& y) { return x.pair == y.pair; }),
+               keys.end());
+    std::vector<Crossing> kept;
+    kept.reserve(keys.size());
+    for (const Key& k : keys) kept.push_back(crossings[k.index]);
+    crossings = std::move(kept);
 }
+
+/// The crossings as both of their texels see them.
+class Opposites {
+  public:
+    explicit Opposites(std::vector<Crossing> crossings) : crossings_(std::move(crossings)) {
+        sides_.reserve(2 * crossings_.size());
+        for (std::uint32_t i = 0; i < crossings_.size(); ++i) {
+            const Crossing& c = crossings_[i];
+            sides_.push_back({pair_key(c.a, c.b), 2 * i});
+            sides_.push_back({pair_key(c.b, c.a), 2 * i + 1});
+        }
+        std::sort(sides_.begin(), sides_.end(),
+                  [](const Side& x, const Side& y) { return x.pair < y.pair; });
+        for (std::size_t i = 0; i < sides_.size(); ++i)
+            if (i == 0 || sides_[i].pair >> 32 != sides_[i - 1].pair >> 32) start_.push_back(i);
+        start_.push_back(sides_.size());
+    }
+
+    /// Texels with one over a seam.
+    std::size_t n_texels() const { return start_.size() - 1; }
+
+    TexelRef texel(std::size_t i) const {
+        const std::uint64_t place = sides_[start_[i]].pair >> 32;
+        return {static_cast<std::uint32_t>(place >> 8), static_cast<std::uint8_t>(place & 255)};
+    }
+
+    /// Those over seams from texel i.
+    void list(std::size_t i, std::vector<Opposite>& over) const {
+        over.clear();
+        for (std::size_t k = start_[i]; k < start_[i + 1]; ++k) {
+            const Crossing& c = crossings_[sides_[k].index / 2];
+            if (sides_[k].index % 2 == 0)
+                over.push_back({c.b, c.ab});
+            else
+                over.push_back({c.a, c.ba});
+        }
+    }
+
+  private:
+    struct Side {
+        std::uint64_t pair;
+        std::uint32_t index;  // twice the crossing's, and one more as b sees it
+    };
+    std::vector<Crossing> crossings_;
+    std::vector<Side> sides_;
+    std::vector<std::size_t> start_;
+};
 
 /// A convex cell: its corners, and what stands behind the side that starts there.
 struct Polygon {
@@ -130,15 +208,25 @@ struct Polygon {
 
     /// Takes away what lies nearer to `site` than to the origin.
     void cut(const Vec2& site, int id) {
-        Polygon out;
+        std::array<double, kMost> inside;  // > 0
         const double half = 0.5 * glm::dot(site, site);
+        bool all = true;
         for (int i = 0; i < n; ++i) {
-            const Vec2 &p = corner[i], &q = corner[(i + 1) % n];
-            const double a = half - glm::dot(p, site), b = half - glm::dot(q, site);  // inside > 0
+            inside[i] = half - glm::dot(corner[i], site);
+            all &= inside[i] > 0;
+        }
+        if (all) return;
+        Polygon out;
+        for (int i = 0; i < n; ++i) {
+            const int next = i + 1 < n ? i + 1 : 0;
+            const Vec2 &p = corner[i], &q = corner[next];
+            const double a = inside[i], b = inside[next];
             if (a > 0) out.add(p, behind[i]);
             if ((a > 0) != (b > 0)) out.add(p + a / (a - b) * (q - p), a > 0 ? id : behind[i]);
         }
-        *this = out;
+        n = out.n;
+        std::copy_n(out.corner.begin(), n, corner.begin());
+        std::copy_n(out.behind.begin(), n, behind.begin());
     }
     void add(const Vec2& p, int id) {
         if (n == kMost) return;
@@ -178,8 +266,7 @@ struct Sites {
 };
 
 /// The eight of the grid and those over seams; where neither is, whole texels end.
-Sites sites_of(const TexelMap& map, std::span<const Crossing> over) {
-    const TexelRef here = over.front().a;
+Sites sites_of(const TexelMap& map, const TexelRef& here, std::span<const Opposite> over) {
     const Vec3 position(map.position(here.slot, here.texel));
     const Frame frame(Vec3(map.normal(here.slot, here.texel)));
     const auto reach = static_cast<double>(map.reach[here.slot]);
@@ -197,7 +284,7 @@ Sites sites_of(const TexelMap& map, std::span<const Crossing> over) {
         grid[i] = {frame(apart), ref};
         sites.push_back(grid[i]);
     }
-    for (const Crossing& c : over) sites.push_back({frame(Vec3(c.ab)), c.b, true});
+    for (const Opposite& o : over) sites.push_back({frame(Vec3(o.to)), o.ref, true});
     const std::size_t real = sites.size();
     for (int i = 0; i < 8; ++i) {
         const Site& across = grid[i ^ 2];
@@ -248,9 +335,10 @@ struct Cell {
     std::vector<BorderFace> faces;  ///< of this cell: a is its texel
 };
 
-Cell cell_of(const TexelMap& map, std::span<const Crossing> over) {
-    const TexelRef here = over.front().a;
-    const Sites all = sites_of(map, over);
+/// `only_area`: without taps and faces.
+Cell cell_of(const TexelMap& map, const TexelRef& here, std::span<const Opposite> over,
+             bool only_area) {
+    const Sites all = sites_of(map, here, over);
     const std::vector<Site>& sites = all.all;
     const double side = std::sqrt(static_cast<double>(map.tiles[here.slot].area[here.texel]));
     Polygon polygon;
@@ -259,6 +347,7 @@ Cell cell_of(const TexelMap& map, std::span<const Crossing> over) {
         if (glm::dot(sites[i].at, sites[i].at) > 1e-6 * side * side) polygon.cut(sites[i].at, static_cast<int>(i));
     Cell cell;
     cell.area = std::clamp(polygon.area(), kLeastArea * side * side, kMostArea * side * side);
+    if (only_area) return cell;
     for (int i = 0; i < polygon.n; ++i) {
         if (polygon.behind[i] < 0) continue;
         const Site& s = sites[polygon.behind[i]];
@@ -270,8 +359,6 @@ Cell cell_of(const TexelMap& map, std::span<const Crossing> over) {
     for (int i = 0; i < 4; ++i) tap(all, i, here, side, cell.taps);
     return cell;
 }
-
-bool before(const TexelRef& a, const TexelRef& b) { return std::tie(a.slot, a.texel) < std::tie(b.slot, b.texel); }
 
 }  // namespace
 
@@ -299,27 +386,25 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
     }
     keep_shortest(crossings);
 
-    std::vector<std::size_t> start;
-    for (std::size_t i = 0; i < crossings.size(); ++i)
-        if (i == 0 || !(crossings[i].a == crossings[i - 1].a)) start.push_back(i);
+    const Opposites opposites(std::move(crossings));
     BorderCells result;
-    result.cells.resize(start.size());
+    result.cells.resize(opposites.n_texels());
     constexpr std::size_t kBlock = 256;
-    std::vector<std::vector<BorderFace>> faces((start.size() + kBlock - 1) / kBlock);
+    std::vector<std::vector<BorderFace>> faces((result.cells.size() + kBlock - 1) / kBlock);
     std::vector<std::vector<BorderTap>> taps(faces.size());
-    start.push_back(crossings.size());
     parallel_for(faces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<Opposite> over;
         for (std::size_t block = begin; block < end; ++block)
             for (std::size_t i = block * kBlock; i < std::min(result.cells.size(), (block + 1) * kBlock); ++i) {
-                const Cell cell = cell_of(map, std::span(crossings).subspan(start[i], start[i + 1] - start[i]));
-                result.cells[i] = {crossings[start[i]].a, cell.area};
-                if (only_cells) continue;
+                opposites.list(i, over);
+                const TexelRef here = opposites.texel(i);
+                const Cell cell = cell_of(map, here, over, only_cells);
+                result.cells[i] = {here, cell.area};
                 faces[block].insert(faces[block].end(), cell.faces.begin(), cell.faces.end());
                 taps[block].insert(taps[block].end(), cell.taps.begin(), cell.taps.end());
             }
     });
     if (only_cells) return result;
-    crossings = {};
     for (const auto& t : taps) result.taps.insert(result.taps.end(), t.begin(), t.end());
     // Each cell gives half of its faces: on curved surfaces the two do not quite agree.
     const auto is_cell = [&](const TexelRef& t) {
