@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "atlas/texels/log_map.h"
+#include "footprint/folds.h"
 #include "footprint/picture.h"
 #include "footprint/quarters.h"
 #include "footprint/sweep.h"
@@ -238,7 +239,9 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     const Vec2 place = atlas::log_map(start, Vec3(first_piece.centre), Vec3(first_piece.normal));
     const Vec2 turn =
         atlas::carried_direction(start, Vec3(first_piece.tangent), Vec3(first_piece.normal));
-    walk_pieces(surface.pieces, reach, {first, Vec2f(place), Vec2f(turn)}, scratch);
+    const Start at{first, Vec2f(place), Vec2f(turn)};
+    const std::size_t folded = walk_pieces(surface.pieces, reach, at, scratch);
+    place_folds(surface, footprint.triangle, start, reach, at, folded, scratch);
     if (scratch.reached.empty()) return jobs;
 
     jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);

@@ -18,6 +18,8 @@ constexpr float kNearSource = 0.5f;   // squared distance over hop below which h
 constexpr float kLeastStretch = 0.6f; // and its inverse: beyond, the ways to both differ
 constexpr float kOverBorder = 0.3f;  // cosine of an open border's outward direction to the source
 constexpr float kDetour = 2;  // piece radii round the picture in which ways to it are looked for
+constexpr float kFold =
+    0.99f;  // of the straight line in space: places nearer than that are folded over themselves
 constexpr float kLater = 1.05f;  // of the squared distance expected: the piece's turn comes later
 // Ways that bend round a corner (see bent_way).
 constexpr float kShortest = 0.95f;  // of the straight line in space: a shorter way is none
@@ -27,8 +29,6 @@ constexpr float kBeside = 1.6f;   // piece radii: the source may lie beside the 
 constexpr float kBetween = 0.8f;  // of the distance it began at: may lead between two neighbours
 
 constexpr std::uint32_t kMostEdges = 64;  // of a piece that are looked at
-
-enum : std::uint8_t { kOpen, kFinal, kOutside };
 
 /// Signed angle from p to q, |p||q| = `lengths`, within 5e-5 of itself below 62°; beyond, not a
 /// number. By the tangent of its half and a Padé approximant: the same bits in every library.
@@ -43,16 +43,9 @@ struct Walk {
     PlanScratch& scratch;
     const Reach& reach;
     std::uint32_t start;  ///< the piece touched
+    std::size_t folded = 0;  ///< pieces that no straight way leads to
 
-    PlanScratch::Node& node(std::uint32_t piece) {
-        PlanScratch::Node& n = scratch.nodes[piece];
-        if (n.epoch != scratch.epoch) {
-            n = {};
-            n.epoch = scratch.epoch;
-            n.key = std::numeric_limits<float>::infinity();
-        }
-        return n;
-    }
+    PlanScratch::Node& node(std::uint32_t piece) { return node_of(scratch, piece); }
 
     /// `key`: squared distance from the stamp's origin.
     void push(PlanScratch::Node& n, std::uint32_t piece, float key) {
@@ -119,6 +112,7 @@ struct Walk {
         const float turn = std::sqrt(c * c + s * s), away = std::sqrt(u * u + v * v);
         const float straight = total * std::max(glm::length(piece.centre - reach.origin), bent);
         const float longer = away > 0 && away < 0.999f * straight ? straight / away : 1.0f;
+        folded += bent > 0 || away < kFold * straight;
         n.u = longer * u / total;
         n.v = longer * v / total;
         if (!(turn > 0)) return;
@@ -252,21 +246,6 @@ struct Walk {
         n.stretch = stretch;
     }
 
-    bool faces_away(const atlas::Piece& piece) const {
-        const float c = glm::dot(piece.normal, reach.normal);
-        if (c > kFacingAway) return false;
-        return std::acos(std::max(c, -1.0f)) - std::acos(std::min(piece.cone_cos, 1.0f)) >
-               std::acos(static_cast<float>(kFacingAway));
-    }
-
-    /// The piece's disc and the picture have a point in common.
-    bool in_picture(const atlas::Piece& piece, const PlanScratch::Node& n) const {
-        const float r = kPieceSlack * piece.radius;
-        const float du = std::max({reach.lo.x - n.u, n.u - reach.hi.x, 0.0f});
-        const float dv = std::max({reach.lo.y - n.v, n.v - reach.hi.y, 0.0f});
-        return du * du + dv * dv <= r * r;
-    }
-
     /// Worth a visit where one neighbour sees it: in the picture or on a way into it. Its final
     /// place may be a little nearer.
     bool near_picture(const atlas::Piece& piece, float u, float v) const {
@@ -297,9 +276,10 @@ struct Walk {
                 continue;
             }
             n.state = kOutside;
-            if (distance - kPieceSlack * piece.radius > reach.radius || faces_away(piece)) continue;
+            if (distance - kPieceSlack * piece.radius > reach.radius || faces_away(reach, piece))
+                continue;
             n.state = kFinal;
-            if (in_picture(piece, n)) scratch.reached.push_back(i);
+            if (in_picture(reach, piece, n)) scratch.reached.push_back(i);
             for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
                 const atlas::PieceEdge& e = graph.edges[k];
                 PlanScratch::Node& other = node(e.to);
@@ -318,6 +298,32 @@ struct Walk {
     }
 };
 
+}  // namespace
+
+PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t piece) {
+    PlanScratch::Node& n = scratch.nodes[piece];
+    if (n.epoch != scratch.epoch) {
+        n = {};
+        n.epoch = scratch.epoch;
+        n.key = std::numeric_limits<float>::infinity();
+    }
+    return n;
+}
+
+bool faces_away(const Reach& reach, const atlas::Piece& piece) {
+    const float c = glm::dot(piece.normal, reach.normal);
+    if (c > kFacingAway) return false;
+    return std::acos(std::max(c, -1.0f)) - std::acos(std::min(piece.cone_cos, 1.0f)) >
+           std::acos(static_cast<float>(kFacingAway));
+}
+
+bool in_picture(const Reach& reach, const atlas::Piece& piece, const PlanScratch::Node& n) {
+    const float r = kPieceSlack * piece.radius;
+    const float du = std::max({reach.lo.x - n.u, n.u - reach.hi.x, 0.0f});
+    const float dv = std::max({reach.lo.y - n.v, n.v - reach.hi.y, 0.0f});
+    return du * du + dv * dv <= r * r;
+}
+
 void begin_walk(PlanScratch& scratch, std::size_t n_pieces) {
     if (scratch.nodes.size() != n_pieces || scratch.epoch == kNone) {
         scratch.nodes.assign(n_pieces, {});
@@ -327,19 +333,22 @@ void begin_walk(PlanScratch& scratch, std::size_t n_pieces) {
     scratch.heap.clear();
 }
 
-}  // namespace
-
-void walk_pieces(const atlas::PieceGraph& graph, const Reach& reach, const Start& start,
-                 PlanScratch& scratch) {
-    begin_walk(scratch, graph.n_pieces());
-    Walk walk{graph, scratch, reach, start.piece};
-    PlanScratch::Node& n = walk.node(start.piece);
-    walk.push(n, start.piece, 0);
+PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start) {
+    PlanScratch::Node& n = node_of(scratch, start.piece);
     n.u = start.place.x;
     n.v = start.place.y;
     n.c = start.turn.x;
     n.s = start.turn.y;
+    return n;
+}
+
+std::size_t walk_pieces(const atlas::PieceGraph& graph, const Reach& reach, const Start& start,
+                        PlanScratch& scratch) {
+    begin_walk(scratch, graph.n_pieces());
+    Walk walk{graph, scratch, reach, start.piece};
+    walk.push(place_start(scratch, start), start.piece, 0);
     walk.run();
+    return walk.folded;
 }
 
 }  // namespace tuft::footprint

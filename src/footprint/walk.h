@@ -26,8 +26,21 @@ struct Start {
 
 /// Dijkstra over the pieces by the length of the straightest ways from the stamp's origin. Leaves
 /// those that the picture reaches in scratch.reached, in order of their numbers, and the places of
-/// all visited in scratch.nodes. Cost: 0.2 µs a piece.
-void walk_pieces(const atlas::PieceGraph& graph, const Reach& reach, const Start& start,
-                 PlanScratch& scratch);
+/// all visited in scratch.nodes. Returns to how many of them no straight way over their neighbours leads: where the
+/// surface folds. Cost: 0.2 µs a piece.
+std::size_t walk_pieces(const atlas::PieceGraph& graph, const Reach& reach, const Start& start,
+                        PlanScratch& scratch);
+
+/// What the walk over pieces and that over folds (folds.h) have in common: states of a piece,
+enum : std::uint8_t { kOpen, kFinal, kOutside };
+/// all nodes open again, those of no piece visited yet,
+void begin_walk(PlanScratch& scratch, std::size_t n_pieces);
+/// a piece's node,
+PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t piece);
+PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start);
+/// and what is never inked, or lies beside the picture: the piece's disc has no point in common
+/// with it.
+bool faces_away(const Reach& reach, const atlas::Piece& piece);
+bool in_picture(const Reach& reach, const atlas::Piece& piece, const PlanScratch::Node& n);
 
 }  // namespace tuft::footprint

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 
 #include "../atlas/analytic_surfaces.h"
@@ -131,24 +132,29 @@ TEST(Geodesics, StampsKeepDistancesOnARoughSurface) {
     EXPECT_LT(quantile(errors, 0.99), 0.025);
 }
 
-TEST(Geodesics, StampsKeepDistancesOnTheCar) {
-    // The last percent are texels in the folds between the spokes of the wheels; how the layout of the
-    // atlas cuts the spokes decides which way round them is taken. Over four layouts the mean was 0.10 to
-    // 0.15 %, 98 % lay within 0.9 %, 99 % within 1.7 %; with tiles there in one piece it was 0.13 to 0.21 %,
-    // 1.3 % and 2.6 %.
-    for (const std::uint32_t gutter : {4, 8}) {
-        Model car = shipped("car", 2048, gutter);
-        std::vector<double> errors = distance_errors(car, 40, 60, 0.06);
-        const std::vector<double> more = distance_errors(car, 40, 60, 0.06, 7);
-        errors.insert(errors.end(), more.begin(), more.end());
-        ASSERT_GT(errors.size(), 5000u);
+void expect_distances_on_the_car(std::uint32_t gutter) {
+    // Stamps as wide as the openings between the spokes, as the wheels, and between. Where the
+    // surface folds, pieces lie as exact ways say; what is left are single texels of pieces on
+    // whose other side another way is the shortest: up to 41 % there. Measured: mean 0.02 to 0.10
+    // %, 98 % within 0.14 to 0.63 %, 99 % within 0.28 to 1.03 %; by the walk over the pieces alone
+    // 99 % lay within 12 % at 256 texels.
+    Model car = shipped("car", 2048, gutter);
+    for (const auto& [texels, part, places] :
+         {std::tuple{40, 0.06, 5}, {40, 0.06, 7}, {128, 0.02, 5}, {256, 0.005, 5}}) {
+        const std::vector<double> errors =
+            distance_errors(car, texels, texels < 128 ? 60 : 30, part, places);
+        ASSERT_GT(errors.size(), 2500u);
         // Targets for real meshes: 0.4 % mean, 2.5 % at 99 %.
-        EXPECT_LT(mean(errors), 0.002) << gutter;
-        EXPECT_LT(quantile(errors, 0.95), 0.006) << gutter;
-        EXPECT_LT(quantile(errors, 0.98), 0.012) << gutter;
-        EXPECT_LT(quantile(errors, 0.99), 0.025) << gutter;
+        EXPECT_LT(mean(errors), 0.002) << gutter << ' ' << texels;
+        EXPECT_LT(quantile(errors, 0.95), 0.004) << gutter << ' ' << texels;
+        EXPECT_LT(quantile(errors, 0.98), 0.008) << gutter << ' ' << texels;
+        EXPECT_LT(quantile(errors, 0.99), 0.015) << gutter << ' ' << texels;
     }
 }
+
+TEST(Geodesics, StampsKeepDistancesOnTheCar) { expect_distances_on_the_car(4); }
+
+TEST(Geodesics, StampsKeepDistancesOnTheCarInAnotherLayout) { expect_distances_on_the_car(8); }
 
 struct Contact {
     Frame frame;
