@@ -95,14 +95,14 @@ Vec2 turned(const Vec2& v, double angle) {
 /// Discs of many lines, found by the squares of a grid.
 class DrawnArea {
   public:
-    void add(std::size_t line, const Vec2& centre, double half) {
+    void add(std::size_t of_line, const Vec2& centre, double half) {
         if (!(half > 0)) return;
         const Vec2 lo = glm::floor((centre - half) / kSquare),
                    hi = glm::floor((centre + half) / kSquare);
         for (auto j = static_cast<std::int64_t>(lo.y); j <= static_cast<std::int64_t>(hi.y); ++j)
             for (auto i = static_cast<std::int64_t>(lo.x); i <= static_cast<std::int64_t>(hi.x);
                  ++i)
-                squares_[key(i, j)].push_back({line, centre, half});
+                squares_[key(i, j)].push_back({of_line, centre, half});
     }
     /// Whether a point lies by more than `slack` of their half widths within a disc of a line other
     /// than `but`.
