@@ -151,6 +151,13 @@ Plane& Canvas::make(PlanePtr& plane) {
     return *plane;
 }
 
+std::array<Plane*, kMaxPigments> Canvas::open_planes(std::uint32_t slot) {
+    std::array<Plane*, kMaxPigments> planes{};
+    if (const Tile* tile = slots_[slot].get())
+        std::transform(tile->open.begin(), tile->open.end(), planes.begin(), [](const PlanePtr& p) { return p.get(); });
+    return planes;
+}
+
 const Plane* Canvas::film_plane(std::uint32_t slot, int film, int pigment) const {
     assert(film >= 0 && film < kFilms);
     const Tile* tile = slots_[slot].get();

@@ -84,6 +84,8 @@ class Canvas {
     const Plane* plane(std::uint32_t slot, int pigment) const {
         return film_plane(slot, kOpenFilm, pigment);
     }
+    /// All planes of the open film; whoever changes them marks the slot dirty.
+    std::array<Plane*, kMaxPigments> open_planes(std::uint32_t slot);
     /// The plane of the open film, made and zeroed when needed; the slot becomes dirty.
     Plane& touch(std::uint32_t slot, int pigment) { return touch_film(slot, kOpenFilm, pigment); }
 

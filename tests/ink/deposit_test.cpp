@@ -51,6 +51,27 @@ TEST(Deposit, PassingAgainNeitherBeadsNorLosesTheEdge) {
         EXPECT_NEAR((*canvas.plane(0, 0))[t], 1.8f * coverage[t], 2e-6f) << "the edge keeps f";
 }
 
+TEST(Deposit, IsTheSameBesideAPlaneOfNothing) {
+    // A tile that holds one pigment is inked in one pass, one that holds more step by step: to the bit the same.
+    Texels coverage = random_texels(11, 0, 1);
+    std::fill(coverage.begin(), coverage.begin() + 48, 0.0f);
+    std::fill(coverage.begin() + 96, coverage.begin() + 160, 1.0f);
+    for (const float extinction : {0.0f, 1.7f}) {
+        Canvas alone(1), beside(1);
+        DepositParams params{.mix = mix_of(alone, plain("black")), .capacity = 2.5f, .extinction = extinction};
+        mix_of(beside, plain("black"));
+        beside.touch(0, beside.add_pigment(plain("white").parts[0].pigment));
+        for (int i = 0; i < 40; ++i) {
+            params.target = i % 3 == 0 ? 0.7f : 1.9f;
+            const double a = deposit(alone, 0, coverage, kArea, 0.03e-3, params);
+            const double b = deposit(beside, 0, coverage, kArea, 0.03e-3, params);
+            ASSERT_EQ(a, b) << i;
+        }
+        EXPECT_EQ(*alone.plane(0, 0), *beside.plane(0, 0));
+        EXPECT_GT((*alone.plane(0, 0))[120], 1.0f);
+    }
+}
+
 TEST(Deposit, ATexelHalfCoveredLooksHalfCovered) {
     for (const auto& [name, under, tolerance] :
          {std::tuple{"carbon", "bisque", 0.02}, std::tuple{"cinnabar", "bisque", 0.04},

@@ -1,7 +1,10 @@
 #include "ink/touch/deposit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include "ink/colour/colorimetry.h"
 #include "ink/colour/elementary.h"
@@ -16,7 +19,8 @@ constexpr int kN = atlas::kTileTexels, kRow = atlas::kTile;
 // All on n texels, whole rows.
 
 /// film = the least of film and w / part.
-TUFT_CLONES void limit_film(float* __restrict film, const float* __restrict w, float inverse_part, int n) {
+TUFT_CLONES void limit_film(float* __restrict film, const float* __restrict w, float inverse_part,
+                            int n) {
     for (int t = 0; t < n; ++t) {
         const float f = w[t] * inverse_part;
         film[t] = f < film[t] ? f : film[t];
@@ -53,14 +57,75 @@ TUFT_CLONES bool increments(float* __restrict film, const float* __restrict all,
 }
 
 void law_goals(float* goal, const float* coverage, float target, const DepositLaw& law, int n) {
-    if (law.hidden > 0) goals(goal, coverage, law.hidden, law.inverse_extinction, n);
-    else linear_goals(goal, coverage, target, n);
+    if (law.hidden > 0)
+        goals(goal, coverage, law.hidden, law.inverse_extinction, n);
+    else
+        linear_goals(goal, coverage, target, n);
 }
 
 bool is_bare(const float* row) {
-    float most = 0;
-    for (int t = 0; t < kRow; ++t) most = row[t] > most ? row[t] : most;
-    return !(most > 0);
+    std::array<std::uint64_t, kRow * sizeof(float) / sizeof(std::uint64_t)> words;
+    std::memcpy(words.data(), row, sizeof(words));
+    std::uint64_t any = 0;
+    for (const std::uint64_t w : words) any |= w;
+    return any == 0;
+}
+
+bool same_row(const float* a, const float* b) {
+    return std::memcmp(a, b, kRow * sizeof(float)) == 0;
+}
+
+/// Of an ink that is one pigment, on texels that hold no other.
+struct Alone {
+    float target, hidden, inverse_extinction, capacity, rate, part;
+};
+
+/// The film of such an ink in one pass: goals, increments and what is stored, as `law_goals`,
+/// `increments` and `store_change` have them, to the bit. Returns Σ (stored change) · area;
+/// `wanted`: whether any increment is positive.
+TUFT_CLONES double lay_alone(float* __restrict w, const float* __restrict coverage,
+                             const float* __restrict area, const Alone& law, int n, bool& wanted) {
+    double sum[kRow] = {};
+    alignas(64) float goal[kRow];
+    const float inverse_part = 1.0f / law.part;
+    int any = 0;
+    for (int row = 0; row < n; row += kRow) {
+        const float* f = coverage + row;
+        if (row == 0 || !same_row(f, f - kRow)) {
+            if (law.hidden > 0)
+                for (int t = 0; t < kRow; ++t)
+                    goal[t] = -log_of(1 - f[t] * law.hidden) * law.inverse_extinction;
+            else
+                for (int t = 0; t < kRow; ++t) goal[t] = law.target * f[t];
+        }
+        for (int t = 0; t < kRow; ++t) {
+            const float before = w[row + t], film = before * inverse_part;
+            const float room = film + law.capacity - before;
+            const float limit = goal[t] < room ? goal[t] : room;
+            const float lack = limit - film;
+            const float dw = (lack > 0 ? lack : 0) * law.rate;
+            const float after = before + law.part * dw;
+            any |= dw > 0;
+            w[row + t] = after;
+            sum[t] += (static_cast<double>(after) - static_cast<double>(before)) *
+                      static_cast<double>(area[row + t]);
+        }
+    }
+    wanted = any != 0;
+    double total = 0;
+    for (const double s : sum) total += s;
+    return total;
+}
+
+/// The pigment of an ink that is one; -1: it is several.
+int only_pigment(const Mix& mix) {
+    int only = -1;
+    for (int p = 0; p < kMaxPigments; ++p) {
+        if (!(mix[p] > 0)) continue;
+        if (only >= 0) return -1;
+        only = p;
+    }
+    return only;
 }
 
 }  // namespace
@@ -85,14 +150,16 @@ float extinction_of(const Ink& ink) {
         if (curve.k.empty()) {  // made from bands, not from a file
             for (int b = 0; b < kBands; ++b)
                 for (int c = 0; c < 3; ++c)
-                    sum += part.fraction * kLuminance[c] * band_weights()[c][b] * (2 * part.pigment.k[b] + part.pigment.s[b]);
+                    sum += part.fraction * kLuminance[c] * band_weights()[c][b] *
+                           (2 * part.pigment.k[b] + part.pigment.s[b]);
             continue;
         }
         // Over all wavelengths: what is laid down must not depend on the choice of bands.
         for (int i = 0; i < kWavelengths; ++i) {
             const Coefficients at = coefficients_at(curve, static_cast<float>(wavelength_nm(i)));
             for (int c = 0; c < 3; ++c)
-                sum += part.fraction * static_cast<double>(kLuminance[c]) * rgb_matching()[c][i] * (2 * at.k + at.s);
+                sum += part.fraction * static_cast<double>(kLuminance[c]) * rgb_matching()[c][i] *
+                       (2 * at.k + at.s);
         }
     }
     return static_cast<float>(std::max(sum, 0.0));
@@ -111,7 +178,8 @@ DepositLaw deposit_law(const DepositParams& params, double ds) {
     return law;
 }
 
-void film_goals(std::span<float, kN> goal, std::span<const float, kN> coverage, const DepositParams& params) {
+void film_goals(std::span<float, kN> goal, std::span<const float, kN> coverage,
+                const DepositParams& params) {
     law_goals(goal.data(), coverage.data(), params.target, deposit_law(params, 0), kN);
 }
 
@@ -121,20 +189,35 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
 }
 
 double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
-               std::span<const float, kN> area, const DepositParams& params, const DepositLaw& law) {
+               std::span<const float, kN> area, const DepositParams& params,
+               const DepositLaw& law) {
     // Nothing happens in rows without coverage.
     int begin = 0, end = kN;
     while (begin < end && is_bare(&coverage[begin])) begin += kRow;
     while (end > begin && is_bare(&coverage[end - kRow])) end -= kRow;
     const int n = end - begin;
     if (n == 0) return 0;
+    const auto planes = canvas.open_planes(slot);
+    if (const int only = only_pigment(params.mix);
+        only >= 0 && planes[only] != nullptr &&
+        std::count(planes.begin(), planes.end(), nullptr) == kMaxPigments - 1) {
+        if (!(params.target > 0) || !(law.rate > 0)) return 0;
+        const Alone alone{params.target,   law.hidden, law.inverse_extinction,
+                          params.capacity, law.rate,   params.mix[only]};
+        bool wanted = false;
+        const double stored = lay_alone(planes[only]->data() + begin, &coverage[begin],
+                                        &area[begin], alone, n, wanted);
+        if (!wanted) return 0;
+        canvas.mark_dirty(slot);
+        return stored / static_cast<double>(params.mix[only]);
+    }
     alignas(64) float film[kN];
     alignas(64) float all[kN];
     std::fill_n(film, n, HUGE_VALF);
     std::fill_n(all, n, 0.0f);
     double strength = 0;
     for (int p = 0; p < kMaxPigments; ++p) {
-        const Plane* w = canvas.plane(slot, p);
+        const Plane* w = planes[p];
         if (w) add_film(all, w->data() + begin, n);
         if (!(params.mix[p] > 0)) continue;
         strength += params.mix[p];
@@ -150,7 +233,8 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
     double given = 0;
     for (int p = 0; p < kMaxPigments; ++p)
         if (params.mix[p] > 0)
-            given += store_change(canvas.touch(slot, p).data() + begin, film, params.mix[p], &area[begin], n);
+            given += store_change(canvas.touch(slot, p).data() + begin, film, params.mix[p],
+                                  &area[begin], n);
     return given / strength;
 }
 
