@@ -64,7 +64,7 @@ Quarters quarters_of(const atlas::TexelMap& texels, std::uint32_t slot) {
 
 }  // namespace
 
-bool add_quarters(const PieceFrame& frame, std::uint8_t piece, const atlas::TexelMap& texels, std::uint32_t slot,
+bool add_quarters(const PieceFrame& frame, std::int32_t piece, const atlas::TexelMap& texels, std::uint32_t slot,
                   const Drift& drift, Discs& discs) {
     const std::uint8_t* id = texels.tiles[slot].piece.data();
     for (const auto& quarter : kTexels)

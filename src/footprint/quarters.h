@@ -25,7 +25,7 @@ inline constexpr int kQuarters = 4;
 
 /// Adds a disc for each quarter of a tile with all that the picture may have over it, where `frame` maps
 /// the texels. False, and none, where the quarters' middles and corners are not all of this piece.
-bool add_quarters(const PieceFrame& frame, std::uint8_t piece, const atlas::TexelMap& texels, std::uint32_t slot,
+bool add_quarters(const PieceFrame& frame, std::int32_t piece, const atlas::TexelMap& texels, std::uint32_t slot,
                   const Drift& drift, Discs& discs);
 
 /// Sorts the quarters of a piece into full ones, empty ones and the rest by their discs from `first` on.

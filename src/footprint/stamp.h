@@ -55,7 +55,8 @@ inline constexpr std::uint8_t kAllQuarters = 0xf;
 struct PieceFrame {
     Vec3f origin{0}, normal{0}, tu{0}, tv{0};
     float u0 = 0, v0 = 0;
-    std::uint8_t piece = 0, first_row = 0, last_row = 0;
+    std::int32_t piece = 0;            ///< as in `TexelTile::piece`
+    std::uint8_t first_row = 0, last_row = 0;
     std::uint8_t full = 0;             ///< quarters in which the picture covers all of the piece in all poses
     std::uint8_t part = kAllQuarters;  ///< other quarters in which it may cover some of it
 };

@@ -106,21 +106,23 @@ template <int lanes, bool plane, bool only, bool whole>
 }
 
 /// Whether all texels of a tile belong to one piece.
-[[gnu::always_inline]] inline bool is_alone(const std::uint8_t* __restrict id, std::uint8_t piece) {
+[[gnu::always_inline]] inline bool is_alone(const std::uint8_t* __restrict id, std::int32_t piece) {
+    const auto wanted = static_cast<std::uint8_t>(piece);
     std::uint8_t others = 0;
 #pragma omp simd reduction(| : others)
-    for (int t = 0; t < kTileTexels; ++t) others |= id[t] ^ piece;
+    for (int t = 0; t < kTileTexels; ++t) others |= id[t] ^ wanted;
     return others == 0;
 }
 
-/// Adds `value` at the texels of a piece in some units.
+/// Adds `value` at the texels of a piece in some units. Numbers are compared as wide as values: compared as bytes,
+/// they would be widened after it, in four times as many steps.
 template <class T>
-[[gnu::always_inline]] inline void mark(const std::uint8_t* __restrict id, std::uint8_t piece, Units units,
+[[gnu::always_inline]] inline void mark(const std::uint8_t* __restrict id, std::int32_t piece, Units units,
                                         T value, T* __restrict out) {
     for (; units != 0; units &= units - 1) {
         const int begin = kUnit * __builtin_ctz(units);
 #pragma omp simd
-        for (int t = begin; t < begin + kUnit; ++t) out[t] += id[t] == piece ? value : T{0};
+        for (int t = begin; t < begin + kUnit; ++t) out[t] += static_cast<std::int32_t>(id[t]) == piece ? value : T{0};
     }
 }
 
@@ -245,6 +247,11 @@ template <int lanes, bool plane>
     for (std::uint32_t k = 0; k < task.n_frames; ++k) {
         part |= part_units<lanes>(task.frames[k]);
         full |= full_units<lanes>(task.frames[k]);
+    }
+    if (part == 0 && task.n_frames == 1 && full == ~Units{0} && is_alone(id, task.frames[0].piece)) {
+        const float scaled = whole * (task.jobs.gain / whole), all = scaled < 1.0f ? scaled : 1.0f;
+        for (int t = 0; t < kTileTexels; ++t) exposure[t] = all;
+        return all > 0.0f;
     }
     for (int t = 0; t < kTileTexels; ++t) exposure[t] = 0;
     for (std::uint32_t k = 0; full != 0 && k < task.n_frames; ++k)
