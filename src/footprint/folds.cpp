@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "atlas/texels/log_map.h"
 #include "atlas/texels/seams.h"
@@ -22,13 +21,14 @@ Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
         glm::cross(mesh.position(triangle, 1) - a, mesh.position(triangle, 2) - a));
 }
 
-/// The triangles that the centres of pieces lie in: of those whose place in the atlas has a centre
-/// inside, or nearly, the one that puts it nearest to where it is.
-class Seats {
+/// Looks for centres of pieces in a triangle: of those whose place in the atlas has a centre
+/// inside, or nearly, the one that puts it nearest to where it is counts.
+class Seating {
   public:
-    explicit Seats(const Surface& surface) : surface_(surface) {}
+    Seating(const Surface& surface, Seats& seats) : surface_(surface), seats_(seats) {
+        seats.clear(surface.pieces.n_pieces());
+    }
 
-    /// Looks for centres of pieces in a triangle.
     void look(std::uint32_t t) {
         const Vec2 a = atlas::corner_texels(surface_.atlas, t, 0);
         const Vec2 b = atlas::corner_texels(surface_.atlas, t, 1) - a;
@@ -56,18 +56,7 @@ class Seats {
             }
     }
 
-    /// kNone: in none that was looked at.
-    std::uint32_t of(std::uint32_t piece) const {
-        const auto found = seats_.find(piece);
-        return found == seats_.end() ? kNone : found->second.triangle;
-    }
-
   private:
-    struct Seat {
-        std::uint32_t triangle = kNone;
-        double off2 = std::numeric_limits<double>::infinity();
-    };
-
     std::int64_t tile(double texels) const {
         const auto last = static_cast<std::int64_t>(surface_.texels.tiles_per_side) - 1;
         return std::clamp(static_cast<std::int64_t>(std::floor(texels / atlas::kTile)),
@@ -80,12 +69,11 @@ class Seats {
         const Vec3 off = w0 * surface_.mesh.position(t, 0) + w1 * surface_.mesh.position(t, 1) +
                          w2 * surface_.mesh.position(t, 2) -
                          Vec3(surface_.pieces.pieces[piece].centre);
-        Seat& seat = seats_[piece];
-        if (glm::dot(off, off) < seat.off2) seat = {t, glm::dot(off, off)};
+        seats_.sit(piece, t, glm::dot(off, off));
     }
 
     const Surface& surface_;
-    std::unordered_map<std::uint32_t, Seat> seats_;
+    Seats& seats_;
 };
 
 struct Folds {
@@ -111,15 +99,29 @@ struct Folds {
 
 }  // namespace
 
+void Seats::clear(std::size_t n) {
+    if (seats_.size() != n || epoch_ == kNone) {
+        seats_.assign(n, {});
+        epoch_ = 0;
+    }
+    ++epoch_;
+}
+
+void Seats::sit(std::uint32_t piece, std::uint32_t triangle, double off2) {
+    Seat& seat = seats_[piece];
+    if (seat.epoch == epoch_ && !(off2 < seat.off2)) return;
+    seat = {epoch_, triangle, off2};
+}
+
 void place_folds(const Surface& surface, std::uint32_t triangle, const Frame& from,
                  const Reach& reach, const Start& start, std::size_t folded, PlanScratch& scratch) {
     const auto n_pieces = static_cast<double>(scratch.reached.size());
     if (folded == 0 || static_cast<double>(folded) < kFewFolds * n_pieces) return;
-    mesh::ShortestWays ways;
+    mesh::ShortestWays& ways = scratch.ways;
     const double radius = kBeyond * static_cast<double>(reach.radius);
     if (!ways.spread(surface.mesh, triangle, from.origin, radius, kMostWindows)) return;
-    Seats seats(surface);
-    for (std::size_t i = 0; i < ways.n_faces(); ++i) seats.look(ways.triangle(i));
+    Seating seating(surface, scratch.seats);
+    for (std::size_t i = 0; i < ways.n_faces(); ++i) seating.look(ways.triangle(i));
     const Folds folds{surface.mesh, ways, from, face_normal(surface.mesh, triangle)};
     const atlas::PieceGraph& graph = surface.pieces;
     begin_walk(scratch, graph.n_pieces());
@@ -130,7 +132,7 @@ void place_folds(const Surface& surface, std::uint32_t triangle, const Frame& fr
         const std::uint32_t index = open[i];
         const atlas::Piece& piece = graph.pieces[index];
         PlanScratch::Node& n = node_of(scratch, index);
-        const bool placed = folds.place(piece, seats.of(index), n);
+        const bool placed = folds.place(piece, scratch.seats.of(index), n);
         const float distance = std::sqrt(n.u * n.u + n.v * n.v);
         if (index != start.piece &&
             (!placed || distance - kPieceSlack * piece.radius > reach.radius ||

@@ -8,6 +8,7 @@
 #include "atlas/texels/piece_graph.h"
 #include "footprint/footprint.h"
 #include "footprint/picture.h"
+#include "mesh/shortest_ways.h"
 
 /// From a footprint to the texels it exposes. A caller plans a batch of stamps (each on
 /// its own, in any thread), picks the mode of each in stroke order, sorts the tile jobs
@@ -98,6 +99,27 @@ struct SweepScratch {
     Footprint swept;
 };
 
+/// The triangles in which centres of pieces lie, of those looked at since the last clearing.
+class Seats {
+  public:
+    /// Forgets all; `n` pieces.
+    void clear(std::size_t n);
+    /// kNone: in none that was looked at.
+    std::uint32_t of(std::uint32_t piece) const {
+        return seats_[piece].epoch == epoch_ ? seats_[piece].triangle : kNone;
+    }
+    /// The centre of `piece` lies in `triangle`, or nearly: so far off, squared. The nearest one counts.
+    void sit(std::uint32_t piece, std::uint32_t triangle, double off2);
+
+  private:
+    struct Seat {
+        std::uint32_t epoch = 0, triangle = kNone;
+        double off2 = 0;  ///< m²
+    };
+    std::uint32_t epoch_ = 0;
+    std::vector<Seat> seats_;
+};
+
 /// Memory of the walk over the pieces; one per thread, any stamp after any other.
 struct PlanScratch {
     struct Node {
@@ -116,6 +138,8 @@ struct PlanScratch {
     std::vector<double> apart;  ///< metres, by reached piece
     std::vector<std::uint32_t> asked;  ///< frames whose quarters are looked at
     SweepScratch sweep;
+    mesh::ShortestWays ways;
+    Seats seats;
 };
 
 /// Room to unpack a tile into; one per thread.
