@@ -41,13 +41,17 @@ Stroke heng(Vec2 from, Vec2 to, double w, double bow) {
     const Axis l(from, to);
     const double n = l.length, b = -bow * n;
     Stroke s{"heng", {}};
-    append(s, {l.at(0.15 * w, -0.34 * w, 0, 0.5), l.at(0.45 * w, -0.12 * w, 0.72 * w, 0.5, 0),
-               l.at(0.9 * w, -0.02 * w, 0.84 * w, 0.6), l.at(1.8 * w, 0.5 * b, 0.80 * w, 0.9),
-               l.at(0.5 * n, b, 0.74 * w, 1.1), l.at(n - 1.9 * w, 0.65 * b, 0.75 * w, 0.9),
-               l.at(n - 0.95 * w, 0.3 * b - 0.05 * w, 0.76 * w, 0.6),
-               l.at(n - 0.66 * w, 0.3 * b - 0.07 * w, 0.74 * w, 0.5, 0.01),
-               l.at(n - 0.46 * w, 0.07 * w, 0.80 * w, 0.4, 0.03),
-               l.at(n - 0.56 * w, 0.06 * w, 0.30 * w, 0.4), l.at(n - 0.80 * w, 0.04 * w, 0, 0.6)});
+    append(s, {l.at(0.06 * w, -0.28 * w, 0, 0.5), l.at(0.18 * w, -0.24 * w, 0.30 * w, 0.5),
+               l.at(0.58 * w, -0.06 * w, 0.72 * w, 0.5, 0),
+               l.at(1.6 * w, 0.4 * b - 0.02 * w, 0.76 * w, 0.9), l.at(0.5 * n, b, 0.70 * w, 1.1),
+               l.at(n - 1.8 * w, 0.65 * b, 0.72 * w, 0.9),
+               // The tip lifts to the shoulder's corner, the belly comes down beside it and is
+               // drawn to the foot as it leaves.
+               l.at(n - 0.95 * w, 0.4 * b, 0.66 * w, 0.7),
+               l.at(n - 0.61 * w, 0.3 * b - 0.09 * w, 0.64 * w, 0.5, 0),
+               l.at(n - 0.56 * w, 0.3 * b + 0.08 * w, 0.70 * w, 0.4, 0),
+               l.at(n - 0.50 * w, 0.3 * b + 0.16 * w, 0.56 * w, 0.4, 0),
+               l.at(n - 0.58 * w, 0.3 * b + 0.18 * w, 0, 0.4)});
     return s;
 }
 
@@ -55,10 +59,12 @@ Stroke short_heng(Vec2 from, Vec2 to, double w) {
     const Axis l(from, to);
     const double n = l.length;
     Stroke s{"heng", {}};
-    append(s, {l.at(0.1 * w, -0.1 * w, 0, 0.6), l.at(0.6 * w, 0.02 * w, 0.75 * w, 0.7),
-               l.at(0.5 * n, -0.02 * n, 0.80 * w, 1),
-               l.at(n - 0.75 * w, 0.04 * w, 1.12 * w, 0.5, 0.03),
-               l.at(n - 0.85 * w, 0.06 * w, 0, 0.5)});
+    append(s,
+           {l.at(0.1 * w, -0.1 * w, 0, 0.6), l.at(0.6 * w, 0.02 * w, 0.70 * w, 0.7),
+            l.at(0.5 * n, -0.02 * n, 0.76 * w, 1), l.at(n - 1.0 * w, -0.02 * n, 0.74 * w, 0.7),
+            l.at(n - 0.64 * w, -0.08 * w, 0.76 * w, 0.5, 0),
+            l.at(n - 0.60 * w, 0.10 * w, 0.84 * w, 0.4, 0),
+            l.at(n - 0.54 * w, 0.18 * w, 0.62 * w, 0.4, 0), l.at(n - 0.62 * w, 0.2 * w, 0, 0.4)});
     return s;
 }
 
@@ -66,8 +72,8 @@ namespace {
 
 /// The head of a 竖: a cut from the upper left, then straight down.
 void shu_head(Stroke& s, const Axis& l, double w) {
-    append(s, {l.at(0.15 * w, 0.34 * w, 0, 0.5), l.at(0.45 * w, 0.12 * w, 0.76 * w, 0.5, 0),
-               l.at(0.9 * w, 0.03 * w, 0.96 * w, 0.6), l.at(1.9 * w, 0.04 * w, 0.92 * w, 0.9)});
+    append(s, {l.at(0.06 * w, 0.30 * w, 0, 0.5), l.at(0.18 * w, 0.26 * w, 0.30 * w, 0.5),
+               l.at(0.60 * w, 0.06 * w, 0.79 * w, 0.5, 0), l.at(1.7 * w, 0.04 * w, 0.92 * w, 0.9)});
 }
 
 }  // namespace
@@ -77,9 +83,11 @@ Stroke shu_drop(Vec2 from, Vec2 to, double w, double bow) {
     const double n = l.length, b = bow * n;
     Stroke s{"shu", {}};
     shu_head(s, l, w);
-    append(s, {l.at(0.5 * n, b + 0.03 * w, 0.88 * w, 1.1),
-               l.at(n - 1.5 * w, 0.5 * b + 0.03 * w, 0.96 * w, 0.7),
-               l.at(n - 0.55 * w, 0.01 * w, 0.98 * w, 0.5, 0.03), l.at(n - 0.57 * w, 0, 0, 0.3)});
+    append(s, {l.at(0.45 * n, b + 0.03 * w, 0.85 * w, 1.1),
+               l.at(n - 1.6 * w, 0.5 * b + 0.03 * w, 0.90 * w, 0.8),
+               l.at(n - 0.75 * w, 0.03 * w, 1.0 * w, 0.5),
+               l.at(n - 0.52 * w, 0.05 * w, 0.92 * w, 0.4, 0.02),
+               l.at(n - 0.44 * w, 0.05 * w, 0, 0.3)});
     return s;
 }
 
@@ -149,10 +157,11 @@ Stroke pie(Vec2 from, Vec2 to, double w, double sag) {
     const Axis l(from, to);
     const double n = l.length, b = -sag * n;
     Stroke s{"pie", {}};
-    append(s, {l.at(0.12 * w, 0.36 * w, 0, 0.5), l.at(0.42 * w, 0.12 * w, 0.76 * w, 0.5, 0),
-               l.at(0.9 * w, 0.15 * b, 1.0 * w, 0.6), l.at(0.25 * n, 0.62 * b, 0.94 * w, 0.95),
-               l.at(0.5 * n, b, 0.85 * w, 1.05), l.at(0.74 * n, 0.88 * b, 0.66 * w, 1.1),
-               l.at(0.90 * n, 0.46 * b, 0.36 * w, 1.2), l.at(0.985 * n, 0.06 * b, 0.0, 1.4)});
+    append(s, {l.at(0.04 * w, 0.30 * w, 0, 0.5), l.at(0.16 * w, 0.27 * w, 0.30 * w, 0.5),
+               l.at(0.60 * w, 0.08 * w, 0.80 * w, 0.5, 0), l.at(1.2 * w, 0.2 * b, 0.98 * w, 0.7),
+               l.at(0.25 * n, 0.62 * b, 0.94 * w, 0.95), l.at(0.5 * n, b, 0.85 * w, 1.05),
+               l.at(0.74 * n, 0.88 * b, 0.66 * w, 1.1), l.at(0.90 * n, 0.46 * b, 0.36 * w, 1.2),
+               l.at(0.985 * n, 0.06 * b, 0.0, 1.4)});
     run_out(s, w);
     return s;
 }
@@ -210,11 +219,12 @@ namespace {
 /// The way across and the shoulder of a 折.
 void zhe_head(Stroke& s, const Axis& l, double w) {
     const double n = l.length;
-    append(s, {l.at(0.15 * w, -0.28 * w, 0, 0.5), l.at(0.42 * w, -0.10 * w, 0.68 * w, 0.5, 0),
-               l.at(0.85 * w, -0.02 * w, 0.80 * w, 0.6), l.at(1.6 * w, -0.005 * n, 0.78 * w, 0.9),
-               l.at(0.55 * n, -0.02 * n, 0.72 * w, 1), l.at(n - 1.4 * w, -0.012 * n, 0.75 * w, 0.8),
-               l.at(n - 0.72 * w, -0.08 * w, 0.78 * w, 0.45, 0.01),
-               l.at(n - 0.50 * w, 0.16 * w, 0.98 * w, 0.4, 0.01)});
+    append(s,
+           {l.at(0.06 * w, -0.28 * w, 0, 0.5), l.at(0.18 * w, -0.24 * w, 0.28 * w, 0.5),
+            l.at(0.56 * w, -0.06 * w, 0.70 * w, 0.5, 0), l.at(1.6 * w, -0.005 * n, 0.76 * w, 0.9),
+            l.at(0.55 * n, -0.02 * n, 0.72 * w, 1), l.at(n - 1.4 * w, -0.012 * n, 0.75 * w, 0.8),
+            l.at(n - 0.72 * w, -0.08 * w, 0.78 * w, 0.45, 0.01),
+            l.at(n - 0.50 * w, 0.16 * w, 0.98 * w, 0.4, 0.01)});
 }
 
 }  // namespace
