@@ -159,7 +159,7 @@ void open_sample(Session& s, const fs::path& path) {
 void revise_with(Session& s, const fs::path& path) {
     if (!s.painter) return;
     if (!s.last.trouble.empty()) return say(s, s.ui.tr("The project must be on disk first: ") + s.last.trouble);
-    const OpenOptions same{.frame = s.painter->frame(), .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate};
+    const OpenOptions same{.frame = s.painter->frame(), .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate, .own_colours = s.open_options.own_colours};
     const fs::path former = s.last.project;
     open_path(s, path);
     s.open_options = same;

@@ -80,6 +80,8 @@ void add_surface(CLI::App* app, Surface& s) {
         ->excludes(keep);
     app->add_option("--sharp-angle", s.sharp_angle_deg, "degrees from which an edge is sharp")
         ->check(CLI::Range(1.0, 180.0));
+    app->add_flag("--plain", s.plain,
+                  "leave aside the colours that the model brings along (pictures, vertices, facets); else ink lies on them");
     add_store(app, s);
 }
 

@@ -22,6 +22,7 @@ struct Surface {
     double sharp_angle_deg = 40;
     std::string texel_store = "auto";  ///< auto | float | packed
     std::string substrate = "porcelain";
+    bool plain = false;  ///< without the colours that the model brings along
 };
 
 struct Common {

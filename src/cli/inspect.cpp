@@ -213,6 +213,7 @@ int run(const Inspect& a) {
                          {"unit_guess", s.unit.unit},
                          {"unit_note", s.unit.sentence},
                          {"has_colours", s.has_colours},
+                         {"pictures", s.pictures},
                          {"groups", s.group_names},
                          {"defects", mesh::describe_defects(s.report)},
                          {"mesh", to_json(s.report)}};

@@ -187,6 +187,12 @@ int run(const Render& a) {
         show_looks(project->file, *painting, a.look, console);
     } else {
         bare = load_bare(a.file, a.unit, a.up, console).model;
+        if (mesh::has_colours(*bare.mesh) && a.material.empty()) {
+            stroke::ModelOptions options;
+            options.unwrap.size = 4096;
+            options.progress = console.progress();
+            bare = stroke::rescale_model(std::move(bare), options);
+        }
     }
     const int count = std::max(1, a.turntable);
     std::vector<std::string> wrote;

@@ -81,9 +81,11 @@ Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     options.repair.progress = options.progress;
     Read read = read_file(path, s.unit, s.up, options.repair, console);
     options.repair.progress = nullptr;
+    if (s.plain) mesh::drop_colours(read.soup);
     try {
         Loaded loaded{stroke::prepare_model(std::move(read.soup), options), read.frame};
         for (const std::string& warning : loaded.model.repairs.warnings) console.note("warning: " + warning);
+        if (!loaded.model.ground.empty()) console.note("ink lies on the colours that the model brings along (--plain leaves them aside)");
         return loaded;
     } catch (const Error& error) {
         const std::string what = error.what();
@@ -217,16 +219,19 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
     look.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
     look.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
     ink::AtlasMap<float> colour, height;
-    std::vector<Vec3f> texels;
-    if (painting && !painting->journal().empty()) {
-        colour = ink::compose_linear(painting->stack(), model.texels, substrate,
-                                     painting->compose_options());
+    ink::Stack bare{std::vector<ink::LayerView>{}};
+    if (material.empty()) bare.ground = &model.ground;
+    const ink::Stack stack = painting ? painting->stack() : bare;
+    look.vertex_colours = false;
+    if (!stack.layers.empty() || stack.has_ground()) {
+        const ink::ComposeOptions compose = painting ? painting->compose_options() : ink::ComposeOptions{};
+        colour = ink::compose_linear(stack, model.texels, substrate, compose);
         const auto* first = reinterpret_cast<const Vec3f*>(colour.texels.data());
         look.maps.size = colour.size;
         look.maps.corner_uvs = model.atlas.corner_uvs;
         look.maps.base_colour = std::span(first, std::size_t{colour.size} * colour.size);
         if (v.raking) {
-            height = ink::compose_height(painting->stack(), model.texels, painting->compose_options());
+            height = ink::compose_height(stack, model.texels, compose);
             for (float& h : height.texels) h *= 1e-6f;
             look.maps.height = height.texels;
         }

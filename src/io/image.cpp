@@ -78,8 +78,7 @@ ImageFormat format_of(const std::vector<char>& bytes, const fs::path& path) {
 }
 
 template <class T>
-Image<T> read(const fs::path& path, std::size_t max_pixels) {
-    const std::vector<char> bytes = read_file(path);
+Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_t max_pixels) {
     DecodedImage decoded;
     const std::string fault = codec().decode({.format = format_of(bytes, path),
                                               .bytes = bytes.data(),
@@ -114,14 +113,18 @@ std::vector<unsigned char> png_bytes(const PixelView& pixels, const ImageOptions
     return encode(ImageFormat::png, pixels, options, "PNG");
 }
 
+Image8 decode_image8(const std::vector<char>& bytes, const std::string& name, std::size_t max_pixels) {
+    return decode<std::uint8_t>(bytes, name, max_pixels);
+}
+
 Image8 read_image8(const fs::path& path, std::size_t max_pixels) {
-    return read<std::uint8_t>(path, max_pixels);
+    return decode<std::uint8_t>(read_file(path), path, max_pixels);
 }
 Image16 read_image16(const fs::path& path, std::size_t max_pixels) {
-    return read<std::uint16_t>(path, max_pixels);
+    return decode<std::uint16_t>(read_file(path), path, max_pixels);
 }
 ImageF read_image_float(const fs::path& path, std::size_t max_pixels) {
-    return read<float>(path, max_pixels);
+    return decode<float>(read_file(path), path, max_pixels);
 }
 
 }  // namespace tuft::io

@@ -89,6 +89,9 @@ void write_image(const std::filesystem::path& path, const PixelView& pixels,
 /// The bytes of a PNG file.
 std::vector<unsigned char> png_bytes(const PixelView& pixels, const ImageOptions& options = {});
 
+/// The same as `read_image8` from the bytes of a file; `name` is for messages.
+Image8 decode_image8(const std::vector<char>& bytes, const std::string& name, std::size_t max_pixels);
+
 /// Reads a PNG, EXR, JPEG or TIFF file into the asked type, colours as stored (no
 /// conversion but that of the number range). Throws `Error` for damaged files and for
 /// pictures of more than `max_pixels`, before memory is taken.

@@ -20,7 +20,8 @@
 /// its atlas, the presets used, the journal and a picture of the texels.
 namespace tuft::io {
 
-inline constexpr int kProjectFormat = 5;  ///< highest format version this program reads: draped strokes
+inline constexpr int kProjectFormat = 6;  ///< highest format version this program reads: colours of the model
+inline constexpr int kDrapedFormat = 5;   ///< of projects with draped strokes
 inline constexpr int kPaletteFormat = 4;  ///< of projects with a palette
 inline constexpr int kLayersFormat = 3;   ///< of projects with layers, masks or fills
 inline constexpr int kFilmsFormat = 2;    ///< of projects with dry films, soaked ink or water

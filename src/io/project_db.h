@@ -57,6 +57,9 @@ std::vector<T> get_array(SQLite::Database& db, const std::filesystem::path& path
 void store_model(SQLite::Database& db, const ProjectModel& model);
 ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path);
 std::uint64_t hash_of(const mesh::TriangleMesh& mesh);
+/// Its materials with their pictures as they were found (project_materials.cpp); groups come first.
+void store_materials(SQLite::Database& db, const mesh::TriangleMesh& mesh);
+void load_materials(SQLite::Database& db, const std::filesystem::path& path, mesh::TriangleMesh& mesh);
 
 /// Strokes (project_strokes.cpp). The caller opens the transaction.
 void store_strokes(SQLite::Database& db, const std::filesystem::path& path,

@@ -86,7 +86,7 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
             stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
             raise_format(db, kLayersFormat);
         if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash) raise_format(db, kPaletteFormat);
-        if (t.flat && t.placement.laying == stroke::Laying::drape) raise_format(db, kProjectFormat);
+        if (t.flat && t.placement.laying == stroke::Laying::drape) raise_format(db, kDrapedFormat);
     }
 }
 

@@ -6,9 +6,12 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "ink/colour/composite.h"
+#include "io/materials.h"
 
 namespace fs = std::filesystem;
 
@@ -73,23 +76,29 @@ void check_container(const std::vector<char>& bytes, const std::string& name) {
 /// File access for external buffers: only inside the model's folder.
 struct Sandbox {
     fs::path folder;
-    std::string refused;
+    std::string refused, missing;
 
     bool inside(const std::string& file) {
-        std::error_code ec;
-        const fs::path whole = fs::weakly_canonical(file, ec);
-        const fs::path root = fs::weakly_canonical(folder, ec);
-        const auto [in_root, in_file] =
-            std::mismatch(root.begin(), root.end(), whole.begin(), whole.end());
-        if (!ec && in_root == root.end()) return true;
+        if (lies_within(folder, file)) return true;
         refused = file;
         return false;
+    }
+    bool exists(const std::string& file) {
+        std::error_code ec;
+        if (!inside(file)) return false;
+        if (fs::is_regular_file(file, ec)) return true;
+        missing = file;
+        return false;
+    }
+    std::string fault() const {
+        // The library looks in the working folder next, which is outside as a rule.
+        if (!missing.empty()) return "it refers to '" + missing + "', which is not there";
+        return "it refers to '" + refused + "', which is outside its folder";
     }
 };
 
 bool sandbox_exists(const std::string& file, void* sandbox) {
-    std::error_code ec;
-    return static_cast<Sandbox*>(sandbox)->inside(file) && fs::is_regular_file(file, ec);
+    return static_cast<Sandbox*>(sandbox)->exists(file);
 }
 
 std::string sandbox_expand(const std::string& file, void*) {
@@ -113,21 +122,43 @@ bool sandbox_write(std::string*, const std::string&, const std::vector<unsigned 
     return false;
 }
 
-bool skip_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
-                const unsigned char*, int, void*) {
+/// The bytes of each picture, as they are.
+using PictureFiles = std::vector<std::vector<char>>;
+
+bool take_picture(tinygltf::Image*, const int index, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void* files) {
+    auto& all = *static_cast<PictureFiles*>(files);
+    if (index < 0 || index > 4096 || size <= 0) return true;
+    if (all.size() <= static_cast<std::size_t>(index)) all.resize(static_cast<std::size_t>(index) + 1);
+    all[static_cast<std::size_t>(index)].assign(bytes, bytes + size);
     return true;
 }
 
-tinygltf::Model load(const std::vector<char>& bytes, const fs::path& path) {
+/// What a file needs to be read that tuft has not, or nothing.
+std::string unread_compression(const std::vector<char>& bytes) {
+    const std::string_view text(bytes.data(), bytes.size());
+    for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
+        if (text.find(name) != text.npos)
+            return std::string("its mesh is compressed (") + name + "), which tuft does not read; export it without";
+    return {};
+}
+
+struct Loaded {
+    tinygltf::Model model;
+    PictureFiles pictures;
+};
+
+Loaded load(const std::vector<char>& bytes, const fs::path& path) {
     const std::string name = path.string();
     check_container(bytes, name);
     if (bytes.size() > std::numeric_limits<unsigned>::max())
         throw Error(name, "is larger than 4 GiB");
     Sandbox sandbox{path.has_parent_path() ? path.parent_path() : fs::path("."), {}};
     tinygltf::TinyGLTF loader;
-    loader.SetImageLoader(skip_image, nullptr);
+    Loaded loaded;
+    tinygltf::Model& model = loaded.model;
+    loader.SetImageLoader(take_picture, &loaded.pictures);
     loader.SetFsCallbacks({sandbox_exists, sandbox_expand, sandbox_read, sandbox_write, &sandbox});
-    tinygltf::Model model;
     std::string err, warn;
     bool ok = false;
     try {
@@ -145,13 +176,15 @@ tinygltf::Model load(const std::vector<char>& bytes, const fs::path& path) {
         err = e.what();
     }
     if (!ok) {
-        if (!sandbox.refused.empty())
-            err = "it refers to '" + sandbox.refused + "', which is outside its folder";
+        if (!sandbox.refused.empty() || !sandbox.missing.empty()) err = sandbox.fault();
+        if (const std::string why = unread_compression(bytes); !why.empty()) err = why;
         while (!err.empty() && std::isspace(static_cast<unsigned char>(err.back()))) err.pop_back();
         std::replace(err.begin(), err.end(), '\n', ' ');
         throw Error(name, err.empty() ? "is not a glTF file that can be read" : err);
     }
-    return model;
+    if (model.asset.version.starts_with("1."))
+        throw Error(name, "is glTF version " + model.asset.version + "; tuft reads version 2");
+    return loaded;
 }
 
 /// The bytes of an accessor, checked against its buffer.
@@ -254,8 +287,8 @@ Mat4 local_transform(const tinygltf::Node& node) {
 
 class Gatherer {
   public:
-    Gatherer(const tinygltf::Model& model, std::string name)
-        : model_(model), name_(std::move(name)) {}
+    Gatherer(Loaded loaded, std::string name)
+        : model_(std::move(loaded.model)), files_(std::move(loaded.pictures)), name_(std::move(name)) {}
 
     mesh::PolygonSoup run() {
         soup_.polygon_start.push_back(0);
@@ -288,8 +321,11 @@ class Gatherer {
         if (model_.nodes.empty())
             for (std::size_t m = 0; m < model_.meshes.size(); ++m)
                 add_mesh(static_cast<int>(m), Mat4(1.0));
-        if (soup_.n_polygons() == 0) throw Error(name_, "has no triangles");
+        if (soup_.n_polygons() == 0)
+            throw Error(name_, "has no triangles" + (soup_.warnings.empty() ? "" : ": " + soup_.warnings.front()));
         if (!any_uv_) soup_.corner_uvs.clear();
+        if (!any_colour_) soup_.point_colours.clear();
+        drop_plain_materials(soup_);
         return std::move(soup_);
     }
 
@@ -312,14 +348,57 @@ class Gatherer {
             add_primitive(*mesh, primitive, world);
     }
 
+    /// Faces of one material, or of one mesh where it has no name.
     std::uint32_t group_of(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive) {
         const tinygltf::Material* material = element(model_.materials, primitive.material);
-        const std::string group = material && !material->name.empty() ? material->name : mesh.name;
-        const auto found = std::find(soup_.group_names.begin(), soup_.group_names.end(), group);
-        if (found == soup_.group_names.end()) soup_.group_names.push_back(group);
-        return static_cast<std::uint32_t>(
-            std::find(soup_.group_names.begin(), soup_.group_names.end(), group) -
-            soup_.group_names.begin());
+        const std::string name = material && !material->name.empty() ? material->name : mesh.name;
+        const auto [it, is_new] = group_of_.try_emplace({name, material ? primitive.material : -1},
+                                                        static_cast<std::uint32_t>(soup_.group_names.size()));
+        if (is_new) {
+            std::string unlike = name;
+            for (int n = 2; std::count(soup_.group_names.begin(), soup_.group_names.end(), unlike); ++n)
+                unlike = name + " " + std::to_string(n);
+            soup_.group_names.push_back(std::move(unlike));
+            soup_.materials.push_back(material ? material_of(*material) : mesh::Material{.tinted = true});
+        }
+        return it->second;
+    }
+
+    mesh::Material material_of(const tinygltf::Material& material) {
+        const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
+        mesh::Material out{.tinted = true};
+        for (std::size_t c = 0; c < std::min<std::size_t>(3, pbr.baseColorFactor.size()); ++c) {
+            const double factor = pbr.baseColorFactor[c];
+            const double linear = std::isfinite(factor) ? std::clamp(factor, 0.0, 1.0) : 1.0;
+            out.colour[static_cast<int>(c)] = linear < 1 ? ink::srgb_encode(static_cast<float>(linear)) : 1;
+        }
+        const tinygltf::Texture* texture = element(model_.textures, pbr.baseColorTexture.index);
+        if (!texture) return out;
+        if (pbr.baseColorTexture.texCoord != 0 || pbr.baseColorTexture.extensions.contains("KHR_texture_transform"))
+            soup_.warnings.push_back("the picture of material '" + material.name +
+                                     "' lies by a second set of UVs or is moved, which tuft does not read; its faces go without");
+        else
+            out.picture = picture(texture->source);
+        return out;
+    }
+
+    /// Each picture is read once, and told of once when that fails.
+    std::shared_ptr<const mesh::Picture> picture(int index) {
+        const auto [it, is_new] = pictures_.try_emplace(index);
+        const tinygltf::Image* image = element(model_.images, index);
+        if (!is_new) return it->second;
+        std::string name = image ? image->name.empty() ? image->uri : image->name : "";
+        if (name.empty()) name = "picture " + std::to_string(index);
+        std::vector<char>* bytes = index >= 0 && static_cast<std::size_t>(index) < files_.size() ? &files_[static_cast<std::size_t>(index)] : nullptr;
+        try {
+            if (!image || !bytes || bytes->empty())
+                soup_.warnings.push_back("the picture '" + name + "' is not there; its faces go without");
+            else
+                it->second = decode_picture(name, std::move(*bytes));
+        } catch (const std::exception& e) {
+            soup_.warnings.push_back(std::string(e.what()) + "; its faces go without");
+        }
+        return it->second;
     }
 
     void add_primitive(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive,
@@ -351,6 +430,7 @@ class Gatherer {
         const bool indexed = primitive.indices >= 0;
         const std::size_t n = indexed ? indices.count : points.count;
         const std::uint32_t base = add_points(points, world);
+        add_colours(primitive, points.count);
         const std::uint32_t group = group_of(mesh, primitive);
         // A mirroring transform turns the triangles inside out.
         const bool mirrored = glm::determinant(glm::dmat3(world)) < 0;
@@ -402,6 +482,25 @@ class Gatherer {
         return base;
     }
 
+    /// COLOR_0, linear; white where there is none.
+    void add_colours(const tinygltf::Primitive& primitive, std::size_t n) {
+        soup_.point_colours.resize(soup_.points.size(), {255, 255, 255, 255});
+        const auto colour = primitive.attributes.find("COLOR_0");
+        if (colour == primitive.attributes.end()) return;
+        const tinygltf::Accessor* accessor = element(model_.accessors, colour->second);
+        const int type = accessor && accessor->type == TINYGLTF_TYPE_VEC4 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
+        const Rows rows = rows_of(model_, colour->second, type, name_);
+        if (rows.count != n) throw Error(name_, "COLOR_0 and POSITION differ in count");
+        any_colour_ = true;
+        for (std::size_t i = 0; i < n; ++i)
+            for (int c = 0; c < 3; ++c) {
+                const double value = rows.number(i, c);
+                const double linear = std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 1.0;
+                soup_.point_colours[soup_.points.size() - n + i][static_cast<std::size_t>(c)] =
+                    static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(static_cast<float>(linear))));
+            }
+    }
+
     void add_corner(std::uint32_t base, std::uint32_t index, const Rows& uvs) {
         soup_.corners.push_back(base + index);
         Vec2f uv(0);
@@ -411,18 +510,20 @@ class Gatherer {
         soup_.corner_uvs.push_back(uv);
     }
 
-    const tinygltf::Model& model_;
+    tinygltf::Model model_;
+    PictureFiles files_;
     std::string name_;
     mesh::PolygonSoup soup_;
+    std::map<std::pair<std::string, int>, std::uint32_t> group_of_;
+    std::map<int, std::shared_ptr<const mesh::Picture>> pictures_;
     std::vector<bool> bad_;  ///< [n_points] not finite
-    bool any_uv_ = false;
+    bool any_uv_ = false, any_colour_ = false;
 };
 
 }  // namespace
 
 mesh::PolygonSoup read_gltf(const std::vector<char>& bytes, const fs::path& path) {
-    const tinygltf::Model model = load(bytes, path);
-    return Gatherer(model, path.string()).run();
+    return Gatherer(load(bytes, path), path.string()).run();
 }
 
 }  // namespace tuft::io

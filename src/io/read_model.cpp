@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstring>
 #include <string>
 #include <string_view>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "io/materials.h"
 #include "io/read_gltf.h"
 
 namespace tuft::io {
@@ -47,6 +49,21 @@ std::optional<Format> by_content(std::string_view bytes) {
     return std::nullopt;
 }
 
+mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, const std::filesystem::path& path) {
+    switch (format) {
+        case Format::obj:
+            return mesh::read_obj(bytes, path);
+        case Format::ply:
+            return mesh::read_ply(bytes, path);
+        case Format::stl:
+            return mesh::read_stl(bytes, path);
+        case Format::off:
+            return mesh::read_off(bytes, path);
+        default:
+            return {};
+    }
+}
+
 }  // namespace
 
 mesh::PolygonSoup read_model(const std::filesystem::path& path) {
@@ -57,20 +74,12 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path) {
     if (!format)
         throw Error(path.string(),
                     "is no model format tuft knows; it reads OBJ, PLY, STL, OFF, GLB and glTF");
-    switch (*format) {
-        case Format::obj:
-            return mesh::read_obj(bytes, path);
-        case Format::ply:
-            return mesh::read_ply(bytes, path);
-        case Format::stl:
-            return mesh::read_stl(bytes, path);
-        case Format::off:
-            return mesh::read_off(bytes, path);
-        case Format::glb:
-        case Format::gltf:
-            return read_gltf(bytes, path);
-    }
-    return {};
+    if (bytes.size() >= 2 && (std::memcmp(bytes.data(), "\xff\xfe", 2) == 0 || std::memcmp(bytes.data(), "\xfe\xff", 2) == 0))
+        throw Error(path.string(), "is text in UTF-16; save it as UTF-8 or ASCII");
+    if (*format == Format::glb || *format == Format::gltf) return read_gltf(bytes, path);
+    mesh::PolygonSoup soup = read_polygons(*format, bytes, path);
+    read_materials(soup, path);
+    return soup;
 }
 
 std::optional<double> metres_per_unit_of(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "core/units.h"
 
@@ -95,7 +96,12 @@ MeshSummary summarise(const Surface& surface, double metres_per_unit) {
     s.bounds = mesh.bounds;
     s.area = surface_area(mesh);
     s.has_uvs = !mesh.corner_uvs.empty();
-    s.has_colours = !mesh.vertex_colours.empty();
+    s.has_colours = has_colours(mesh);
+    std::set<const Picture*> pictures;
+    for (const Material& m : mesh.materials)
+        if (m.picture && pictures.insert(m.picture.get()).second)
+            s.pictures.push_back(m.picture->name + " (" + std::to_string(m.picture->width) + " x " + std::to_string(m.picture->height) + ")");
+    s.vertex_colours = !mesh.vertex_colours.empty();
     s.group_names = mesh.group_names;
     s.metres_per_unit = metres_per_unit;
     s.report = surface.report;
@@ -171,7 +177,9 @@ std::vector<std::string> describe(const MeshSummary& s) {
                                     " with " + count_text(r.border_edges, "edge", "edges")));
     std::string extras;
     if (s.has_uvs) extras += "texture coordinates, ";
-    if (s.has_colours) extras += "vertex colours, ";
+    if (s.vertex_colours) extras += "vertex colours, ";
+    if (s.has_colours && !s.vertex_colours && s.pictures.empty()) extras += "colours of materials, ";
+    for (const std::string& picture : s.pictures) extras += "the picture " + picture + ", ";
     if (!s.group_names.empty()) extras += count_text(s.group_names.size(), "group, ", "groups, ");
     if (r.loose_triangles) lines.push_back("the triangles came loose and were joined (as in STL)");
     if (!extras.empty()) lines.push_back("has " + extras.substr(0, extras.size() - 2));

@@ -35,7 +35,9 @@ class ObjReader {
             builder_.soup.warnings.push_back(
                 bad_uv_index_.text("faces use texture coordinates that do not exist", "line"));
         finish_colours();
-        return builder_.finish();
+        PolygonSoup soup = builder_.finish();
+        if (soup.material_libraries.empty()) soup.material_names.clear();
+        return soup;
     }
 
   private:
@@ -78,6 +80,8 @@ void ObjReader::read_line() {
         set_group(group_);
     } else if (same_word(key, "usemtl")) {
         set_group(material_);
+    } else if (same_word(key, "mtllib")) {
+        builder_.soup.material_libraries.emplace_back(text_.rest());
     } else if (same_word(key, "curv") || same_word(key, "curv2") || same_word(key, "surf")) {
         free_form_.add(text_.line());
     }
@@ -89,7 +93,7 @@ void ObjReader::set_group(std::string& part) {
     std::string name;
     for (const std::string* s : {&object_, &group_, &material_})
         if (!s->empty() && *s != name) name += (name.empty() ? "" : " / ") + *s;
-    current_group_ = name.empty() ? kNone : builder_.group(name);
+    current_group_ = name.empty() ? kNone : builder_.group(name, material_);
 }
 
 void ObjReader::read_vertex() {

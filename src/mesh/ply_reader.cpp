@@ -170,7 +170,10 @@ class PlyReader {
             builder_.soup.warnings.push_back(
                 texcoord_misfits_.text("faces have a texcoord list that does not fit their corners",
                                        body_.is_text() ? "line" : "row"));
-        return builder_.finish();
+        PolygonSoup soup = builder_.finish();
+        if (header_.textures.size() == 1 && soup.polygon_groups.empty() && soup.materials.empty())
+            soup.material_names = header_.textures;
+        return soup;
     }
 
   private:
@@ -329,7 +332,9 @@ void PlyReader::read_faces(const PlyElement& element) {
                 const bool named =
                     value >= 0 && value < static_cast<double>(header_.textures.size());
                 group =
-                    builder_.group(named ? header_.textures[static_cast<std::size_t>(value)] : "");
+                    named ? builder_.group(header_.textures[static_cast<std::size_t>(value)],
+                                           header_.textures[static_cast<std::size_t>(value)])
+                          : builder_.group("");
                 continue;
             }
             const std::size_t n = body_.list_size(p);

@@ -31,6 +31,11 @@ std::vector<Vec2f> uvs_of_points(const PolygonSoup& soup) {
 
 }  // namespace
 
+void drop_colours(PolygonSoup& soup) {
+    soup.materials.clear();
+    soup.point_colours.clear();
+}
+
 bool is_polygon_file(const std::filesystem::path& path) {
     const std::string extension = path.extension().string();
     for (const char* known : {".obj", ".ply", ".stl", ".off"})

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "mesh/material.h"
 
 /// What a model file says, before anything is repaired: polygons with any number
 /// of corners over shared points. Readers make it, `build_surface` cleans it.
@@ -20,10 +21,17 @@ struct PolygonSoup {
     std::vector<std::array<std::uint8_t, 4>> point_colours;  ///< [n_points] or empty
     std::vector<std::uint32_t> polygon_groups;               ///< [n_polygons] or empty
     std::vector<std::string> group_names;
+    std::vector<Material> materials;  ///< one per group, or one for all faces without groups, or empty
+    /// Materials that lie in other files, which `io::read_model` reads: OBJ's libraries; one name per
+    /// material (as above), of an entry there, or of a picture where there is no library.
+    std::vector<std::string> material_libraries, material_names;
     std::vector<std::string> warnings;     ///< one line each: what the reader dropped, with line numbers
 
     std::size_t n_polygons() const { return polygon_start.empty() ? 0 : polygon_start.size() - 1; }
 };
+
+/// Leaves aside what the file says of colours.
+void drop_colours(PolygonSoup& soup);
 
 /// Readers for one format each; `path` is only used in messages. They throw
 /// `tuft::Error` with file and line, check every count against the bytes that are

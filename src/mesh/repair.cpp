@@ -23,7 +23,9 @@ void check_soup(const PolygonSoup& soup) {
         std::is_sorted(soup.polygon_start.begin(), soup.polygon_start.end()) &&
         (soup.corner_uvs.empty() || soup.corner_uvs.size() == soup.corners.size()) &&
         (soup.point_colours.empty() || soup.point_colours.size() == soup.points.size()) &&
-        (soup.polygon_groups.empty() || soup.polygon_groups.size() == soup.n_polygons());
+        (soup.polygon_groups.empty() || soup.polygon_groups.size() == soup.n_polygons()) &&
+        (soup.materials.empty() ||
+         soup.materials.size() == (soup.polygon_groups.empty() ? 1 : soup.group_names.size()));
     if (!sound) throw Error("the mesh's polygon arrays do not fit each other");
     for (const std::uint32_t c : soup.corners)
         if (c >= soup.points.size())
@@ -261,6 +263,7 @@ Surface Repair::hand_out(const SurfaceTopology& topology) {
     out.vertex_colours = std::move(mesh_.colours);
     out.triangle_groups = std::move(mesh_.groups);
     if (!out.triangle_groups.empty()) out.group_names = std::move(soup_.group_names);
+    out.materials = std::move(soup_.materials);
     surface.report = std::move(report_);
     return surface;
 }

@@ -63,10 +63,13 @@ void SoupBuilder::add_polygon(std::span<const std::uint32_t> corners, std::span<
     soup.polygon_groups.push_back(group);
 }
 
-std::uint32_t SoupBuilder::group(const std::string& name) {
+std::uint32_t SoupBuilder::group(const std::string& name, const std::string& material) {
     const auto [it, is_new] =
         group_of_.try_emplace(name, static_cast<std::uint32_t>(soup.group_names.size()));
-    if (is_new) soup.group_names.push_back(name);
+    if (is_new) {
+        soup.group_names.push_back(name);
+        soup.material_names.push_back(material);
+    }
     return it->second;
 }
 
@@ -81,7 +84,10 @@ std::uint32_t SoupBuilder::colour_group(const std::array<std::uint8_t, 4>& c) {
     static constexpr char kDigits[] = "0123456789abcdef";
     std::string name = "#";
     for (int shift = 20; shift >= 0; shift -= 4) name += kDigits[key >> shift & 15];
-    return group_of_colour_[key] = group(name);
+    const std::uint32_t index = group_of_colour_[key] = group(name);
+    group_colours_.resize(index + 1, Vec3f(1));
+    group_colours_[index] = Vec3f(c[0], c[1], c[2]) / 255.0f;
+    return index;
 }
 
 void SoupBuilder::drop_bad_points() {
@@ -161,15 +167,25 @@ void SoupBuilder::finish_groups() {
     std::vector<std::uint32_t>& groups = soup.polygon_groups;
     if (too_many_colours_)
         soup.warnings.push_back("faces have more than 256 colours, too many to be groups of faces");
-    const bool by_colour = !group_of_colour_.empty();
+    const bool by_colour = !group_of_colour_.empty() && !too_many_colours_;
     const bool all_one = std::adjacent_find(groups.begin(), groups.end(), std::not_equal_to<>()) == groups.end();
+    group_colours_.resize(soup.group_names.size(), Vec3f(1));
     if (!groups_used_ || too_many_colours_ || (by_colour && all_one)) {
+        const bool coloured = by_colour && groups[0] != kNone;
+        if (coloured) soup.materials = {{.colour = group_colours_[groups[0]]}};
         groups.clear();
         soup.group_names.clear();
+        soup.material_names.clear();
         return;
     }
     for (std::uint32_t& g : groups)
         if (g == kNone) g = group("");
+    group_colours_.resize(soup.group_names.size(), Vec3f(1));
+    if (by_colour)
+        for (const Vec3f& colour : group_colours_) soup.materials.push_back({.colour = colour});
+    const bool named = std::any_of(soup.material_names.begin(), soup.material_names.end(),
+                                   [](const std::string& name) { return !name.empty(); });
+    if (!named) soup.material_names.clear();
 }
 
 std::array<std::uint8_t, 4> colour_from(const std::array<double, 4>& channels, bool is_real) {

@@ -37,10 +37,10 @@ class SoupBuilder {
     /// `uvs` is empty or has one entry per corner.
     void add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs,
                      std::uint32_t group, long place);
-    /// Index of the group with this name, new if need be.
-    std::uint32_t group(const std::string& name);
+    /// Index of the group with this name, new if need be; `material` is what its faces are made of.
+    std::uint32_t group(const std::string& name, const std::string& material = "");
     /// Group of the faces of this colour, named "#rrggbb". Where a file has faces of one colour only, or
-    /// more than 256 colours, none of them is a group.
+    /// more than 256 colours, none of them is a group. The faces get materials of these colours.
     std::uint32_t colour_group(const std::array<std::uint8_t, 4>& colour);
     /// Warns in `soup` and hands it out; throws `Error` when there is no polygon.
     PolygonSoup finish();
@@ -57,6 +57,7 @@ class SoupBuilder {
     bool groups_used_ = false;
     std::unordered_map<std::uint32_t, std::uint32_t> group_of_colour_;
     bool too_many_colours_ = false;
+    std::vector<Vec3f> group_colours_;  ///< by group; white for those that are not of a colour
 };
 
 /// A colour from four channels: bytes as they are, reals from [0, 1].

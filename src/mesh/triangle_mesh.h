@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "mesh/material.h"
 
 /// The mesh as every room above sees it: plain arrays, metres, model frame,
 /// faces counter-clockwise from outside. Made by `mesh::build_surface` (repair.h),
@@ -23,6 +24,7 @@ struct TriangleMesh {
     std::vector<std::array<std::uint8_t, 4>> vertex_colours;  ///< [n_vertices] RGBA, or empty
     std::vector<std::uint32_t> triangle_groups;  ///< [n_triangles] index into group_names, or empty
     std::vector<std::string> group_names;
+    std::vector<Material> materials;  ///< [n_groups], or one for all without groups, or empty
     Box bounds;
 
     std::size_t n_vertices() const { return positions.size(); }
@@ -31,6 +33,11 @@ struct TriangleMesh {
         return Vec3(positions[triangles[triangle][corner]]);
     }
 };
+
+/// Whether the file gave the faces colours of their own.
+inline bool has_colours(const TriangleMesh& mesh) {
+    return !mesh.materials.empty() || !mesh.vertex_colours.empty();
+}
 
 /// A point on the mesh: triangle and the barycentric weights of its corners 1 and 2.
 struct SurfacePoint {

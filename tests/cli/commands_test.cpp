@@ -54,6 +54,31 @@ TEST_F(Commands, ReplayTakesAnotherSizeInkAndModel) {
     EXPECT_EQ(json::parse(revised.out)["missed"], 0);
 }
 
+TEST_F(Commands, InkLiesOnTheColoursTheModelBringsAlongUnlessItIsPlain) {
+    const std::string faces = "3 0 1 2\n3 0 2 3\n";
+    const auto ply = [&](const std::string& properties, const std::string& colour) {
+        std::string text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" + properties +
+                           "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+        for (const char* point : {"-100 -100 0", "100 -100 0", "100 100 0", "-100 100 0"}) text += point + colour + "\n";
+        return text + faces;
+    };
+    write("grey.ply", ply("", ""));
+    write("red.ply", ply("property uchar red\nproperty uchar green\nproperty uchar blue\n", " 200 30 20"));
+    write("s.inkml", stroke_file());
+    const auto picture = [&](const std::string& source, const std::string& options, const std::string& shown = "") {
+        EXPECT_EQ(tuft("paint " + path(source) + " --unit mm --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft") + options).status, 0);
+        EXPECT_EQ(tuft("export " + path("p.tuft") + " -o " + path("m.png") + shown).status, 0);
+        return read(path("m.png"));
+    };
+    const std::string grey = picture("grey.ply", ""), red = picture("red.ply", "");
+    EXPECT_NE(red, grey);
+    EXPECT_EQ(picture("red.ply", " --plain"), grey);
+    EXPECT_EQ(picture("red.ply", "", " --substrate porcelain"), grey) << "another material is seen whole";
+    ASSERT_EQ(tuft("replay " + path("p.tuft") + " --project " + path("q.tuft")).status, 0);
+    ASSERT_EQ(tuft("export " + path("q.tuft") + " -o " + path("m.png")).status, 0);
+    EXPECT_EQ(read(path("m.png")), red);
+}
+
 TEST_F(Commands, ExportWritesModelAndMaps) {
     write("s.inkml", stroke_file());
     ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft")).status, 0);

@@ -7,6 +7,7 @@
 #include "core/files.h"
 #include "core/random.h"
 #include "io/export.h"
+#include "io/image.h"
 #include "io/read_gltf.h"
 #include "sample_model.h"
 
@@ -102,6 +103,59 @@ TEST(Gltf, StripsAndFansBecomeTriangles) {
     EXPECT_EQ(read(j).corners, (std::vector<std::uint32_t>{0, 1, 2}));
     primitive["mode"] = 1;
     EXPECT_NE(fault(j).find("no triangles"), std::string::npos);
+}
+
+TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
+    const Image8 image{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
+    const std::vector<unsigned char> png = png_bytes(view_of(image));
+    json j = triangle();
+    j["images"] = {{{"uri", "data:image/png;base64," + base64({png.begin(), png.end()})}}};
+    j["textures"] = {{{"source", 0}}};
+    j["materials"] = {{{"name", "m"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.5, 0.25, 1}}, {"baseColorTexture", {{"index", 0}}}}}}};
+    j["meshes"][0]["primitives"][0]["material"] = 0;
+    j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 0;  // the positions serve
+    const mesh::PolygonSoup soup = read(j);
+    ASSERT_EQ(soup.materials.size(), 1u);
+    EXPECT_EQ(soup.group_names, std::vector<std::string>{"m"});
+    ASSERT_TRUE(soup.materials[0].picture);
+    EXPECT_EQ(soup.materials[0].picture->rgb, image.pixels);
+    EXPECT_TRUE(soup.materials[0].tinted);
+    EXPECT_NEAR(soup.materials[0].colour.g, 0.7354, 1e-3) << "sRGB of the linear factor 0.5";
+    ASSERT_EQ(soup.point_colours.size(), 3u);
+    EXPECT_EQ(soup.point_colours[1], (std::array<std::uint8_t, 4>{255, 0, 0, 255}));
+    EXPECT_EQ(soup.point_colours[2], (std::array<std::uint8_t, 4>{0, 255, 0, 255}));
+    j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
+    const mesh::PolygonSoup without = read(j);
+    EXPECT_FALSE(without.materials[0].picture);
+    EXPECT_EQ(without.warnings.size(), 1u);
+}
+
+TEST(Gltf, MaterialsOfOneNameAreGroupsOfTheirOwn) {
+    json j = triangle();
+    j["materials"] = json::parse(R"([{"name":"m","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}},{"name":"m"}])");
+    j["meshes"][0]["primitives"].push_back(j["meshes"][0]["primitives"][0]);
+    j["meshes"][0]["primitives"][0]["material"] = 0;
+    j["meshes"][0]["primitives"][1]["material"] = 1;
+    const mesh::PolygonSoup soup = read(j);
+    EXPECT_EQ(soup.group_names, (std::vector<std::string>{"m", "m 2"}));
+    ASSERT_EQ(soup.materials.size(), 2u);
+    EXPECT_EQ(soup.materials[0].colour, Vec3f(1, 0, 0));
+    EXPECT_EQ(soup.materials[1].colour, Vec3f(1));
+}
+
+TEST(Gltf, WhatItCannotReadIsNamed) {
+    json j = triangle();
+    j["asset"]["version"] = "1.0";
+    EXPECT_NE(fault(j).find("is glTF version 1.0"), std::string::npos);
+    j = triangle();
+    j["buffers"][0]["uri"] = "gone.bin";
+    EXPECT_NE(fault(j).find("gone.bin', which is not there"), std::string::npos) << fault(j);
+    j["buffers"][0]["uri"] = "../gone.bin";
+    EXPECT_NE(fault(j).find("which is outside its folder"), std::string::npos) << fault(j);
+    j = triangle();
+    j["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+    j["accessors"][0].erase("bufferView");
+    EXPECT_NE(fault(j).find("compressed"), std::string::npos) << fault(j);
 }
 
 TEST(Gltf, FaultsAreNamed) {

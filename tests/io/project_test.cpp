@@ -205,7 +205,7 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
         EXPECT_THROW(project.append(strokes[0]), Error) << "ids are unique";
     }
     Project project = Project::open(folder / "a.tuft");
-    EXPECT_EQ(project.format(), kProjectFormat) << "older programs do not know draped strokes";
+    EXPECT_EQ(project.format(), kDrapedFormat) << "older programs do not know draped strokes";
     ASSERT_EQ(project.n_strokes(), strokes.size());
     const auto back = project.strokes();
     for (std::size_t i = 0; i < strokes.size(); ++i) expect_equal(back[i], strokes[i]);

@@ -122,6 +122,7 @@ Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::
     prepare.progress = progress;
     work.source = in.path.string();
     work.frame = options.frame;
+    if (!options.own_colours) mesh::drop_colours(in.soup);
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
     work.painting = std::make_unique<stroke::Painting>(*work.model, stroke::PaintingOptions{.substrate = options.substrate});
     if (!former.empty()) carry_strokes(former, work, progress);

@@ -25,6 +25,7 @@ struct OpenOptions {
     FileFrame frame;  ///< of the model file
     std::uint32_t atlas_size = 2048;
     std::string substrate = "porcelain";
+    bool own_colours = true;  ///< the model's, where it brings any along
 };
 
 /// Opening a model takes two steps, each on a thread of its own: `inspect` reads and checks

@@ -106,6 +106,10 @@ void open_dialog(Session& s) {
     ImGui::TextDisabled("%s", ui.tr("Painted on"));
     ImGui::SameLine(ui.px(150));
     ui.combo("Surface", s.open_options.substrate, s.substrates, 160);
+    if (m.has_colours) {
+        ImGui::SameLine();
+        ui.toggle("in its own colours", s.open_options.own_colours);
+    }
     ui.heading("Checked and repaired");
     if (in.defects.empty()) ui.note(ui.tr("The mesh is sound; nothing had to be repaired."));
     for (const std::string& line : in.defects) ui.wrapped("\xc2\xb7 " + ui.tr_sentence(line));

@@ -34,7 +34,7 @@ constexpr std::pair<const char*, const char*> kTexts[] = {
     {"Open model", "打开模型"}, {"Opening", "正在打开"}, {"Cancel", "取消"}, {"Size", "尺寸"}, {"Triangles", "三角形"},
     {"Unit of the file", "文件单位"}, {"the format says so", "由格式规定"}, {"guessed from the size", "按尺寸推测"}, {"guessed", "推测"},
     {"Upward axis", "向上的轴"},
-    {"Texels per side", "每边纹素"}, {"one texel is about %.2f mm", "一个纹素约 %.2f mm"}, {"Painted on", "底材"},
+    {"Texels per side", "每边纹素"}, {"one texel is about %.2f mm", "一个纹素约 %.2f mm"}, {"Painted on", "底材"}, {"in its own colours", "保留模型原色"},
     {"Checked and repaired", "检查与修复"}, {"The mesh is sound; nothing had to be repaired.", "网格完好，无需修复。"},
     {"This many texels need more memory than is free.", "内存不足以容纳这么多纹素。"}, {"Unwrap and paint", "展开并绘制"},
     {"Unfinished work", "未完成的作品"}, {"Go on with it", "继续"}, {"Later", "以后"}, {"Discard", "丢弃"}, {"Model", "模型"}, {"Project", "项目"},

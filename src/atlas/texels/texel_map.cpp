@@ -137,6 +137,15 @@ void draw_band(const Atlas& atlas, const Bands& bands, std::size_t band, Visit&&
     }
 }
 
+/// Triangle per texel of the band's 16 rows, or kNone.
+void draw_ids(const Atlas& atlas, const Bands& bands, std::size_t band, std::vector<std::uint32_t>& ids) {
+    ids.assign(std::size_t{kTile} * atlas.size, kNone);
+    draw_band(atlas, bands, band, [&](int row, std::int64_t x0, std::int64_t x1, std::uint32_t triangle) {
+        std::uint32_t* line = ids.data() + std::size_t(row) * atlas.size;
+        for (std::int64_t x = x0; x < x1; ++x) line[x] = std::min(line[x], triangle);
+    });
+}
+
 /// Surface point, normal and area of the texel centre (x, y); returns the length in
 /// metres of the longest side of the texel's image.
 float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle,
@@ -335,13 +344,7 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         std::vector<std::uint32_t> ids;
         TexelShape room{};
         for (std::size_t band = begin; band < end; ++band) {
-            ids.assign(std::size_t{kTile} * atlas.size, kNone);
-            draw_band(atlas, bands, band,
-                      [&](int row, std::int64_t x0, std::int64_t x1, std::uint32_t triangle) {
-                          std::uint32_t* line = ids.data() + std::size_t(row) * atlas.size;
-                          for (std::int64_t x = x0; x < x1; ++x)
-                              line[x] = std::min(line[x], triangle);
-                      });
+            draw_ids(atlas, bands, band, ids);
             for (std::uint32_t tx = 0; tx < side; ++tx) {
                 const std::uint32_t tile = static_cast<std::uint32_t>(band * side + tx);
                 const std::uint32_t slot = map.slot_of_tile[tile];
@@ -366,6 +369,31 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         map.tiles[c.texel.slot].area[c.texel.texel] = static_cast<float>(c.area);
     report(progress, "texel map", 1);
     return map;
+}
+
+void visit_texels(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, const TexelVisit& visit) {
+    check_sizes(mesh, atlas);
+    const std::uint32_t side = map.tiles_per_side;
+    const Bands bands = sort_into_bands(mesh, atlas, side);
+    parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> ids;
+        for (std::size_t band = begin; band < end; ++band) {
+            draw_ids(atlas, bands, band, ids);
+            for (std::size_t i = 0; i < ids.size(); ++i) {
+                if (ids[i] == kNone) continue;
+                const auto x = static_cast<std::int64_t>(i % atlas.size);
+                const auto y = static_cast<std::int64_t>(band * kTile + i / atlas.size);
+                const TexelRef at = texel_ref(map, x, y);
+                if (!at.valid()) continue;
+                const SnappedTriangle s = snapped_triangle(atlas, ids[i]);
+                Vec3 weights(0);
+                for (int k = 0; k < 3; ++k)  // corner k faces edge k+1 -> k+2
+                    weights[s.corner[k]] = static_cast<double>(edge_value(s, (k + 1) % 3, x * kSnap + kSnap / 2, y * kSnap + kSnap / 2)) /
+                                           static_cast<double>(s.area2);
+                visit(at.slot, at.texel, ids[i], weights);
+            }
+        }
+    });
 }
 
 }  // namespace tuft::atlas

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -110,5 +111,13 @@ inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
 TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                          const ProgressFn& progress = {},
                          TexelStore store = TexelStore::automatic);
+
+/// A covered texel, the triangle its centre lies in, and the weights of that triangle's corners there.
+using TexelVisit =
+    std::function<void(std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3& weights)>;
+
+/// Calls `visit` once for every covered texel of the map, which must be of this atlas; from several threads, each
+/// with slots of its own.
+void visit_texels(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, const TexelVisit& visit);
 
 }  // namespace tuft::atlas

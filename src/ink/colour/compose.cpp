@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "ink/colour/composite.h"
@@ -201,14 +202,22 @@ void refresh(AtlasMap<T>& image, std::span<const std::uint32_t> slots, const atl
 }
 
 template <class T, int C, class Fn, class Code>
-AtlasMap<T> compose(const Stack& stack, const atlas::TexelMap& map,
+AtlasMap<T> compose(std::span<const std::uint32_t> slots, const atlas::TexelMap& map,
                     const std::array<T, C>& background, const ComposeOptions& options, Fn&& look,
                     const Code& code) {
     AtlasMap<T> image{.size = map.size, .channels = C, .texels = {}};
     image.texels.resize(std::size_t{map.size} * map.size * C);
     for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i] = background[i % C];
-    refresh<T, C>(image, stack.touched_slots(), map, options, look, code);
+    refresh<T, C>(image, slots, map, options, look, code);
     return image;
+}
+
+/// Slots whose colour is not the substrate's.
+std::vector<std::uint32_t> coloured_slots(const Stack& stack) {
+    if (!stack.has_ground()) return stack.touched_slots();
+    std::vector<std::uint32_t> all(stack.ground->tiles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
 }
 
 /// Film units on a texel, all films and pigments together, of each layer what is seen of it.
@@ -236,7 +245,7 @@ AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& 
     std::array<std::uint8_t, 3> background;
     for (int b = 0; b < 3; ++b) background[b] = encode8(substrate.reflectance[b]);
     return compose<std::uint8_t, 3>(
-        stack, map, background, options,
+        coloured_slots(stack), map, background, options,
         [&](std::uint32_t slot) { return srgb8_of(look_of_tile(stack, slot, substrate)); },
         SrgbCode{});
 }
@@ -253,7 +262,7 @@ void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t>
 AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map,
                                const Substrate& substrate, const ComposeOptions& options) {
     return compose<float, 3>(
-        stack, map, substrate.reflectance, options,
+        coloured_slots(stack), map, substrate.reflectance, options,
         [&](std::uint32_t slot) {
             const TileLook look = look_of_tile(stack, slot, substrate);
             TileOut<float, 3> out;
@@ -267,7 +276,7 @@ AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map,
 AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
                                const ComposeOptions& options) {
     return compose<float, 1>(
-        stack, map, {0.0f}, options,
+        stack.touched_slots(), map, {0.0f}, options,
         [&](std::uint32_t slot) {
             const TileLook look = look_of_tile(stack, slot, Substrate{}, false);
             TileOut<float, 1> out;
@@ -280,7 +289,7 @@ AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
 AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map,
                                   const Substrate& substrate, const ComposeOptions& options) {
     return compose<float, 1>(
-        stack, map, {substrate.roughness}, options,
+        stack.touched_slots(), map, {substrate.roughness}, options,
         [&](std::uint32_t slot) {
             const TileLook look = look_of_tile(stack, slot, substrate, false);
             TileOut<float, 1> out;
@@ -298,7 +307,7 @@ AtlasMap<float> compose_amounts(const Stack& stack, const atlas::TexelMap& map,
     all.texels.resize(std::size_t{map.size} * map.size * n);
     for (std::size_t p = 0; p < n; ++p) {
         const AtlasMap<float> one = compose<float, 1>(
-            stack, map, {0.0f}, options,
+            stack.touched_slots(), map, {0.0f}, options,
             [&](std::uint32_t slot) {
                 TileOut<float, 1> out{};
                 for (const LayerView& layer : stack.layers)
@@ -318,7 +327,7 @@ AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& m
     const std::array<std::uint8_t, 3> background{255, unit8(substrate.roughness),
                                                  unit8(substrate.metallic)};
     return compose<std::uint8_t, 3>(
-        stack, map, background, options,
+        stack.touched_slots(), map, background, options,
         [&](std::uint32_t slot) {
             const TileLook look = look_of_tile(stack, slot, substrate, false);
             TileOut<std::uint8_t, 3> out;

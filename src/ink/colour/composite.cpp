@@ -181,6 +181,77 @@ void begin_look(Reflectances& r, TileLook& look, const Substrate& substrate) {
             false)));
 }
 
+TUFT_CLONES void cut_to_unit(float* __restrict r) {
+    for (int t = 0; t < kN; ++t) r[t] = r[t] > 0 ? (r[t] < 1 ? r[t] : 1) : 0;
+}
+
+/// `saunderson_inverse` without k1.
+TUFT_CLONES void below_interface(float* __restrict r, float k2) {
+    for (int t = 0; t < kN; ++t) r[t] = r[t] / ((1 - k2) + k2 * r[t]);
+}
+
+/// The part of `bare` that is left in `colour`, in [0, 1].
+TUFT_CLONES void part_left(float* __restrict part, const float* __restrict colour, const float* __restrict bare) {
+    for (int t = 0; t < kN; ++t) {
+        const float left = colour[t] / (bare[t] > 1e-6f ? bare[t] : 1e-6f);
+        part[t] = left > 0 ? (left < 1 ? left : 1) : 0;
+    }
+}
+
+/// colour += lack · (part of all light, or where there is too much, of this colour's: none is left below 0).
+TUFT_CLONES void add_lack(float* __restrict colour, const float* __restrict lack, const float* __restrict own,
+                          const float* __restrict all) {
+    for (int t = 0; t < kN; ++t) colour[t] += lack[t] * (lack[t] < 0 ? own[t] : all[t]);
+}
+
+/// A tile of the ground: its colour, linear, and what the bands make of it.
+struct GroundColour {
+    alignas(64) std::array<Texels, 3> bare, lack;
+};
+
+std::array<Texels, 3> linear_colour(const Ground::Tile& tile) {
+    static const auto decoded = [] {
+        std::array<float, 256> table{};
+        for (int i = 0; i < 256; ++i) table[i] = srgb_decode(static_cast<float>(i) / 255);
+        return table;
+    }();
+    std::array<Texels, 3> colour;
+    for (int c = 0; c < 3; ++c)
+        for (int t = 0; t < kN; ++t) colour[c][t] = decoded[tile.rgb[c][t]];
+    return colour;
+}
+
+/// Adds what the bands lack of the ground's colour as far as the ground is seen.
+void make_up(TileLook& look, const GroundColour& ground) {
+    alignas(64) Texels colour{}, bare{}, all, own;
+    for (int c = 0; c < 3; ++c) {
+        add_scaled(colour.data(), look.colour[c].data(), 1);
+        add_scaled(bare.data(), ground.bare[c].data(), 1);
+    }
+    part_left(all.data(), colour.data(), bare.data());
+    for (int c = 0; c < 3; ++c) {
+        part_left(own.data(), look.colour[c].data(), ground.bare[c].data());
+        add_lack(look.colour[c].data(), ground.lack[c].data(), own.data(), all.data());
+    }
+}
+
+/// Reflectances of the ground's colours, below the boundary.
+void lay_ground(Reflectances& r, GroundColour& ground, const Ground::Tile& tile, const Substrate& substrate) {
+    constexpr Interface kInterface{};
+    alignas(64) const std::array<Texels, 3> colour = linear_colour(tile);
+    for (Texels& bare : ground.bare) bare.fill(0);
+    for (int b = 0; b < r.bands; ++b) {
+        r[b].fill(0);
+        for (int c = 0; c < 3; ++c) add_scaled(r[b].data(), colour[c].data(), primary_bands()[c][b]);
+        cut_to_unit(r[b].data());
+        for (int c = 0; c < 3; ++c) add_scaled(ground.bare[c].data(), r[b].data(), band_weights()[c][b]);
+        below_interface(r[b].data(), static_cast<float>(kInterface.k2) * substrate.interface);
+    }
+    into_gamut(ground.bare[0].data(), ground.bare[1].data(), ground.bare[2].data());
+    for (int c = 0; c < 3; ++c)
+        for (int t = 0; t < kN; ++t) ground.lack[c][t] = colour[c][t] - ground.bare[c][t];
+}
+
 /// Colour and gloss under the boundary of glaze and water.
 void end_look(Reflectances& r, TileLook& look, const Plane* water, const Substrate& substrate) {
     constexpr Interface kInterface{};
@@ -247,8 +318,16 @@ TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate&
 TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
                       bool with_colour) {
     TileLook look;
-    Reflectances r(with_colour);
+    const Ground::Tile* tile = with_colour && stack.has_ground() ? &stack.ground->tiles[slot] : nullptr;
+    Reflectances r(with_colour && (!tile || stack.touched(slot)));
     begin_look(r, look, substrate);
+    GroundColour ground;
+    if (tile && r.bands == 0) {  // bare
+        look.colour = linear_colour(*tile);
+        end_look(r, look, nullptr, substrate);
+        return look;
+    }
+    if (tile) lay_ground(r, ground, *tile, substrate);
     Plane sum;
     const Plane* water = nullptr;
     for (const LayerView& view : stack.layers) {
@@ -261,6 +340,7 @@ TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& s
         add_scaled(sum.data(), layer.water->data(), view.opacity);
     }
     end_look(r, look, water, substrate);
+    if (tile) make_up(look, ground);
     return look;
 }
 

@@ -8,6 +8,7 @@
 #include "atlas/texels/gutter.h"
 #include "core/progress.h"
 #include "ink/canvas.h"
+#include "ink/colour/ground.h"
 
 /// From pigment amounts to what is seen.
 namespace tuft::ink {
@@ -68,10 +69,13 @@ struct LayerView {
 /// User layers, the lowest first; those that are not to be seen are left out.
 struct Stack {
     std::vector<LayerView> layers;
+    /// Colours of the surface below them in place of the substrate's reflectance; null or empty: that.
+    const Ground* ground = nullptr;
 
     Stack(const Canvas& canvas) : layers{{&canvas}} {}
     explicit Stack(std::vector<LayerView> views) : layers(std::move(views)) {}
 
+    bool has_ground() const { return ground && !ground->empty(); }
     bool touched(std::uint32_t slot) const;
     std::vector<std::uint32_t> touched_slots() const;  ///< of any layer, ascending
 };
@@ -85,6 +89,10 @@ struct Stack {
 /// black ink is still black, while half the opacity is to look half covered. Opacity 1 gives
 /// the same bits as the films of all layers in one canvas would. The water on top is the sum
 /// over the layers, o times each.
+///
+/// Over a ground the substrate's reflectance is, texel by texel, the smooth one of the ground's
+/// colour. What its bands lack of a deep colour (`bands_of_rgb`) is added in the proportion in
+/// which the ground is seen, so that bare texels have the ground's colour exactly.
 TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
                       bool with_colour = true);
 
@@ -117,7 +125,7 @@ struct ComposeOptions {
 };
 
 /// Base colour, sRGB-encoded 8 bit (3 channels). Texels far from any chart have the
-/// substrate's colour.
+/// substrate's colour. Over a ground all texels of charts are drawn, not those with ink only.
 AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map,
                                      const Substrate& substrate,
                                      const ComposeOptions& options = {});

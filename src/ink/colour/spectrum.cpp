@@ -78,8 +78,27 @@ Rgb into_gamut(const Rgb& colour) {
     return out;
 }
 
-Bands bands_of_rgb(const Rgb& colour) {
+namespace {
+
+const Basis& basis_of_primaries() {
     static const Basis basis = make_basis();
+    return basis;
+}
+
+}  // namespace
+
+const std::array<Bands, 3>& primary_bands() {
+    static const auto bands = [] {
+        std::array<Bands, 3> all;
+        for (int c = 0; c < 3; ++c)
+            for (int b = 0; b < kBands; ++b) all[c][b] = static_cast<float>(basis_of_primaries()[b][c]);
+        return all;
+    }();
+    return bands;
+}
+
+Bands bands_of_rgb(const Rgb& colour) {
+    const Basis& basis = basis_of_primaries();
     Bands out;
     for (int b = 0; b < kBands; ++b) {
         double sum = 0;

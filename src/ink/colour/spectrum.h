@@ -25,6 +25,9 @@ Rgb rgb_of_bands(const Bands& reflectance);
 /// A colour in [0, 1]: the nearest on the line to the grey of the same luminance.
 Rgb into_gamut(const Rgb& colour);
 
+/// Bands of the three primaries: a colour's bands are its sum of these, cut to [0, 1].
+const std::array<Bands, 3>& primary_bands();
+
 /// A smooth reflectance of that colour; its bands lie in [0, 1]. `rgb_of_bands` undoes it to
 /// 1e-6 unless the colour is so deep that the bands had to be cut.
 Bands bands_of_rgb(const Rgb& colour);

@@ -42,6 +42,7 @@ void finish(Model& model, atlas::TexelStore texels, const ProgressFn& progress) 
     report(progress, "search tree", 1);
     model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress, texels);
     model.pieces = atlas::build_piece_graph(*model.mesh, model.atlas, model.texels, progress);
+    model.ground = ink::own_ground(*model.mesh, model.atlas, model.texels);
     release_free_memory();
 }
 

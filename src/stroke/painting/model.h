@@ -6,6 +6,7 @@
 #include "atlas/texels/piece_graph.h"
 #include "atlas/texels/texel_map.h"
 #include "footprint/stamp.h"
+#include "ink/colour/ground.h"
 #include "mesh/repair.h"
 #include "mesh/surface_query.h"
 
@@ -21,6 +22,7 @@ struct Model {
     std::unique_ptr<mesh::SurfaceQuery> query;
     atlas::TexelMap texels;
     atlas::PieceGraph pieces;
+    ink::Ground ground;  ///< the mesh's own colours, or empty
 
     footprint::Surface surface() const { return {*mesh, atlas, texels, pieces}; }
 };

@@ -78,6 +78,7 @@ std::vector<LayerTexels> Painting::shown_layers() const {
 
 ink::Stack Painting::stack() const {
     ink::Stack stack{std::vector<ink::LayerView>{}};
+    if (!shown_on_) stack.ground = &model_->ground;  // another substrate is seen whole
     for (const LayerTexels& texels : shown_layers())
         stack.layers.push_back({texels.canvas, static_cast<float>(layers_.find(texels.layer)->opacity)});
     return stack;
