@@ -126,6 +126,7 @@ struct ContactMemory {
     Vec3 anchor{0};
     Vec3 normal{0};                    ///< of the surface at the last solve; x - anchor is normal to it
     double force = 0;                  ///< normal force of the last solve
+    double growth = 0;                 ///< of it over that of the solve before
     double multiplier = 0;             ///< hard contact
 };
 

@@ -2,56 +2,15 @@
 #include <cmath>
 
 #include "brush/rod_energy.h"
+#include "brush/rod_law.h"
 
 namespace tuft::brush::rod {
 
 namespace {
 
-/// Normal force of an indentation with its potential.
-struct NormalForce {
-    double energy = 0, force = 0, stiffness = 0;
-};
-
-/// Spring of stiffness k on x > 0 whose stiffness grows in over `onset`.
-NormalForce ramp(double k, double x, double onset) {
-    if (x < onset) return {k * x * x * x / (6 * onset), 0.5 * k * x * x / onset, k * x / onset};
-    const double y = x - 0.5 * onset;
-    return {0.5 * k * y * y + k * onset * onset / 24, k * y, k};
-}
-
-NormalForce normal_force(const Law& law, double weight, double radius, double depth,
-                         double multiplier) {
-    if (law.hard) {
-        const double k = law.stiffness * weight, force = multiplier + k * depth;
-        if (force <= 0) return {-multiplier * multiplier / (2 * k), 0, 0};
-        return {(force * force - multiplier * multiplier) / (2 * k), force, k};
-    }
-    if (depth <= 0) return {};
-    NormalForce out = ramp(law.stiffness * weight, depth, law.onset);
-    const double packed = depth - law.core_start * radius;
-    if (packed > 0) {
-        const NormalForce core = ramp(law.core_stiffness * weight, packed, law.onset);
-        out.energy += core.energy;
-        out.force += core.force;
-        out.stiffness += core.stiffness;
-    }
-    return out;
-}
-
-/// Potential of the wet film's pull at a gap (negative: indented), zero where it ends.
-NormalForce adhesion(const Law& law, double weight, double gap) {
-    if (law.adhesion <= 0 || gap >= law.adhesion_range) return {};
-    const double pull = law.adhesion * weight, range = law.adhesion_range;
-    if (gap <= 0) return {pull * (gap - range / 3), pull, 0};
-    const double u = 1 - gap / range;
-    return {-pull * range / 3 * u * u * u, pull * u * u, -2 * pull * u / range};
-}
-
-Mat3 outer(const Vec3& v) { return glm::outerProduct(v, v); }
-
 /// Spring that slips at `cap` along a displacement of metric length q; G d is the metric's slope.
-void add_slider(double cap, double k, const Vec3& gd, const Mat3& g, double q, double& energy,
-                Vec3& slope, Mat3& curvature) {
+void add_slider(double cap, double k, const Vec3& gd, const Sym3& g, double q, double& energy,
+                Vec3& slope, Sym3& curvature) {
     if (q * k <= cap) {
         energy += 0.5 * k * q * q;
         slope += k * gd;
@@ -59,18 +18,17 @@ void add_slider(double cap, double k, const Vec3& gd, const Mat3& g, double q, d
     } else {
         energy += cap * (q - 0.5 * cap / k);
         slope += cap / q * gd;
-        curvature += cap / q * (g - outer(gd) / (q * q));
+        curvature += cap / q * (g + -1 / (q * q) * outer(gd));
     }
 }
 
 void add_friction(const Friction& f, const Vec3& normal, const Vec3& x, double& energy,
-                  Vec3& slope, Mat3& curvature) {
+                  Vec3& slope, Sym3& curvature) {
     if (f.cap <= 0 || f.stick <= 0) return;
     Vec3 d = x - f.anchor;
     d -= glm::dot(d, normal) * normal;
-    const Mat3 plane = Mat3(1.0) - outer(normal);
     const double a2 = f.across * f.across, l2 = f.along * f.along;
-    const Mat3 g = a2 * plane + (l2 - a2) * outer(f.grain);
+    const Sym3 g = a2 * (Sym3{1, 0, 0, 1, 0, 1} + -1.0 * outer(normal)) + (l2 - a2) * outer(f.grain);
     const Vec3 gd = g * d;
     add_slider(f.cap, f.stick, gd, g, std::sqrt(std::max(0.0, glm::dot(d, gd))), energy, slope,
                curvature);
@@ -218,8 +176,8 @@ double add_piece(const Frozen& frozen, int p, const Piece& piece, const Standing
     if (force == 0) return 0;
     const Vec3& n = st.at_surface.slope;
     const Vec3 slope = -force * n;
-    Mat3 xx = (st.push.stiffness + st.pull.stiffness) * outer(n);
-    xx -= force * st.at_surface.bend * outer(st.at_surface.across);
+    Sym3 xx = (st.push.stiffness + st.pull.stiffness) * outer(n);
+    xx += -force * st.at_surface.bend * outer(st.at_surface.across);
     out.normal[p] += st.push.force;
     const double w[2] = {1 - piece.s, piece.s}, v = 1 / length;
     double energy = st.push.energy + st.pull.energy;
@@ -227,14 +185,14 @@ double add_piece(const Frozen& frozen, int p, const Piece& piece, const Standing
         energy += st.s * st.s / (2 * piece.give);
         const Vec3 ci = xx * inwards, b = slope + st.s * ci;
         const double total = std::max(1 / piece.give + glm::dot(inwards, ci), 0.01 / piece.give);
-        const Mat3 ii = st.s * st.s * xx - outer(b) / total;
-        const Mat3 xi = st.s * xx - glm::outerProduct(ci, b) / total, mixed = xi + glm::transpose(xi);
-        xx -= outer(ci) / total;
+        const Sym3 ii = st.s * st.s * xx + -1 / total * outer(b);
+        const Sym3 mixed = 2 * st.s * xx + -2 / total * symmetric(ci, b);
+        xx += -1 / total * outer(ci);
         out.slope[piece.j] += v * st.s * slope;
         out.slope[piece.j + 1] -= v * st.s * slope;
         out.curvature[piece.j] += w[0] * v * mixed + v * v * ii;
-        out.curvature[piece.j + 1] += v * v * ii - w[1] * v * mixed;
-        out.coupling[piece.j] += 0.5 * v * (w[1] - w[0]) * mixed - v * v * ii;
+        out.curvature[piece.j + 1] += v * v * ii + -w[1] * v * mixed;
+        out.coupling[piece.j] += 0.5 * v * (w[1] - w[0]) * mixed + -v * v * ii;
     }
     out.slope[piece.j] += w[0] * slope;
     out.slope[piece.j + 1] += w[1] * slope;
@@ -278,7 +236,7 @@ void for_pieces(const Frozen& frozen, int p, const std::vector<Vec3>& node, cons
 double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     const Law& law = *frozen.law;
     const Obstacle& o = frozen.obstacles[p];
-    const PointPlace at = point_place(p, law.points_per_segment, frozen.rod->segments());
+    const PointPlace& at = frozen.place[p];
     const Vec3 x = (1 - at.s) * out.node[at.node] + at.s * out.node[at.node + 1];
     const Distance at_surface = distance_of(o, frozen.crease[p], law.edge, x);
     const double depth = o.radius - at_surface.z;
@@ -287,7 +245,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     if (depth <= -reach && !law.hard) return 0;
     const Vec3& n = at_surface.slope;
     const double inner = 1 - at.s;
-    const auto add = [&](const Vec3& slope, const Mat3& curvature) {
+    const auto add = [&](const Vec3& slope, const Sym3& curvature) {
         out.slope[at.node] += inner * slope;
         out.slope[at.node + 1] += at.s * slope;
         out.curvature[at.node] += inner * inner * curvature;
@@ -302,7 +260,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
         });
         out.contact += energy;
         Vec3 slope{0};
-        Mat3 curvature(0.0);
+        Sym3 curvature;
         add_friction(frozen.friction[p], frozen.friction[p].normal, x, energy, slope, curvature);
         add(slope, curvature);
         return energy;
@@ -321,7 +279,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     out.contact += energy;
     out.normal[p] = f.d;
     Vec3 slope = (pull.force - f.d) * n;
-    Mat3 curvature = (f.dd + pull.stiffness) * outer(n);
+    Sym3 curvature = (f.dd + pull.stiffness) * outer(n);
     if (at_surface.bend != 0) {
         curvature += (pull.force - f.d) * at_surface.bend * outer(at_surface.across);
     }
@@ -329,7 +287,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     add(slope, curvature);
     if (f.c != 0) {
         // c turns with the difference of the two nodes, the indentation with their mean.
-        const Mat3 nn = outer(n);
+        const Sym3 nn = outer(n);
         const double dc = f.dc / length, cc = f.cc / (length * length);
         out.slope[at.node] += f.c / length * n;
         out.slope[at.node + 1] -= f.c / length * n;
@@ -343,7 +301,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
 Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node) {
     const Obstacle& o = frozen.obstacles[p];
     if (frozen.crease[p].share <= 0) return {o.origin, o.normal, o.radius};
-    const PointPlace at = point_place(p, frozen.law->points_per_segment, frozen.rod->segments());
+    const PointPlace& at = frozen.place[p];
     const Vec3 x = (1 - at.s) * node[at.node] + at.s * node[at.node + 1];
     const Distance d = distance_of(o, frozen.crease[p], frozen.law->edge, x);
     const double size = glm::length(d.slope);

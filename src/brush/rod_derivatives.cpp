@@ -7,57 +7,68 @@ namespace tuft::brush::rod {
 
 namespace {
 
-/// Blocks of the gradient and Hessian of one joint between inner segment a and outer b.
+using Joint = Derivatives::Joint;
+
+/// Of the joint between inner segment a and outer b, with their sides.
+void lay_joint(const JointForce& jf, const Vec3& a, const Vec3& a1, const Vec3& a2, const Vec3& b, const Vec3& b1,
+               const Vec3& b2, Joint& out) {
+    const AngleFunctions& f = jf.angle;
+    const double c = glm::dot(a, b);
+    out.p[0] = glm::dot(a1, b);
+    out.p[1] = glm::dot(a2, b);
+    out.q[0] = glm::dot(b1, a);
+    out.q[1] = glm::dot(b2, a);
+    out.r[0][0] = glm::dot(a1, b1);
+    out.r[0][1] = glm::dot(a1, b2);
+    out.r[1][0] = glm::dot(a2, b1);
+    out.r[1][1] = glm::dot(a2, b2);
+    for (int i = 0; i < 2; ++i) {
+        for (int k = 0; k < 2; ++k) {
+            out.ja[i][k] = -f.chi * out.p[i] * out.p[k] - (i == k ? f.phi * c : 0);
+            out.jb[i][k] = -f.chi * out.p[i] * out.q[k] + f.phi * out.r[i][k];
+        }
+    }
+}
+
+/// Blocks of the Hessian of one joint between inner segment a and outer b.
 struct JointBlocks {
-    Vec2 ga, gb;
     Mat2 aa, ab, bb;
 };
 
-JointBlocks joint_blocks(const JointForce& jf, const Vec3& a, const Vec3& a1, const Vec3& b,
-                         const Vec3& b1) {
-    const Vec3 a2 = glm::cross(a, a1), b2 = glm::cross(b, b1);
-    const double c = glm::dot(a, b);
-    const double p[2] = {glm::dot(a1, b), glm::dot(a2, b)};
-    const double q[2] = {glm::dot(b1, a), glm::dot(b2, a)};
-    const double r[2][2] = {{glm::dot(a1, b1), glm::dot(a1, b2)},
-                            {glm::dot(a2, b1), glm::dot(a2, b2)}};
+/// Jᵀ D J plus the moment times the second derivative of w; c is the cosine of the angle.
+JointBlocks joint_blocks(const JointForce& jf, const Joint& joint, double c) {
+    const auto& [p, q, r, ja, jb] = joint;
     const AngleFunctions& f = jf.angle;
     const double m[2] = {jf.moment.x, jf.moment.y};
     const double d[2][2] = {{jf.d00, jf.d01}, {jf.d01, jf.d11}};
     const double mp = m[0] * p[0] + m[1] * p[1];
     const double rm[2] = {r[0][0] * m[0] + r[1][0] * m[1], r[0][1] * m[0] + r[1][1] * m[1]};
-
-    double ja[2][2], jb[2][2], dja[2][2], djb[2][2];
-    for (int i = 0; i < 2; ++i) {
-        for (int k = 0; k < 2; ++k) {
-            ja[i][k] = -f.chi * p[i] * p[k] - (i == k ? f.phi * c : 0);
-            jb[i][k] = -f.chi * p[i] * q[k] + f.phi * r[i][k];
-        }
-    }
-    JointBlocks out;
+    double dja[2][2], djb[2][2];
     for (int k = 0; k < 2; ++k) {
-        out.ga[k] = ja[0][k] * m[0] + ja[1][k] * m[1];
-        out.gb[k] = jb[0][k] * m[0] + jb[1][k] * m[1];
         for (int i = 0; i < 2; ++i) {
             dja[i][k] = d[i][0] * ja[0][k] + d[i][1] * ja[1][k];
             djb[i][k] = d[i][0] * jb[0][k] + d[i][1] * jb[1][k];
         }
     }
-    // Jᵀ D J plus the moment times the second derivative of w.
+    JointBlocks out;
     for (int i = 0; i < 2; ++i) {
         for (int k = 0; k < 2; ++k) {
             const double id = i == k ? 1 : 0;
-            out.aa.m[i][k] = ja[0][i] * dja[0][k] + ja[1][i] * dja[1][k] +
-                             (f.chi * c - 0.5 * f.phi) * (m[i] * p[k] + p[i] * m[k]) +
-                             f.chi * c * mp * id - f.dchi * mp * p[i] * p[k];
-            out.bb.m[i][k] = jb[0][i] * djb[0][k] + jb[1][i] * djb[1][k] +
-                             (f.chi * c - f.phi) * mp * id - f.chi * (q[i] * rm[k] + rm[i] * q[k]) -
-                             f.dchi * mp * q[i] * q[k];
+            if (k <= i) {
+                out.aa.m[i][k] = ja[0][i] * dja[0][k] + ja[1][i] * dja[1][k] +
+                                 (f.chi * c - 0.5 * f.phi) * (m[i] * p[k] + p[i] * m[k]) +
+                                 f.chi * c * mp * id - f.dchi * mp * p[i] * p[k];
+                out.bb.m[i][k] = jb[0][i] * djb[0][k] + jb[1][i] * djb[1][k] +
+                                 (f.chi * c - f.phi) * mp * id - f.chi * (q[i] * rm[k] + rm[i] * q[k]) -
+                                 f.dchi * mp * q[i] * q[k];
+            }
             out.ab.m[i][k] = ja[0][i] * djb[0][k] + ja[1][i] * djb[1][k] +
                              (f.chi * c - f.phi) * m[i] * q[k] - f.chi * p[i] * rm[k] -
                              f.chi * mp * r[i][k] - f.dchi * mp * p[i] * q[k];
         }
     }
+    out.aa.m[0][1] = out.aa.m[1][0];
+    out.bb.m[0][1] = out.bb.m[1][0];
     return out;
 }
 
@@ -79,28 +90,48 @@ void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& a
     const int n = rod.segments();
     out.gradient.assign(2 * n, 0);
     out.second.resize(n);
-    out.segment.resize(n);
-    Vec3 a = frozen.clamp.tangent, side = frozen.clamp.side;
+    out.joint.resize(n);
+    Vec3 a = frozen.clamp.tangent, side = frozen.clamp.side, second = glm::cross(a, side);
     for (int j = 0; j < n; ++j) {
-        const JointBlocks jb = joint_blocks(at.joint[j], a, side, shape.tangent[j], shape.side[j]);
-        out.segment[j] = {jb.bb, jb.ab};
+        const Vec3 &b = shape.tangent[j], &b1 = shape.side[j];
+        out.second[j] = glm::cross(b, b1);
+        Joint& joint = out.joint[j];
+        lay_joint(at.joint[j], a, side, second, b, b1, out.second[j], joint);
+        const Vec2& m = at.joint[j].moment;
         for (int i = 0; i < 2; ++i) {
-            out.gradient[2 * j + i] += jb.gb[i];
-            if (j == 0) continue;
-            out.gradient[2 * (j - 1) + i] += jb.ga[i];
-            for (int k = 0; k < 2; ++k) out.segment[j - 1].own.m[i][k] += jb.aa.m[i][k];
+            out.gradient[2 * j + i] += joint.jb[0][i] * m.x + joint.jb[1][i] * m.y;
+            if (j > 0) out.gradient[2 * (j - 1) + i] += joint.ja[0][i] * m.x + joint.ja[1][i] * m.y;
         }
-        a = shape.tangent[j];
-        side = shape.side[j];
-        out.second[j] = glm::cross(a, side);
+        a = b;
+        side = b1;
+        second = out.second[j];
     }
     // Forces outboard of a segment, seen through its lever arm.
     Vec3 slope{0};
     for (int b = n - 1; b >= 0; --b) {
         slope += at.slope[b + 1];
-        const double lb = rod.length[b], straight = -lb * glm::dot(shape.tangent[b], slope);
-        out.gradient[2 * b] += lb * glm::dot(shape.side[b], slope);
-        out.gradient[2 * b + 1] += lb * glm::dot(out.second[b], slope);
+        out.gradient[2 * b] += rod.length[b] * glm::dot(shape.side[b], slope);
+        out.gradient[2 * b + 1] += rod.length[b] * glm::dot(out.second[b], slope);
+    }
+}
+
+void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluation& at,
+                         Derivatives& out) {
+    const Rod& rod = *frozen.rod;
+    const int n = rod.segments();
+    out.segment.resize(n);
+    for (int j = 0; j < n; ++j) {
+        const Vec3& inner = j > 0 ? shape.tangent[j - 1] : frozen.clamp.tangent;
+        const JointBlocks jb = joint_blocks(at.joint[j], out.joint[j], glm::dot(inner, shape.tangent[j]));
+        out.segment[j] = {jb.bb, jb.ab};
+        for (int i = 0; j > 0 && i < 2; ++i) {
+            for (int k = 0; k < 2; ++k) out.segment[j - 1].own.m[i][k] += jb.aa.m[i][k];
+        }
+    }
+    Vec3 slope{0};
+    for (int b = n - 1; b >= 0; --b) {
+        slope += at.slope[b + 1];
+        const double straight = -rod.length[b] * glm::dot(shape.tangent[b], slope);
         out.segment[b].own.m[0][0] += straight;
         out.segment[b].own.m[1][1] += straight;
     }
@@ -113,7 +144,7 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
     step.resize(2 * n);
     // ½ xᵀPx + Σ_k (Q_k·x) v_k + ½ vᵀRv + p·x + r·v, x the move of the node outboard of segment j
     // and v its steps: the least of Π's model over everything further out.
-    Mat3 big_p(at.curvature[n]);
+    Sym3 big_p = at.curvature[n];
     Vec3 big_q[2] = {Vec3{0}, Vec3{0}}, p{0};
     Mat2 big_r;
     double r[2] = {0, 0};
@@ -140,7 +171,7 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
         gain.rest[0] = i00 * g[0] + i10 * g[1];
         gain.rest[1] = i10 * g[0] + i11 * g[1];
         if (j == 0) break;
-        const Mat3& coupling = at.coupling[j];
+        const Sym3& coupling = at.coupling[j];
         const Vec3 x0 = pa[0] + big_q[0] + coupling * arm[0],
                    x1 = pa[1] + big_q[1] + coupling * arm[1];
         gain.move[0] = i00 * x0 + i10 * x1;
@@ -150,8 +181,8 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
             gain.inner.m[0][i] = i00 * in.m[i][0] + i10 * in.m[i][1];
             gain.inner.m[1][i] = i10 * in.m[i][0] + i11 * in.m[i][1];
         }
-        big_p += 2.0 * coupling + at.curvature[j];
-        big_p -= glm::outerProduct(x0, gain.move[0]) + glm::outerProduct(x1, gain.move[1]);
+        big_p += 2 * coupling + at.curvature[j];
+        big_p += -1.0 * (symmetric(x0, gain.move[0]) + symmetric(x1, gain.move[1]));
         p -= gain.rest[0] * x0 + gain.rest[1] * x1;
         for (int i = 0; i < 2; ++i) {
             big_q[i] = -(in.m[i][0] * gain.move[0] + in.m[i][1] * gain.move[1]);
@@ -187,12 +218,12 @@ void fill_hessian(const Rod& rod, const Shape& shape, const Evaluation& at, cons
     const auto size = static_cast<std::size_t>(2 * n);
     hessian.assign(size * size, 0);
     Lower h{hessian, size};
-    Mat3 stiffness(0.0);
+    Sym3 stiffness;
     for (int b = n - 1; b >= 0; --b) {
         stiffness += at.curvature[b + 1];
-        if (b + 1 < n) stiffness += 2.0 * at.coupling[b + 1];
+        if (b + 1 < n) stiffness += 2 * at.coupling[b + 1];
         // Segments inboard of b also move the node at its inner end.
-        const Mat3 inboard = stiffness + at.coupling[b];
+        const Sym3 inboard = stiffness + at.coupling[b];
         const double lb = rod.length[b];
         const Vec3 tb[2] = {shape.side[b], d.second[b]};
         for (int k = 0; k < 2; ++k) {

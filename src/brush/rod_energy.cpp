@@ -1,6 +1,7 @@
 #include "brush/rod_energy.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tuft::brush::rod {
@@ -12,13 +13,27 @@ namespace {
 constexpr double kFullBend = 1.2;
 constexpr double kFullBendStiffness = 20;  ///< times the joint's own
 
-AngleFunctions angle_functions(double c, double s) {
-    const double theta = std::atan2(s, c);
-    if (theta < 0.05) {
-        const double x = theta * theta;
-        return {1 + x / 6 + 7 * x * x / 360, 1.0 / 3 + 2 * x / 15 + 2 * x * x / 63,
-                (2.0 / 15 + 4 * x / 63) / (-0.5 + x / 12)};
+/// Coefficients of θ/sin θ = Σ a_k v^k, v = (1 - cos θ)/2: a_{k+1}/a_k = 2(k+1)/(2k+3).
+constexpr int kTerms = 12;
+constexpr std::array<double, kTerms> kAngleSeries = [] {
+    std::array<double, kTerms> a{1};
+    for (int k = 0; k + 1 < kTerms; ++k) a[k + 1] = a[k] * 2 * (k + 1) / (2 * k + 3);
+    return a;
+}();
+
+AngleFunctions angle_functions(double c, const Vec2& p) {
+    const double v = 0.5 * (1 - c);
+    if (v < 0.03) {  // 20°; what is left out is less than 1e-16
+        double f = kAngleSeries[kTerms - 1], slope = 0, bend = 0;  // bend: half of the second derivative
+        for (int k = kTerms - 1; k-- > 0;) {
+            bend = bend * v + slope;
+            slope = slope * v + f;
+            f = f * v + kAngleSeries[k];
+        }
+        return {f, 0.5 * slope, -0.5 * bend};
     }
+    double s = glm::length(p);
+    const double theta = std::atan2(s, c);
     s = std::max(s, 1e-3);  // folded flat back: only reached from absurd poses
     const double d = s - theta * c;
     return {theta / s, d / (s * s * s), -(theta * s * s - 3 * c * d) / (s * s * s * s * s)};
@@ -62,7 +77,7 @@ struct Bend {
 
 Bend bend_between(const Vec3& a, const Vec3& side, const Vec3& outer) {
     const Vec2 p{glm::dot(side, outer), glm::dot(glm::cross(a, side), outer)};
-    const AngleFunctions f = angle_functions(glm::dot(a, outer), glm::length(p));
+    const AngleFunctions f = angle_functions(glm::dot(a, outer), p);
     return {f.phi * p, f};
 }
 
@@ -161,8 +176,8 @@ double stored_energy(const Rod& rod, int j, const JointMemory& memory, const Vec
     return sum;
 }
 
-std::vector<Vec3> transported_sides(const Clamp& clamp, const std::vector<Vec3>& tangents) {
-    std::vector<Vec3> sides(tangents.size());
+void transport_sides(const Clamp& clamp, const std::vector<Vec3>& tangents, std::vector<Vec3>& sides) {
+    sides.resize(tangents.size());
     Vec3 t = clamp.tangent, s = clamp.side;
     for (std::size_t j = 0; j < tangents.size(); ++j) {
         s = parallel_transport(s, t, tangents[j]);
@@ -170,7 +185,6 @@ std::vector<Vec3> transported_sides(const Clamp& clamp, const std::vector<Vec3>&
         s = glm::normalize(s - glm::dot(s, t) * t);
         sides[j] = s;
     }
-    return sides;
 }
 
 Vec2 end_moment(const Frozen& frozen) {
@@ -195,18 +209,15 @@ double add_damping(const Frozen& frozen, int j, JointForce& joint) {
 
 }  // namespace
 
-void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
+namespace {
+
+/// Π of the joints and the load; lays the nodes.
+double add_joints(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     const Rod& rod = *frozen.rod;
     const int n = rod.segments();
     out.node.resize(n + 1);
-    out.slope.assign(n + 1, Vec3{0});
-    out.curvature.assign(n + 1, Mat3(0.0));
-    out.coupling.assign(n, Mat3(0.0));
-    out.normal.assign(frozen.obstacles.size(), 0.0);
     out.joint.resize(n);
-
     double value = 0;
-    out.contact = 0;
     const Vec2 moment = end_moment(frozen);
     Vec3 a = frozen.clamp.tangent, side = frozen.clamp.side;
     out.node[0] = frozen.clamp.position;
@@ -223,16 +234,47 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
         a = b;
         side = shape.side[j];
     }
-    value -= glm::dot(frozen.load.tip_force, out.node[n]);
-    out.slope[n] -= frozen.load.tip_force;
-    for (int p = 1; p < static_cast<int>(frozen.obstacles.size()); ++p) {
-        if (p % frozen.law->points_per_segment == 1 && all_clear(frozen, p, out)) {
-            p += frozen.law->points_per_segment - 2;
+    return value - glm::dot(frozen.load.tip_force, out.node[n]);
+}
+
+double add_contacts(const Frozen& frozen, bool derivatives, Evaluation& out) {
+    if (frozen.obstacles.empty()) return 0;
+    const int per = frozen.law->points_per_segment;
+    double value = 0;
+    for (int j = 0; j < frozen.rod->segments(); ++j) {
+        if (frozen.patch[j].flat) {
+            value += add_patch(frozen, j, derivatives, out);
             continue;
         }
-        value += add_contact(frozen, p, out);
+        int p = per * j + 1;
+        if (all_clear(frozen, p, out)) p += per - 1;
+        for (; p <= per * (j + 1); ++p) value += add_contact(frozen, p, out);
     }
-    out.value = value;
+    return value;
+}
+
+}  // namespace
+
+double value_of(const Frozen& frozen, const Shape& shape, Evaluation& out) {
+    const int n = frozen.rod->segments();
+    out.slope.resize(n + 1);
+    out.curvature.resize(n + 1);
+    out.coupling.resize(n);
+    out.normal.resize(frozen.obstacles.size());
+    const double joints = add_joints(frozen, shape, out);
+    return joints + add_contacts(frozen, false, out);
+}
+
+void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
+    const int n = frozen.rod->segments();
+    out.slope.assign(n + 1, Vec3{0});
+    out.curvature.assign(n + 1, Sym3{});
+    out.coupling.assign(n, Sym3{});
+    out.normal.assign(frozen.obstacles.size(), 0.0);
+    out.contact = 0;
+    const double joints = add_joints(frozen, shape, out);
+    out.slope[n] -= frozen.load.tip_force;
+    out.value = joints + add_contacts(frozen, true, out);
 }
 
 void advance(const Shape& from, std::span<const double> u, double scale, Shape& to) {

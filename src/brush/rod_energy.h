@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "brush/rod.h"
+#include "brush/sym3.h"
 #include "brush/wedge.h"
 
 /// Inside of the rod solver: Π and its derivatives for frozen friction and multipliers.
@@ -15,10 +16,6 @@ struct PointPlace {
     int node = 0;
     double s = 0;
 };
-inline PointPlace point_place(int p, int per_segment, int segments) {
-    if (p == per_segment * segments) return {segments - 1, 1.0};
-    return {p / per_segment, static_cast<double>(p % per_segment) / per_segment};
-}
 
 /// Crease beside a contact point: the planes of an edge near it, or of two neighbouring nodes.
 struct Crease {
@@ -40,6 +37,13 @@ struct Evaluation;
 /// True where the points between two nodes, from p on, are all out of reach of one plane.
 bool all_clear(const Frozen& frozen, int p, const Evaluation& at);
 
+/// Finds the patches among the segments; and sets their frames by their points' friction.
+void lay_patches(Frozen& frozen);
+void turn_patches(Frozen& frozen);
+
+/// Adds the points of the patch on segment j; returns their potential. Without `derivatives` nothing else.
+double add_patch(const Frozen& frozen, int j, bool derivatives, Evaluation& out);
+
 /// Adds contact point p to the slopes and curvatures of its two nodes; returns its potential.
 double add_contact(const Frozen& frozen, int p, Evaluation& out);
 
@@ -54,11 +58,26 @@ struct Friction {
     double pore_cap = 0;     ///< force against being pushed along the grain
 };
 
+/// The contact points on a segment and its outer node where they all meet planes of one normal, away
+/// from creases, with ends that do not give: their potential goes by heights along the normal and
+/// by places along the hair and across it, which are linear between the nodes.
+struct Patch {
+    bool flat = false;
+    Vec3 normal{0, 0, 1}, along{1, 0, 0}, across{0, 1, 0};
+    double along2 = 1, across2 = 1;   ///< factors of friction, squared
+    double reach = 0;                 ///< greatest height from which a point is felt
+};
+struct PatchPoint {
+    double height = 0;                ///< of the plane along the patch's normal, from the clamp
+    Vec2 anchor{0};                   ///< along the hair and across, from the clamp
+};
+
 /// Everything that stays fixed during one Newton solve.
 struct Frozen {
     const Rod* rod = nullptr;
     const std::vector<JointMemory>* joint = nullptr;
     std::span<const Obstacle> obstacles;  ///< of the contact points, or none
+    std::vector<PointPlace> place;    ///< of the contact points
     std::vector<Crease> crease;       ///< of the contact points
     std::vector<double> weight;       ///< of the contact points, tributary lengths
     const Law* law = nullptr;
@@ -67,6 +86,8 @@ struct Frozen {
     std::vector<Friction> friction;   ///< of the contact points
     std::vector<double> multiplier;   ///< of the contact points
     std::vector<double> give;         ///< of the contact points, end-on displacement per force
+    std::vector<Patch> patch;         ///< of the segments, or none
+    std::vector<PatchPoint> spot;     ///< of the contact points on patches
 };
 
 /// Unit tangent t and unit normal s of every segment; the pair (s, t × s) moves without spin.
@@ -93,20 +114,23 @@ struct Evaluation {
     double contact = 0;              ///< of it: indentation, ends that give, the film; no friction
     std::vector<Vec3> node;          ///< [n+1]
     std::vector<Vec3> slope;         ///< [n+1] ∂V/∂x_i of contact, friction and load
-    std::vector<Mat3> curvature;     ///< [n+1] ∂²V/∂x_i²
-    std::vector<Mat3> coupling;      ///< [n] ∂²V/∂x_i∂x_{i+1}
+    std::vector<Sym3> curvature;     ///< [n+1] ∂²V/∂x_i²
+    std::vector<Sym3> coupling;      ///< [n] ∂²V/∂x_i∂x_{i+1}
     std::vector<double> normal;      ///< of the contact points, normal force
     std::vector<JointForce> joint;   ///< [n]
 };
 
 /// Sides by parallel transport from the clamp along the rod.
-std::vector<Vec3> transported_sides(const Clamp& clamp, const std::vector<Vec3>& tangents);
+void transport_sides(const Clamp& clamp, const std::vector<Vec3>& tangents, std::vector<Vec3>& sides);
 
 /// The load's end moment in the frame of any inner segment (plane bending).
 Vec2 end_moment(const Frozen& frozen);
 
 /// Joint moments in `out` are less the end moment, whose work is part of Π.
 void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out);
+
+/// Π alone; leaves `out` of use for nothing else.
+double value_of(const Frozen& frozen, const Shape& shape, Evaluation& out);
 
 struct Mat2 {
     double m[2][2] = {{0, 0}, {0, 0}};
@@ -115,15 +139,23 @@ struct Mat2 {
 /// First and second derivatives of Π over steps along (side, tangent × side) of every segment; the
 /// second ones but for what the nodes' curvatures add through the lever arms.
 struct Derivatives {
+    struct Joint {
+        double p[2], q[2];  ///< outer tangent over the inner segment's sides; and the other way round
+        double r[2][2];     ///< sides of the inner over those of the outer segment
+        double ja[2][2], jb[2][2];  ///< ∂w over steps of the inner and of the outer segment
+    };
     struct Segment {
         Mat2 own;      ///< over its own steps
         Mat2 inboard;  ///< [i][k] over step i of the segment inboard and its own step k
     };
+    std::vector<Joint> joint;      ///< [n]
     std::vector<double> gradient;  ///< [2n]
     std::vector<Vec3> second;      ///< [n] tangent × side
     std::vector<Segment> segment;  ///< [n]
 };
+/// The first ones, and then the second ones of the same shape.
 void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out);
+void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out);
 
 /// Buffer of `descend`: steps of each segment by the move of its inner node and the steps inboard.
 struct Elimination {

@@ -17,9 +17,9 @@ constexpr double kLongestStep = 0.3;  ///< radians any segment turns in one iter
 double longest_turn(const Workspace& ws) {
     double longest = 0;
     for (std::size_t j = 0; 2 * j < ws.step.size(); ++j) {
-        longest = std::max(longest, std::hypot(ws.step[2 * j], ws.step[2 * j + 1]));
+        longest = std::max(longest, ws.step[2 * j] * ws.step[2 * j] + ws.step[2 * j + 1] * ws.step[2 * j + 1]);
     }
-    return longest;
+    return std::sqrt(longest);
 }
 
 /// Solves H u = -g into ws.step by elimination. A step that turns some segment too far, or an
@@ -71,6 +71,7 @@ NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit
             return out;
         }
         if (out.iterations >= limit || !std::isfinite(residual)) return out;
+        differentiate_twice(frozen, shape, ws.at, ws.derivatives);
         const int cost = newton_step(*frozen.rod, shape, ws, damped >= kDampedSteps);
         if (cost == 0) return out;
         damped += cost > 1;

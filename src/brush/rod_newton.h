@@ -10,10 +10,11 @@ namespace tuft::brush::rod {
 
 using DenseMatrix = Eigen::MatrixXd;
 
-/// Buffers of one thread, kept so that a warm solve allocates little.
+/// Buffers of the minimisation.
 struct Workspace {
     Evaluation at, trial;
     Shape next;
+    std::vector<Vec3> ahead;  ///< nodes for which friction is frozen
     Derivatives derivatives;
     Elimination elimination;
     std::vector<double> hessian, step;

@@ -16,7 +16,7 @@ struct Layer {
     std::span<const Obstacle> obstacles;
     const std::vector<Vec3>& node;
     Frozen& frozen;
-    std::vector<Obstacle> fine = {};
+    std::vector<Obstacle>& fine;
 
     int n() const { return rod.segments(); }
 
@@ -105,22 +105,29 @@ struct Layer {
         c.wedge = {{a.origin, b.origin}, {a.normal, b.normal}};
     }
 
-    /// Planes, radii and tributary lengths of the contact points.
+    /// Places, planes, radii and tributary lengths of the contact points.
     void lay_points() {
-        if (obstacles.empty()) return;
         const int per = law.points_per_segment;
-        fine.resize(static_cast<std::size_t>(per) * n() + 1);
-        frozen.crease.assign(fine.size(), {});
+        lay_places(per);
+        if (obstacles.empty()) return;
+        fine.resize(frozen.place.size());
+        frozen.crease.resize(fine.size());
+        for (Crease& c : frozen.crease) c.share = 0;
         frozen.weight.assign(fine.size(), 0);
+        bool alike_before = true;  // inboard of the point
         for (std::size_t p = 0; p < fine.size(); ++p) {
-            const PointPlace at = point_place(static_cast<int>(p), per, n());
+            const PointPlace& at = frozen.place[p];
             const Obstacle &from = obstacles[at.node], &to = obstacles[at.node + 1];
-            if (from.at_edge() || to.at_edge()) {
+            const bool edge = from.at_edge() || to.at_edge(), alike = !edge && from.normal == to.normal;
+            if (alike && (at.s > 0 || alike_before)) {
+                lay_plane(p, at, from, to, from.normal);
+            } else if (edge) {
                 const Vec3 x = point_at(at, node);
                 lay_point(p, at, within_reach(from, x), within_reach(to, x));
             } else {
                 lay_point(p, at, from, to);
             }
+            alike_before = alike;
             if (p + 1 < fine.size()) {
                 const double half = 0.5 * rod.length[at.node] / per;
                 frozen.weight[p] += half;
@@ -129,13 +136,25 @@ struct Layer {
         }
     }
 
+    void lay_places(int per) {
+        frozen.place.clear();
+        for (int j = 0; j < n(); ++j) {
+            for (int t = 0; t < per; ++t) frozen.place.push_back({j, static_cast<double>(t) / per});
+        }
+        frozen.place.push_back({n() - 1, 1.0});
+    }
+
     void lay_point(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b) {
         const Vec3 normal_sum = (1 - at.s) * a.normal + at.s * b.normal;
         const double size = glm::length(normal_sum);
-        fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
-        fine[p].normal = size > 1e-6 ? normal_sum / size : a.normal;
-        fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
+        lay_plane(p, at, a, b, size > 1e-6 ? normal_sum / size : a.normal);
         if (law.edge > 0) lay_crease(p, at, a, b);
+    }
+
+    void lay_plane(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b, const Vec3& normal) {
+        fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
+        fine[p].normal = normal;
+        fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
     }
 
     /// How much the hair's ends give at each contact point: 1/k_e, k_e = 2 P s_e^-2 per length
@@ -149,18 +168,19 @@ struct Layer {
             const double window = 1 - from_tip / (4 * law.end_give);
             if (window <= 0) break;
             frozen.give[p] = soft * window * window / frozen.weight[p];
-            from_tip += rod.length[point_place(static_cast<int>(p) - 1, law.points_per_segment, n()).node] / law.points_per_segment;
+            from_tip += rod.length[frozen.place[p - 1].node] / law.points_per_segment;
         }
     }
 };
 
 }  // namespace
 
-std::vector<Obstacle> lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen) {
-    Layer layer{*frozen.rod, *frozen.law, obstacles, node, frozen};
+void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
+                std::vector<Obstacle>& fine) {
+    fine.clear();
+    Layer layer{*frozen.rod, *frozen.law, obstacles, node, frozen, fine};
     layer.lay_points();
     layer.lay_give();
-    return std::move(layer.fine);
 }
 
 }  // namespace tuft::brush::rod

@@ -14,8 +14,9 @@ inline Vec3 point_at(const PointPlace& at, const std::vector<Vec3>& node) {
 
 /// Planes and radii of the contact points, interpolated between those of the nodes; over creases,
 /// where a node has two planes or neighbours' planes part, both. `obstacles`: [n+1], or none;
-/// `node`: [n+1], where the nodes are. Fills crease, weight and give of `frozen`, whose rod and law
-/// are set. [points], or none.
-std::vector<Obstacle> lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen);
+/// `node`: [n+1], where the nodes are. Fills place, crease, weight and give of `frozen`, whose rod and law
+/// are set. `fine`: [points], or none.
+void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
+                std::vector<Obstacle>& fine);
 
 }  // namespace tuft::brush::rod

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kFirstTouch = 0.1;   ///< B0/L²: guess of a first contact's force
 constexpr double kFaint = 0.02;       ///< B0/L²: normal force below which relative accuracy is no aim
+constexpr double kStands = 0.9;       ///< cosine of the bend, 26°, up to which hair stands and may yet buckle or fall to any side
 
 /// How far a clamp went, turns counted at one length.
 double clamp_distance(const Clamp& a, const Clamp& b) {
@@ -26,32 +27,59 @@ Vec3 touching_point(double z0, double z1, const Vec3& x_t0, const Vec3& x) {
     return x_t0 + std::min(1.0, z0 / (z0 - z1)) * (x - x_t0);
 }
 
-/// Friction of a point for the next pass, from the normal force and tangent known so far.
-Friction friction_of(const Law& law, const Vec3& plane, double weight, double normal_force,
-                     const Vec3& anchor, const Vec3& x, const Vec3& tangent) {
+/// Hair along a tangent over a plane of unit normal.
+struct Hair {
+    Vec3 tangent{0}, plane{0};
+    Vec3 grain{0};           ///< unit, along the hair in the plane; zero where it stands upright
+    double lean = 0;         ///< sine of its angle to the normal
+};
+
+Hair hair_over(const Vec3& tangent, const Vec3& plane) {
+    Hair hair{tangent, plane};
+    const Vec3 flat = tangent - glm::dot(tangent, plane) * plane;
+    const double lean = glm::length(flat);
+    if (lean < 1e-6) return hair;
+    hair.grain = flat / lean;
+    hair.lean = lean;
+    return hair;
+}
+
+/// Friction of a point at x for the next pass, from the normal force and hair known so far.
+Friction friction_of(const Law& law, const Hair& hair, double weight, double normal_force, const Vec3& anchor,
+                     const Vec3& x) {
     Friction f;
     f.anchor = anchor;
     f.stick = law.stick_stiffness * weight;
     f.cap = law.friction * normal_force;
-    f.normal = plane;
-    const Vec3 flat = tangent - glm::dot(tangent, plane) * plane;
-    const double lean = glm::length(flat);
-    if (lean < 1e-6) return f;
-    const Vec3 hair = flat / lean;
-    f.grain = hair;
-    f.along = 1 + (2 * law.grain - 1) * lean;
-    f.across = 1 + (1 - 2 * law.grain) * lean;
-    if (law.with_hair > 0) {
+    f.normal = hair.plane;
+    f.grain = hair.grain;
+    f.along = 1 + (2 * law.grain - 1) * hair.lean;
+    f.across = 1 + (1 - 2 * law.grain) * hair.lean;
+    if (law.with_hair > 0 && hair.lean > 0) {
         Vec3 d = x - anchor;
-        d -= glm::dot(d, plane) * plane;
+        d -= glm::dot(d, hair.plane) * hair.plane;
         const double moved = glm::length(d);
         if (moved > 0) {
-            const double with = std::max(0.0, -glm::dot(d, hair) / moved);
-            f.cap *= 1 - law.with_hair * lean * with * with * with * with;
+            const double with = std::max(0.0, -glm::dot(d, hair.grain) / moved);
+            f.cap *= 1 - law.with_hair * hair.lean * with * with * with * with;
         }
     }
     return f;
 }
+
+/// Buffers of one thread, kept so that a warm solve allocates little.
+struct Buffers {
+    std::vector<Vec3> before;         ///< nodes of the last solve
+    std::vector<Obstacle> fine;       ///< of the contact points
+    Frozen frozen;
+    Shape shape;
+    std::vector<double> normal;       ///< lagged N̂
+    std::vector<Vec3> anchor;
+    std::vector<char> anchored;
+    std::vector<double> last_miss;    ///< of N̂ in the pass before
+    std::vector<double> friction_sum; ///< [n+1] most friction of the points beside each node
+    Workspace newton;
+};
 
 /// One solve: friction passes around Newton, then the memory moves on.
 struct Solver {
@@ -59,24 +87,23 @@ struct Solver {
     Memory& memory;
     std::span<const Obstacle> obstacles;   ///< of the nodes
     const Law& law;
-    std::vector<Obstacle> fine;            ///< of the contact points
-    Frozen frozen;
-    Shape shape;
-    std::vector<double> normal;       ///< lagged N̂
-    std::vector<Vec3> anchor;
-    std::vector<char> anchored;
-    Workspace& ws;
+    Buffers& buffers;
     double moved = 0;                      ///< of the clamp since the last solve
-    std::vector<double> last_miss = {};    ///< of N̂ in the pass before
+    std::vector<Obstacle>& fine = buffers.fine;
+    Frozen& frozen = buffers.frozen;
+    Shape& shape = buffers.shape;
+    std::vector<double>& normal = buffers.normal;
+    std::vector<Vec3>& anchor = buffers.anchor;
+    std::vector<char>& anchored = buffers.anchored;
+    Workspace& ws = buffers.newton;
     double relaxation = 1;
     double recovered = 0;                  ///< energy lost by the set going back
-    std::vector<double> friction_sum = {}; ///< [n+1] most friction of the points beside each node
 
     int n() const { return rod.segments(); }
 
     void begin(const Load& load, const std::vector<Vec3>& before) {
         shape.tangent = memory.tangent;
-        shape.side = transported_sides(memory.clamp, shape.tangent);
+        transport_sides(memory.clamp, shape.tangent, shape.side);
         Vec3 a = memory.clamp.tangent, side = memory.clamp.side;
         for (int j = 0; j < n(); ++j) {
             // Frames are laid anew along the rod, so that spin gathered in one solve is dropped.
@@ -88,16 +115,19 @@ struct Solver {
         frozen.rod = &rod;
         frozen.joint = &memory.joint;
         frozen.law = &law;
-        fine = lay_points(obstacles, memory.node, frozen);
-        frozen.obstacles = fine;
         frozen.load = load;
         frozen.clamp = memory.clamp;
+        lay_points(obstacles, memory.node, frozen, fine);
+        frozen.obstacles = fine;
+        lay_patches(frozen);
         const std::size_t points = fine.size();
-        frozen.friction.assign(points, {});
+        frozen.friction.resize(points);
+        for (Friction& f : frozen.friction) f.cap = 0;
         frozen.multiplier.assign(points, 0);
         normal.assign(points, 0);
         anchor.assign(points, Vec3{0});
         anchored.assign(points, 0);
+        const double part = stands() ? 0 : onward();
         double carried = 0;
         for (const ContactMemory& c : memory.contact) carried += c.force;
         memory.contact.resize(static_cast<std::size_t>(law.points_per_segment) * n() + 1);
@@ -107,7 +137,7 @@ struct Solver {
             if (c.touching) {
                 anchor[p] = carried_anchor(p, c, point(before, p));
                 anchored[p] = 1;
-                normal[p] = c.force;
+                normal[p] = std::max(0.0, c.force + part * c.growth);
                 frozen.multiplier[p] = c.multiplier;
             } else if (const double z = distance(p, x).z - fine[p].radius; z < 0) {
                 const Vec3 from = point(before, p);
@@ -128,9 +158,7 @@ struct Solver {
         return last - parallel_transport(last - c.anchor, c.normal, normal_at(p, memory.node));
     }
 
-    PointPlace place(std::size_t p) const {
-        return point_place(static_cast<int>(p), law.points_per_segment, n());
-    }
+    const PointPlace& place(std::size_t p) const { return frozen.place[p]; }
 
     Vec3 point(const std::vector<Vec3>& x, std::size_t p) const {
         return point_at(place(p), x);
@@ -148,15 +176,18 @@ struct Solver {
         return frozen.crease[p].share <= 0 ? fine[p].normal : met_at(p, x).normal;
     }
 
-    void freeze_friction(const std::vector<Vec3>& x) {
+    /// Freezes friction for the hair where it lies at nodes x along `tangents`.
+    void freeze_friction(const std::vector<Vec3>& x, const std::vector<Vec3>& tangents) {
         if (fine.empty() || law.friction <= 0) return;
+        Hair hair;
         for (std::size_t p = 1; p < fine.size(); ++p) {
-            frozen.friction[p] = {};
+            frozen.friction[p].cap = 0;
             if (!anchored[p] || normal[p] <= 0) continue;
-            const PointPlace at = place(p);
-            const Vec3& tangent = shape.tangent[at.s > 0 ? at.node : at.node - 1];
+            const PointPlace& at = place(p);
+            const Vec3& tangent = tangents[at.s > 0 ? at.node : at.node - 1];
             const Vec3 at_point = point(x, p), plane = normal_at(p, x);
-            Friction f = friction_of(law, plane, frozen.weight[p], normal[p], anchor[p], at_point, tangent);
+            if (tangent != hair.tangent || plane != hair.plane) hair = hair_over(tangent, plane);
+            Friction f = friction_of(law, hair, frozen.weight[p], normal[p], anchor[p], at_point);
             const bool tip = p + 1 == fine.size();
             const double c = std::min(0.0, glm::dot(tangent, plane));
             if (law.end_friction < 1) f.cap *= tip ? std::max(law.end_friction, 1 - c * c) : 1 - c * c;
@@ -165,22 +196,46 @@ struct Solver {
             }
             frozen.friction[p] = f;
         }
+        turn_patches(frozen);
     }
 
-    /// Goes on from the shape carried on as it changed in the last solve, if Π is lower there.
-    void guess_onward() {
-        if (memory.turn.empty() || memory.moved <= 0) return;
-        const double part = std::min(2.0, moved / memory.moved);
+    /// Hair that stands may buckle: neither its friction nor its forces go on as they did.
+    bool stands() const { return glm::dot(memory.tangent.back(), memory.clamp.tangent) > kStands; }
+
+    /// How far the hand goes on in this solve, over its way in the last.
+    double onward() const { return memory.moved > 0 ? std::min(2.0, moved / memory.moved) : 0; }
+
+    /// The shape carried on as it changed in the last solve, with its nodes; none where it is not known.
+    bool lay_onward() {
+        const double part = onward();
+        if (memory.turn.empty() || part <= 0) return false;
         const Mat3 frame = clamp_frame(memory.clamp);
         ws.next.tangent.resize(shape.tangent.size());
-        for (std::size_t j = 0; j < shape.tangent.size(); ++j) {
+        ws.ahead = memory.node;
+        for (int j = 0; j < n(); ++j) {
             ws.next.tangent[j] = glm::normalize(shape.tangent[j] + part * (frame * memory.turn[j]));
+            ws.ahead[j + 1] = ws.ahead[j] + rod.length[j] * ws.next.tangent[j];
         }
-        ws.next.side = transported_sides(memory.clamp, ws.next.tangent);
-        evaluate(frozen, ws.next, ws.trial);
-        if (!(ws.trial.value < ws.at.value)) return;
-        std::swap(shape, ws.next);
-        std::swap(ws.at, ws.trial);
+        transport_sides(memory.clamp, ws.next.tangent, ws.next.side);
+        return true;
+    }
+
+    /// Starts from the shape carried on as it changed in the last solve, if Π is lower there with the
+    /// friction of hair that lies so; else from the one carried with the clamp. Friction frozen where the
+    /// hand alone would have taken the hair points the wrong way, and costs passes.
+    void start() {
+        if (lay_onward()) {
+            if (stands()) freeze_friction(memory.node, shape.tangent);
+            else freeze_friction(ws.ahead, ws.next.tangent);
+            evaluate(frozen, ws.next, ws.trial);
+            if (ws.trial.value < value_of(frozen, shape, ws.at)) {
+                std::swap(shape, ws.next);
+                std::swap(ws.at, ws.trial);
+                return;
+            }
+        }
+        freeze_friction(memory.node, shape.tangent);
+        evaluate(frozen, shape, ws.at);
     }
 
     /// Takes the normal forces of the pass; true when they no longer change.
@@ -208,36 +263,35 @@ struct Solver {
         for (std::size_t p = 1; p < fine.size(); ++p) {
             const double miss = ws.at.normal[p] - normal[p];
             if (pass > 1) {
-                along += miss * last_miss[p];
-                before += last_miss[p] * last_miss[p];
+                along += miss * buffers.last_miss[p];
+                before += buffers.last_miss[p] * buffers.last_miss[p];
             }
         }
         // The last miss went in with `relaxation`: ratio = 1 - relaxation (1 - slope of the map).
         const double ratio = before > 0 ? along / before : 0;
         if (pass > 1) relaxation = std::clamp(relaxation / std::max(1 - ratio, 0.2), 0.2, 1.5);
-        last_miss.assign(fine.size(), 0);
+        buffers.last_miss.assign(fine.size(), 0);
         for (std::size_t p = 1; p < fine.size(); ++p) {
-            last_miss[p] = ws.at.normal[p] - normal[p];
-            normal[p] = std::max(0.0, normal[p] + relaxation * last_miss[p]);
+            buffers.last_miss[p] = ws.at.normal[p] - normal[p];
+            normal[p] = std::max(0.0, normal[p] + relaxation * buffers.last_miss[p]);
         }
     }
 
     Result run() {
         Result out;
-        std::vector<Vec3> x = memory.node;
+        start();
         for (out.passes = 1;; ++out.passes) {
-            freeze_friction(x);
-            evaluate(frozen, shape, ws.at);
-            if (out.passes == 1) guess_onward();
             const NewtonResult r = newton(frozen, shape, ws, law.max_iterations - out.iterations);
             out.iterations += r.iterations;
-            x = ws.at.node;
             const bool settled = fine.empty() || take_normal_forces(out.passes);
             out.converged = r.converged && settled;
             if (out.converged || out.passes >= law.max_passes ||
                 out.iterations >= law.max_iterations) {
                 break;
             }
+            ws.ahead = ws.at.node;
+            freeze_friction(ws.ahead, shape.tangent);
+            evaluate(frozen, shape, ws.at);
         }
         finish(out);
         return out;
@@ -252,7 +306,7 @@ struct Solver {
         out.contact_force.assign(n() + 1, Vec3{0});
         out.slip.assign(n() + 1, Vec3{0});
         out.contact_energy = at.contact;
-        friction_sum.assign(n() + 1, 0);
+        buffers.friction_sum.assign(n() + 1, 0);
         for (int j = 0; j < n(); ++j) {
             out.moment[j] = glm::length(at.joint[j].moment + end_moment(frozen));
             const Vec2 turn = at.joint[j].bend - memory.joint[j].bend;
@@ -269,7 +323,8 @@ struct Solver {
         }
         out.root_moment += glm::cross(at.node[n()] - at.node[0], frozen.load.tip_force);
         for (std::size_t p = 0; p < memory.contact.size(); ++p) finish_contact(p, out);
-        for (int i = 0; i <= n(); ++i) out.slip[i] /= std::max(friction_sum[i], 1e-300);
+        for (int i = 0; i <= n(); ++i) out.slip[i] /= std::max(buffers.friction_sum[i], 1e-300);
+        out.met.reserve(memory.node.size());
         for (std::size_t p = 0; p < fine.size(); p += law.points_per_segment) out.met.push_back(met_at(p, at.node));
         const Mat3 back = glm::transpose(clamp_frame(memory.clamp));
         memory.turn.resize(shape.tangent.size());
@@ -288,7 +343,9 @@ struct Solver {
             c = {};
             return;
         }
-        const PointPlace at = place(p);
+        const PointPlace& at = place(p);
+        // Half of it taken from before, so that what a pass leaves is not carried on at twice its size.
+        c.growth = c.force > 0 ? 0.5 * (c.growth + ws.at.normal[p] - c.force) : 0;
         c.force = ws.at.normal[p];
         c.multiplier = law.hard ? c.force : 0;
         out.normal_force[at.node] += (1 - at.s) * c.force;
@@ -313,8 +370,8 @@ struct Solver {
             out.slip[at.node] += (1 - at.s) * f.cap * (1 - reach / q) * d;
             out.slip[at.node + 1] += at.s * f.cap * (1 - reach / q) * d;
         }
-        friction_sum[at.node] += (1 - at.s) * f.cap;
-        friction_sum[at.node + 1] += at.s * f.cap;
+        buffers.friction_sum[at.node] += (1 - at.s) * f.cap;
+        buffers.friction_sum[at.node + 1] += at.s * f.cap;
     }
 };
 
@@ -322,20 +379,21 @@ struct Solver {
 
 Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
              std::span<const Obstacle> obstacles, const Law& law, const Load& load) {
-    thread_local Workspace workspace;
-    const std::vector<Vec3> before = memory.node;
+    thread_local Buffers buffers;
+    buffers.before = memory.node;
     const double moved = clamp_distance(memory.clamp, clamp);
     carry(memory, clamp);
-    Solver solver{rod, memory, obstacles, law, {}, {}, {}, {}, {}, {}, workspace, moved};
-    solver.begin(load, before);
+    Solver solver{rod, memory, obstacles, law, buffers, moved};
+    solver.begin(load, buffers.before);
     return solver.run();
 }
 
 Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles,
                    const Law& law, const Load& load, std::span<const double> x, double damping) {
-    Workspace ws;
+    Buffers buffers;
+    Workspace& ws = buffers.newton;
     Memory copy = memory;
-    Solver solver{rod, copy, obstacles, law, {}, {}, {}, {}, {}, {}, ws, 0};
+    Solver solver{rod, copy, obstacles, law, buffers};
     solver.begin(load, memory.node);
     for (std::size_t i = 0; i < solver.fine.size() && i < memory.contact.size(); ++i) {
         solver.normal[i] = memory.contact[i].force;
@@ -344,13 +402,14 @@ Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacl
             solver.anchored[i] = 1;
         }
     }
-    solver.freeze_friction(copy.node);
+    solver.freeze_friction(copy.node, solver.shape.tangent);
     Shape moved;
     advance(solver.shape, x, 1, moved);
     Probe probe;
     evaluate(solver.frozen, moved, ws.at);
     probe.value = ws.at.value;
     differentiate(solver.frozen, moved, ws.at, ws.derivatives);
+    differentiate_twice(solver.frozen, moved, ws.at, ws.derivatives);
     probe.gradient = ws.derivatives.gradient;
     fill_hessian(rod, moved, ws.at, ws.derivatives, probe.hessian);
     if (!descend(rod, moved, ws.at, ws.derivatives, damping, ws.elimination, probe.step)) probe.step.clear();

@@ -210,6 +210,26 @@ TEST(RodLaws, GradientMatchesAtRandomShapesToo) {
     }
 }
 
+TEST(RodLaws, PointsOverOnePlaneAddUpAsEachByItself) {
+    // Planes that differ by round-off are met point by point, equal ones by the segment.
+    const Scene s = rough_scene(false);
+    std::vector<Obstacle> apart = s.plane;
+    for (int i = 0; i <= 8; ++i) apart[i].normal = glm::normalize(apart[i].normal + Vec3{1e-12 * (i % 2), 0, 0});
+    Random random(11);
+    for (int trial = 0; trial < 20; ++trial) {
+        std::vector<double> x(16);
+        for (double& u : x) u = random.uniform(-0.2, 0.2);
+        const Probe one = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x);
+        const Probe other = probe_energy(s.rod, s.memory, apart, s.law, {}, x);
+        constexpr double kClose = 1e-8;  // the planes' angle times the stiffest second derivative, 10^4
+        EXPECT_NEAR(one.value, other.value, kClose);
+        for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(one.gradient[i], other.gradient[i], kClose);
+        for (std::size_t i = 0; i < one.hessian.size(); ++i) {
+            EXPECT_NEAR(one.hessian[i], other.hessian[i], kClose * (1 + std::abs(other.hessian[i])));
+        }
+    }
+}
+
 TEST(RodLaws, EliminationAlongTheRodSolvesTheFullMatrix) {
     const Scene scenes[] = {rough_scene(false), rough_scene(true), rough_scene(false, Under::edge),
                             rough_scene(false, Under::corner), rough_scene(false, Under::rim)};
