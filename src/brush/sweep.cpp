@@ -33,10 +33,11 @@ double overlap(const Section& s) { return std::hypot(s.a * s.e.z, s.b * s.m.z) -
 void add_section(const Section& s, Patch& patch) {
     const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = std::hypot(ne, nm), z = s.centre.z;
     if (reach <= 0 || std::abs(z) > reach) return;
-    const double middle = std::atan2(nm, ne), half = std::acos(-z / reach);
+    // ω = atan2(nm, ne) ± acos(-z/reach) by their cosines and sines, so that mirrored sections have mirrored ends.
+    const double co = ne / reach, si = nm / reach, down = -z / reach, half = std::sqrt(std::max(0.0, 1 - down * down));
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    for (const double w : {middle - half, middle + half}) {
-        const Vec3 q = s.centre + s.a * std::cos(w) * s.e + s.b * std::sin(w) * s.m;
+    for (const double way : {-half, half}) {
+        const Vec3 q = s.centre + s.a * (co * down - way * si) * s.e + s.b * (si * down + way * co) * s.m;
         lo = std::min(lo, q.y);
         hi = std::max(hi, q.y);
         patch.front = std::min(patch.front, q.x);
