@@ -297,6 +297,11 @@ TEST(WetFilm, ABlotIsTheSameWithASeamUnderIt) {
     for (const Vec2& off : {Vec2{0, 0}, {0.27, 0.41}, {0.5, 0.13}, {0.77, 0.68}})
         for (const auto& [a, b] : {std::pair{0.0, 30.0}, {15.0, 15.0}, {10.0, 70.0}})
             expect_same({{140.3, 8.4}, a * degree}, {Vec2{420.7, 10.2} + off, b * degree});
+    // And so near that what links them is cut: what flows past them over the seam is not.
+    expect_same({{140.826, 8.468}, 33.856 * degree}, {{421.234, 10.920}, 12.597 * degree});
+    expect_same({{140.952, 9.138}, 26.400 * degree}, {{421.249, 11.107}, 11.248 * degree});
+    expect_same({{140.714, 8.709}, 41.600 * degree}, {{421.356, 10.550}, 10.187 * degree});
+    expect_same({{140.694, 8.752}, 11.713 * degree}, {{421.068, 10.233}, 14.883 * degree});
 }
 
 TEST(WetFilm, ABlotIsTheSameHoweverTexelsLie) {

@@ -1,7 +1,9 @@
 #include "ink/film/film_list.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "core/parallel.h"
 
@@ -26,6 +28,18 @@ void look(const Canvas& canvas, Active& tile) {
     const Plane *w = canvas.liquid(tile.slot, Liquid::film), *s = canvas.liquid(tile.slot, Liquid::pores);
     tile.outcome.most_w = w ? greatest(w->data()) : 0;
     tile.outcome.most_s = s ? greatest(s->data()) : 0;
+}
+
+/// The weight to which a texel's links are cut so that they are `most` together: those to texels that nearly lie on it,
+/// which are as one with it through less too. What flows through the others stays as it is.
+float most_of_links(std::vector<float>& weights, float most) {
+    std::sort(weights.begin(), weights.end());
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const float each = most / static_cast<float>(weights.size() - i);
+        if (weights[i] > each) return each;
+        most -= weights[i];
+    }
+    return std::numeric_limits<float>::infinity();
 }
 
 }  // namespace
@@ -101,24 +115,28 @@ void TileList::close_taps() {
 
 void TileList::limit_links() {
     const double mean = map.texel_size * map.texel_size;
-    std::vector<std::array<float, kTexels>> of_slot;  // only of slots with links
-    std::vector<std::uint32_t> index(map.n_slots(), kNone);
-    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
-        if (seams.start[slot] == seams.start[slot + 1]) continue;
-        index[slot] = static_cast<std::uint32_t>(of_slot.size());
-        std::array<float, kTexels>& sums = of_slot.emplace_back();
-        sums.fill(0);
-        for (const atlas::SeamLink& l : links_of(slot)) sums[l.texel] += l.weight;
-        for (int t = 0; t < kTexels; ++t) {
-            const double most = kSeamPart * static_cast<double>(map.tiles[slot].area[t]) / mean;
-            sums[t] = static_cast<double>(sums[t]) > most ? static_cast<float>(most) / sums[t] : 1;
-        }
-    }
+    std::vector<float> most(seams.links.size());  // of the texel that a link starts at
+    std::vector<float> weights;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
-        for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
-            atlas::SeamLink& l = seams.links[i];
-            l.weight *= std::min(of_slot[index[slot]][l.texel], of_slot[index[l.other_slot]][l.other_texel]);
+        for (std::uint32_t i = seams.start[slot], next = i; i < seams.start[slot + 1]; i = next) {
+            const std::uint8_t texel = seams.links[i].texel;
+            weights.clear();
+            for (; next < seams.start[slot + 1] && seams.links[next].texel == texel; ++next) weights.push_back(seams.links[next].weight);
+            const double all = kSeamPart * static_cast<double>(map.tiles[slot].area[texel]) / mean;
+            std::fill(most.begin() + i, most.begin() + next, most_of_links(weights, static_cast<float>(all)));
         }
+    // Both texels hold a link with the same weight.
+    const auto cut = [&](std::uint32_t slot, std::uint32_t i) {
+        const atlas::SeamLink& l = seams.links[i];
+        const auto begin = seams.links.begin() + seams.start[l.other_slot], end = seams.links.begin() + seams.start[l.other_slot + 1];
+        const auto back = std::lower_bound(begin, end, std::tuple(l.other_texel, slot, l.texel), [](const atlas::SeamLink& a, const auto& key) {
+            return std::tuple(a.texel, a.other_slot, a.other_texel) < key;
+        });
+        return std::min(most[i], most[static_cast<std::size_t>(back - seams.links.begin())]);
+    };
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i)
+            seams.links[i].weight = std::min(seams.links[i].weight, cut(slot, i));
 }
 
 std::span<const atlas::SeamLink> TileList::links_of(std::uint32_t slot) const {
