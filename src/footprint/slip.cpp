@@ -73,14 +73,31 @@ Across::Across(const Trail& trail, std::size_t begin, std::size_t end,
         for (std::size_t k = 0; k < kPlaces; ++k) {
             const Vec2 went = middle + (2 * static_cast<double>(k) / (kPlaces - 1) - 1) * spread;
             measure_[k] += std::abs(run.x * went.y - run.y * went.x) / (glm::length(went) + kStill);
+            went_[k] += glm::length(run) * went;
         }
     }
 }
 
+namespace {
+
+/// Value at x in [-1, 1] of a row of evenly spaced ones.
+template <class T, std::size_t N>
+T between(const std::array<T, N>& row, double x) {
+    const double u = 0.5 * (std::clamp(x, -1.0, 1.0) + 1) * (N - 1);
+    const auto k = std::min(static_cast<std::size_t>(u), N - 2);
+    return row[k] + (u - static_cast<double>(k)) * (row[k + 1] - row[k]);
+}
+
+}  // namespace
+
 double Across::at(double x) const {
-    const double u = 0.5 * (std::clamp(x, -1.0, 1.0) + 1) * (kPlaces - 1);
-    const auto k = std::min(static_cast<std::size_t>(u), kPlaces - 2);
-    return std::lerp(measure_[k], measure_[k + 1], u - static_cast<double>(k));
+    return between(measure_, x);
+}
+
+double Across::off_course(double x, const Vec2& course) const {
+    const Vec2 went = between(went_, x);
+    const double way = glm::length(went) * glm::length(course);
+    return way > 0 ? std::abs(went.x * course.y - went.y * course.x) / way : 0;
 }
 
 }  // namespace tuft::footprint

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "contact/contact.h"
+#include "core/ease.h"
 #include "stroke/hand/hand.h"
 #include "stroke/painting/painting_hand.h"
 
@@ -13,6 +14,9 @@ namespace {
 
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteStep = 1e-4, kPasteCell = 4e-5;
+
+// Parts of the hand's motion that are up or down, from one to the other of which it presses or lifts.
+constexpr double kSlants = 0.2, kPlunges = 0.5;
 
 /// Hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
 double wetness_of(const ink::Reservoir& reservoir) {
@@ -275,6 +279,10 @@ void Painting::draw_poses() {
         const double slid = glm::length(drawn);
         h.slid += slid;
         if (slid > 0) h.heading = drawn / slid;
+        const double along = glm::length(shift);
+        if (along > 0) h.course = shift / along;
+        const double up = std::abs(glm::dot(way, contact.frame.n));
+        h.lands = up > 0 ? smooth_step((up / (up + along) - kSlants) / (kPlunges - kSlants)) : 0;
         Stamp stamp = h.make_stamp(contact, dt);
         if (stamp.footprint.empty()) {
             h.was_touching = false;
