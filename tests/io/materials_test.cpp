@@ -147,6 +147,15 @@ stroke::Model model_of(const mesh::PolygonSoup& soup, std::uint32_t size) {
     return stroke::prepare_model(soup, options);
 }
 
+ProjectModel contents(const stroke::Model& model) {
+    ProjectModel stored;
+    stored.source = "m.obj";
+    stored.mesh = *model.mesh;
+    stored.atlas = model.atlas;
+    stored.substrate = "name = 'x'\n";
+    return stored;
+}
+
 TEST(Materials, AProjectKeepsThemAndMakesTheSameGroundAgain) {
     const Folder folder("project");
     put(folder / "m.obj", "mtllib m.mtl\n" + kTwoTriangles);
@@ -154,11 +163,7 @@ TEST(Materials, AProjectKeepsThemAndMakesTheSameGroundAgain) {
     put(folder / "p.png", png_text());
     const stroke::Model model = model_of(read_model(folder / "m.obj"), 64);
     ASSERT_FALSE(model.ground.empty());
-    Project::create(folder / "m.tuft", {.source = "m.obj",
-                                        .frame = {},
-                                        .mesh = *model.mesh,
-                                        .atlas = model.atlas,
-                                        .substrate = "name = 'x'\n"});
+    Project::create(folder / "m.tuft", contents(model));
     const Project project = Project::open(folder / "m.tuft");
     EXPECT_EQ(project.format(), kProjectFormat) << "older programs do not know them";
     ProjectModel stored = project.model();
@@ -177,11 +182,7 @@ TEST(Materials, AModelWithoutColoursKeepsAnOlderFormat) {
     put(folder / "m.obj", kTwoTriangles);
     const stroke::Model model = model_of(read_model(folder / "m.obj"), 64);
     EXPECT_TRUE(model.ground.empty());
-    const Project project = Project::create(folder / "m.tuft", {.source = "m.obj",
-                                                                .frame = {},
-                                                                .mesh = *model.mesh,
-                                                                .atlas = model.atlas,
-                                                                .substrate = "name = 'x'\n"});
+    const Project project = Project::create(folder / "m.tuft", contents(model));
     EXPECT_LT(project.format(), kProjectFormat);
 }
 
