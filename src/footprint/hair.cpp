@@ -18,7 +18,7 @@ constexpr double kRolling = 12e-3;     // m of travel over which the hair of a b
 constexpr double kBreaking = 4e-3;     // m of travel over which the ink under a single bristle breaks and closes
 constexpr double kRollingPart = 0.2, kBreakingPart = 0.2;  // of the wetness at which they stop
 constexpr double kThinning = 0.02;     // wetness over which a thread of ink tapers before it breaks
-constexpr double kAside = 0.35;        // sine of the angle from the hand's way at which hair that lands or leaves is swept aside
+constexpr double kAside = 0.35;        // sine of the angle from the tuft's way at which hair that lands or leaves is swept aside
 constexpr double kSwept = 0.8;         // wetness that it needs more then
 constexpr double kMark = 45e-6;        // m, half width of what a bristle leaves by itself: hair is 70–135 µm thick
 constexpr double kBridge = 0.5;        // spacings that ink bridges from one bristle to the next at half wetness
@@ -180,7 +180,7 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
     double bridge_before = 0;
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
-        const double aside = ink.lands > 0 ? ink.lands * smooth_step(laid.across.off_course(lower[i].x, ink.course) / kAside) : 0;
+        const double aside = ink.lands > 0 ? ink.lands * smooth_step(laid.across.off_way(lower[i].x, ink.way) / kAside) : 0;
         const double wet = wet_of(b), breaks = breaks_at(bundles, b, ink.travel) + kSwept * aside;
         const double active = std::clamp((wet - std::min(breaks, 1 - kThinning)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;

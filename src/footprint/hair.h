@@ -37,7 +37,6 @@ struct HairInk {
     double travel = 0;            ///< metres of the stroke so far: bristles roll as they are drawn
     Vec2 way{0};                  ///< unit, where the tuft is drawn, in the stamp's (u, v); zero: it stands
     std::span<const Trail> before = {};  ///< of the stamp before, in this one's frame: each hair's own way; none: all go `way`
-    Vec2 course{0};               ///< unit, the hand's way along the surface, in the stamp's (u, v)
     double lands = 0;             ///< 0–1: how much of the hand's motion is pressing or lifting
 };
 
@@ -65,12 +64,12 @@ struct HairMarks {
 ///
 /// drawn sideways it has ink for no wider a way.
 ///
-/// Hair that a press spreads, or that a lifted tuft takes along, is swept off the hand's way. Dry hair draws no line by
-/// that: while the hand presses or lifts a thread needs
+/// Hair that a press spreads, or that closes again in a lifted tuft, is swept off the tuft's way. Dry hair draws no line
+/// by that: while the hand presses or lifts a thread needs
 ///
 ///     0.8 lands S(sin ψ / 0.35)
 ///
-/// more wetness, ψ the angle between the hair's way and the hand's, S the smooth step. Strokes begin and end ragged,
+/// more wetness, ψ the angle between the hair's way and the tuft's, S the smooth step. Strokes begin and end ragged,
 /// along themselves.
 ///
 /// All this is of the hair and of the way, in metres, and the same for any sampling and texel. Areas are exact at the

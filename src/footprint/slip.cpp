@@ -94,10 +94,10 @@ double Across::at(double x) const {
     return between(measure_, x);
 }
 
-double Across::off_course(double x, const Vec2& course) const {
+double Across::off_way(double x, const Vec2& way) const {
     const Vec2 went = between(went_, x);
-    const double way = glm::length(went) * glm::length(course);
-    return way > 0 ? std::abs(went.x * course.y - went.y * course.x) / way : 0;
+    const double lengths = glm::length(went) * glm::length(way);
+    return lengths > 0 ? std::abs(went.x * way.y - went.y * way.x) / lengths : 0;
 }
 
 }  // namespace tuft::footprint

@@ -28,8 +28,8 @@ class Across {
     /// Of hair at x in [-1, 1] along the sections' e, metres.
     double at(double x) const;
     /// Sine of the angle between the way of that hair, on the mean of what lies down of it, and
-    /// `course`; 0 without either.
-    double off_course(double x, const Vec2& course) const;
+    /// `way`; 0 without either.
+    double off_way(double x, const Vec2& way) const;
 
   private:
     static constexpr std::size_t kPlaces = 17;

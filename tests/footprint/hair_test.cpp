@@ -221,7 +221,7 @@ TEST(Hair, SidewaysByItselfHasInkForNoWiderAWay) {
 }
 
 TEST(Hair, SweptAsideByAPressDrawsNoLine) {
-    // The hand goes along the tuft while it presses: hair that follows leaves what it leaves in a drag, hair that spreads
+    // The tuft goes along itself while it is pressed: hair that follows leaves what it leaves in a drag, hair that spreads
     // by 20 degrees and more leaves next to nothing, and a full tuft closes all the same.
     const Pressed& p = pressed();
     const auto area = [&](double wetness, double lands, const std::function<void(Cut&)>& was) {
@@ -229,7 +229,7 @@ TEST(Hair, SweptAsideByAPressDrawsNoLine) {
         std::vector<Trail> before = p.trails;
         for (Trail& trail : before)
             for (Cut& cut : trail.cuts) was(cut);
-        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, {}, before, {1, 0}, lands}, kFlat, 0, kCell).footprint);
+        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, {1, 0}, before, lands}, kFlat, 0, kCell).footprint);
     };
     const auto follows = [](Cut& c) { c.centre.x -= 3e-5; };
     const auto aside = [](Cut& c) { c.centre.x -= 3e-5, c.centre.y -= 2e-5; };

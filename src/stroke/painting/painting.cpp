@@ -280,7 +280,6 @@ void Painting::draw_poses() {
         h.slid += slid;
         if (slid > 0) h.heading = drawn / slid;
         const double along = glm::length(shift);
-        if (along > 0) h.course = shift / along;
         const double up = std::abs(glm::dot(way, contact.frame.n));
         h.lands = up > 0 ? smooth_step((up / (up + along) - kSlants) / (kPlunges - kSlants)) : 0;
         Stamp stamp = h.make_stamp(contact, dt);

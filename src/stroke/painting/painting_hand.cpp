@@ -195,7 +195,7 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, cell);
     } else {
         footprint::HairMarks marks = footprint::hair_marks(trails, outlines, tuft.bundles, branches,
-                                                           {wetness, travel, heading, lay, course, lands}, contact.frame, contact.triangle, cell);
+                                                           {wetness, travel, heading, lay, lands}, contact.frame, contact.triangle, cell);
         stamp.footprint = std::move(marks.footprint);
         stamp.by_hair = true;
         const double dry = std::max(1e-3, 1 - mean);
