@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
-#include "ink/colour/composite.h"
+#include "ink/colour/srgb.h"
 #include "io/materials.h"
 
 namespace fs = std::filesystem;

@@ -16,10 +16,9 @@ constexpr std::array<int, 3> kVeilColour{64, 104, 178};  // sRGB
 
 // Averages are of light, not of its code values.
 struct SrgbTable {
-    std::array<float, 256> decode{};
+    const std::array<float, 256>& decode = ink::linear_of_code();
     std::array<std::uint8_t, 4096> encode{};
     SrgbTable() {
-        for (std::size_t i = 0; i < decode.size(); ++i) decode[i] = ink::srgb_decode(static_cast<float>(i) / 255.0f);
         for (std::size_t i = 0; i < encode.size(); ++i)
             encode[i] = static_cast<std::uint8_t>(std::lround(255.0f * ink::srgb_encode(static_cast<float>(i) / 4095.0f)));
     }

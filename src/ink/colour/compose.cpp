@@ -12,21 +12,6 @@ namespace {
 constexpr int kN = atlas::kTileTexels;
 constexpr int kSide = atlas::kTile;
 
-const std::array<std::uint8_t, 65536>& srgb_table() {
-    static const auto table = [] {
-        std::array<std::uint8_t, 65536> t{};
-        for (int i = 0; i < 65536; ++i)
-            t[i] = static_cast<std::uint8_t>(std::lround(255 * srgb_encode(i / 65535.0f)));
-        return t;
-    }();
-    return table;
-}
-
-std::uint8_t encode8(float linear) {
-    const float c = linear > 0 ? (linear < 1 ? linear : 1) : 0;
-    return srgb_table()[static_cast<int>(c * 65535 + 0.5f)];
-}
-
 std::uint8_t unit8(float v) {
     return static_cast<std::uint8_t>((v > 0 ? (v < 1 ? v : 1) : 0) * 255 + 0.5f);
 }
@@ -123,12 +108,8 @@ std::vector<std::uint32_t> with_neighbours(const atlas::TexelMap& map,
 /// Linear light (or plain numbers) of a stored value, and back.
 struct SrgbCode {
     float from(std::uint8_t v) const { return table[v]; }
-    std::uint8_t to(float v) const { return encode8(v); }
-    std::array<float, 256> table = [] {
-        std::array<float, 256> t{};
-        for (int i = 0; i < 256; ++i) t[i] = srgb_decode(static_cast<float>(i) / 255.0f);
-        return t;
-    }();
+    std::uint8_t to(float v) const { return code_of_linear(v); }
+    const std::array<float, 256>& table = linear_of_code();
 };
 struct UnitCode {
     float from(std::uint8_t v) const { return static_cast<float>(v) / 255.0f; }
@@ -234,7 +215,7 @@ float film_on(const Stack& stack, std::uint32_t slot, int texel) {
 TileOut<std::uint8_t, 3> srgb8_of(const TileLook& look) {
     TileOut<std::uint8_t, 3> out;
     for (int t = 0; t < kN; ++t)
-        for (int b = 0; b < 3; ++b) out[t][b] = encode8(look.colour[b][t]);
+        for (int b = 0; b < 3; ++b) out[t][b] = code_of_linear(look.colour[b][t]);
     return out;
 }
 
@@ -243,7 +224,7 @@ TileOut<std::uint8_t, 3> srgb8_of(const TileLook& look) {
 AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map,
                                      const Substrate& substrate, const ComposeOptions& options) {
     std::array<std::uint8_t, 3> background;
-    for (int b = 0; b < 3; ++b) background[b] = encode8(substrate.reflectance[b]);
+    for (int b = 0; b < 3; ++b) background[b] = code_of_linear(substrate.reflectance[b]);
     return compose<std::uint8_t, 3>(
         coloured_slots(stack), map, background, options,
         [&](std::uint32_t slot) { return srgb8_of(look_of_tile(stack, slot, substrate)); },
@@ -359,14 +340,6 @@ GutterPlan plan_gutter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas
         plan.first_of_slot.push_back(static_cast<std::uint32_t>(plan.entries.size()));
     }
     return plan;
-}
-
-float srgb_encode(float linear) {
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
-
-float srgb_decode(float encoded) {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
 }  // namespace tuft::ink

@@ -210,11 +210,7 @@ struct GroundColour {
 };
 
 std::array<Texels, 3> linear_colour(const Ground::Tile& tile) {
-    static const auto decoded = [] {
-        std::array<float, 256> table{};
-        for (int i = 0; i < 256; ++i) table[i] = srgb_decode(static_cast<float>(i) / 255);
-        return table;
-    }();
+    const std::array<float, 256>& decoded = linear_of_code();
     std::array<Texels, 3> colour;
     for (int c = 0; c < 3; ++c)
         for (int t = 0; t < kN; ++t) colour[c][t] = decoded[tile.rgb[c][t]];

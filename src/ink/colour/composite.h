@@ -9,6 +9,7 @@
 #include "core/progress.h"
 #include "ink/canvas.h"
 #include "ink/colour/ground.h"
+#include "ink/colour/srgb.h"
 
 /// From pigment amounts to what is seen.
 namespace tuft::ink {
@@ -151,9 +152,5 @@ AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& m
 void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots,
                    const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                    const ComposeOptions& options = {});
-
-/// sRGB transfer curve (IEC 61966-2-1), linear [0, 1] to encoded [0, 1] and back.
-float srgb_encode(float linear);
-float srgb_decode(float encoded);
 
 }  // namespace tuft::ink

@@ -5,24 +5,10 @@
 #include <map>
 
 #include "core/parallel.h"
-#include "ink/colour/composite.h"
+#include "ink/colour/srgb.h"
 
 namespace tuft::ink {
 namespace {
-
-const std::array<float, 256>& linear_of_code() {
-    static const auto table = [] {
-        std::array<float, 256> t{};
-        for (int i = 0; i < 256; ++i) t[i] = srgb_decode(static_cast<float>(i) / 255);
-        return t;
-    }();
-    return table;
-}
-
-std::uint8_t code_of(float linear) {
-    return static_cast<std::uint8_t>(
-        std::lround(255 * srgb_encode(std::clamp(linear, 0.0f, 1.0f))));
-}
 
 struct Level {
     int width = 0, height = 0;
@@ -50,7 +36,7 @@ Level half_of(const Level& from) {
                     0.25f * (from.at(x0, y0) + from.at(x1, y0) + from.at(x0, y1) + from.at(x1, y1));
                 std::uint8_t* p = &to.rgb[3 * (row * static_cast<std::size_t>(to.width) +
                                                static_cast<std::size_t>(x))];
-                for (int c = 0; c < 3; ++c) p[c] = code_of(mean[c]);
+                for (int c = 0; c < 3; ++c) p[c] = code_of_linear(mean[c]);
             }
     });
     return to;
@@ -174,7 +160,8 @@ Ground own_ground(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
         mesh, atlas, map,
         [&](std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3& weights) {
             const Vec3f colour = colours.at(triangle, weights);
-            for (int c = 0; c < 3; ++c) ground.tiles[slot].rgb[c][texel] = code_of(colour[c]);
+            for (int c = 0; c < 3; ++c)
+                ground.tiles[slot].rgb[c][texel] = code_of_linear(colour[c]);
         });
     return ground;
 }
