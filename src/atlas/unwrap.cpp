@@ -14,6 +14,7 @@
 #include "atlas/flatten/file_uvs.h"
 #include "atlas/pack/coverage.h"
 #include "atlas/pack/pack.h"
+#include "core/memory.h"
 
 namespace tuft::atlas {
 namespace {
@@ -226,12 +227,15 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     Layout layout;
     CutMesh& cut = layout.cut;
     cut = cut_into_charts(mesh, chart_options, options.progress);
+    release_free_memory();
     watch.lap(out.report, "charts");
     merge_charts(mesh, cut, chart_options, merge_options, options.progress);
+    release_free_memory();
     watch.lap(out.report, "merge");
     const bool dear = mesh.n_triangles() >= kDearMesh;
     for (int round = 0; round < (dear ? 1 : kImprovements); ++round) {
         const bool moved = move_seams(mesh, cut, chart_options, options.progress);
+        release_free_memory();
         watch.lap(out.report, "move");
         if (!moved) break;
         merge_charts(mesh, cut, chart_options, merge_options, options.progress);
@@ -311,6 +315,7 @@ Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& given) {
     if (options.size == 0 && options.pages > 1) options.size = 4096;
     if (options.size == 0 && options.texel_size == 0) options.size = 2048;
     check_options(mesh, options);
+    keep_free_memory_below(std::size_t{8} << 20);
     if (options.uvs == UvPolicy::keep ||
         (options.uvs == UvPolicy::automatic && !options.seams.any() && options.pages == 1)) {
         UnwrapOptions file = options;  // says itself how many pages it has

@@ -97,10 +97,10 @@ Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
 Loaded load_bare(const fs::path& path, const std::string& unit, const std::string& up, Console& console) {
     mesh::RepairOptions options;
     options.progress = console.progress();
-    const Read read = read_file(path, unit, up, options, console);
+    Read read = read_file(path, unit, up, options, console);
     stroke::Model model;
     try {
-        mesh::Surface surface = mesh::build_surface(read.soup, options);
+        mesh::Surface surface = mesh::build_surface(std::move(read.soup), options);
         model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(surface.mesh));
         model.repairs = std::move(surface.report);
     } catch (const Error& error) {

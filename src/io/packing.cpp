@@ -2,30 +2,71 @@
 
 #include <zstd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <string>
 
 #include "core/error.h"
 
 namespace tuft::io {
 namespace {
 
+/// Bytes `byte` of the differences of numbers [begin, end).
 template <class T>
-void spread(const void* data, std::size_t count, std::size_t lag, unsigned char* planes) {
+void spread(const void* data, std::size_t begin, std::size_t end, std::size_t lag, std::size_t byte,
+            unsigned char* out) {
     const auto* bytes = static_cast<const unsigned char*>(data);
     const auto load = [&](std::size_t i) {
         T v;
         std::memcpy(&v, bytes + i * sizeof(T), sizeof v);
         return v;
     };
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
         const T before = i >= lag ? load(i - lag) : T{0};
         const T difference = static_cast<T>(load(i) - before);
-        for (std::size_t b = 0; b < sizeof(T); ++b)
-            planes[b * count + i] = static_cast<unsigned char>(difference >> (8 * b));
+        *out++ = static_cast<unsigned char>(difference >> (8 * byte));
     }
 }
+
+void check(std::size_t result) {
+    if (ZSTD_isError(result))
+        throw Error(std::string("compression failed: ") + ZSTD_getErrorName(result));
+}
+
+/// Compresses what it is given piece by piece.
+class Compressor {
+  public:
+    Compressor(std::size_t bytes, int level)
+        : context_(ZSTD_createCCtx(), ZSTD_freeCCtx),
+          room_(std::min(ZSTD_CStreamOutSize(), ZSTD_compressBound(bytes))) {
+        if (!context_) throw Error("compression failed: out of memory");
+        check(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, level));
+        check(ZSTD_CCtx_setPledgedSrcSize(context_.get(), bytes));
+        blob_.reserve(ZSTD_compressBound(bytes));  // taken from the machine as it is filled
+    }
+
+    void add(const unsigned char* data, std::size_t size, ZSTD_EndDirective mode) {
+        ZSTD_inBuffer in{data, size, 0};
+        for (std::size_t left = 1; mode == ZSTD_e_end ? left > 0 : in.pos < in.size;) {
+            ZSTD_outBuffer out{room_.data(), room_.size(), 0};
+            left = ZSTD_compressStream2(context_.get(), &out, &in, mode);
+            check(left);
+            blob_.insert(blob_.end(), room_.data(), room_.data() + out.pos);
+        }
+    }
+
+    std::vector<char> finish() {
+        add(nullptr, 0, ZSTD_e_end);
+        return std::move(blob_);
+    }
+
+  private:
+    std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context_;
+    std::vector<char> room_, blob_;
+};
 
 template <class T>
 void gather(const unsigned char* planes, std::size_t count, std::size_t lag, void* out) {
@@ -46,19 +87,25 @@ void gather(const unsigned char* planes, std::size_t count, std::size_t lag, voi
 
 }  // namespace
 
+// Piece by piece, so that a model of a million triangles is not held three times while it is
+// written.
 std::vector<char> pack(const void* data, std::size_t count, const Packing& packing) {
     assert(packing.element == 1 || packing.element == 4 || packing.element == 8);
-    std::vector<unsigned char> planes(count * packing.element);
-    if (packing.element == 1) spread<std::uint8_t>(data, count, packing.lag, planes.data());
-    if (packing.element == 4) spread<std::uint32_t>(data, count, packing.lag, planes.data());
-    if (packing.element == 8) spread<std::uint64_t>(data, count, packing.lag, planes.data());
-    std::vector<char> blob(ZSTD_compressBound(planes.size()));
-    const std::size_t size =
-        ZSTD_compress(blob.data(), blob.size(), planes.data(), planes.size(), packing.level);
-    if (ZSTD_isError(size))
-        throw Error(std::string("compression failed: ") + ZSTD_getErrorName(size));
-    blob.resize(size);
-    return blob;
+    constexpr std::size_t kPiece = std::size_t{1} << 17;
+    Compressor compressor(count * packing.element, packing.level);
+    std::vector<unsigned char> piece(std::min(count, kPiece));
+    for (std::size_t byte = 0; byte < packing.element; ++byte)
+        for (std::size_t begin = 0; begin < count; begin += kPiece) {
+            const std::size_t end = std::min(count, begin + kPiece);
+            if (packing.element == 1)
+                spread<std::uint8_t>(data, begin, end, packing.lag, byte, piece.data());
+            if (packing.element == 4)
+                spread<std::uint32_t>(data, begin, end, packing.lag, byte, piece.data());
+            if (packing.element == 8)
+                spread<std::uint64_t>(data, begin, end, packing.lag, byte, piece.data());
+            compressor.add(piece.data(), end - begin, ZSTD_e_continue);
+        }
+    return compressor.finish();
 }
 
 void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes,

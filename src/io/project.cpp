@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "core/files.h"
+#include "core/memory.h"
 #include "io/project_db.h"
 
 namespace fs = std::filesystem;
@@ -196,7 +197,7 @@ Project::~Project() = default;
 Project::Project(Project&&) noexcept = default;
 Project& Project::operator=(Project&&) noexcept = default;
 
-Project Project::create(const fs::path& path, const ProjectModel& model, const std::function<void(Project&)>& fill) {
+Project Project::create(const fs::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill) {
     write_atomically(path, [&](const fs::path& temporary) {
         std::error_code ec;
         fs::remove(temporary, ec);
@@ -221,6 +222,7 @@ Project Project::create(const fs::path& path, const ProjectModel& model, const s
         }
         settle_old_journal(path);
     });
+    release_free_memory();
     return open(path);
 }
 

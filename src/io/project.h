@@ -30,12 +30,24 @@ inline constexpr int kFirstFormat = 1;    ///< of projects without any of these
 /// A preset's name and TOML text.
 using PresetText = std::pair<std::string, std::string>;
 
-struct ProjectModel {
-    std::string source;       ///< file the model came from, for people
-    FileFrame frame;          ///< of that file
-    mesh::TriangleMesh mesh;  ///< metres
-    atlas::Atlas atlas;
+/// What is written of a model, where it lies: a million triangles are not copied for it.
+struct ModelToWrite {
+    std::string source;              ///< file the model came from, for people
+    FileFrame frame;                 ///< of that file
+    const mesh::TriangleMesh& mesh;  ///< metres
+    const atlas::Atlas& atlas;
     std::string substrate;  ///< TOML text
+};
+
+/// And what is read.
+struct ProjectModel {
+    std::string source;
+    FileFrame frame;
+    mesh::TriangleMesh mesh;
+    atlas::Atlas atlas;
+    std::string substrate;
+
+    operator ModelToWrite() const { return {source, frame, mesh, atlas, substrate}; }
 };
 
 /// Texels as they were after stroke `stroke_id`, to be shown without a replay.
@@ -58,7 +70,7 @@ class Project {
   public:
     /// Makes a new project in place of any file of that name, complete with what `fill` puts into
     /// it, or not at all: on any error, or a kill, what was there stays.
-    static Project create(const std::filesystem::path& path, const ProjectModel& model, const std::function<void(Project&)>& fill = {});
+    static Project create(const std::filesystem::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill = {});
     /// Opens a project. Throws `Error` for a file that is not a tuft project, is from a
     /// newer version, or is damaged (all pages are checked).
     static Project open(const std::filesystem::path& path);

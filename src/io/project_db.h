@@ -54,7 +54,7 @@ std::vector<T> get_array(SQLite::Database& db, const std::filesystem::path& path
 }
 
 /// Model and atlas (project_model.cpp). `load_model` checks sizes, indices and numbers.
-void store_model(SQLite::Database& db, const ProjectModel& model);
+void store_model(SQLite::Database& db, const ModelToWrite& model);
 ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path);
 std::uint64_t hash_of(const mesh::TriangleMesh& mesh);
 /// Its materials with their pictures as they were found (project_materials.cpp); groups come first.

@@ -104,7 +104,7 @@ std::uint64_t hash_of(const mesh::TriangleMesh& mesh) {
                      hash_span(std::span<const Vec3f>(mesh.positions)));
 }
 
-void store_model(SQLite::Database& db, const ProjectModel& model) {
+void store_model(SQLite::Database& db, const ModelToWrite& model) {
     const mesh::TriangleMesh& m = model.mesh;
     const atlas::Atlas& a = model.atlas;
     SQLite::Statement row(db,

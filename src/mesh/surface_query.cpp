@@ -182,20 +182,19 @@ SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : state_(std::make_unique<S
     state_->scene = rtcNewScene(state_->device);
     rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Embree reads 16 bytes at every vertex: its own buffers are padded, ours are not.
+    // Embree reads 16 bytes at every vertex, for which its own buffers are padded and ours are not; triangles
+    // it reads where they are.
     if (!mesh.triangles.empty()) {
         void* vertices =
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                     sizeof(Vec3f), mesh.n_vertices());
-        void* indices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), mesh.n_triangles());
-        if (!vertices || !indices) {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                                   3 * sizeof(std::uint32_t), mesh.n_triangles());
+        if (!vertices) {
             rtcReleaseGeometry(geometry);
             throw Error("cannot build the search tree of the mesh: out of memory");
         }
         std::memcpy(vertices, mesh.positions.data(), mesh.n_vertices() * sizeof(Vec3f));
-        std::memcpy(indices, mesh.triangles.data(), mesh.n_triangles() * 3 * sizeof(std::uint32_t));
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(state_->scene, geometry);
     }

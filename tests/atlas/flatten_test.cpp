@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -133,7 +135,7 @@ TEST(SeamGraph, GluedChartsAreDisks) {
         std::iota(all.begin(), all.end(), 0u);
         const double unit = std::sqrt(mesh::surface_area(m));
         const Patch patch = make_patch(m, twin, all, unit);
-        SeamGraph graph(patch, {}, 0);
+        SeamGraph graph(patch, {});
         graph.glue_developable({});
         std::vector<std::uint8_t> seam = graph.seams();
         double before = 0, after = 0;
@@ -151,6 +153,42 @@ TEST(SeamGraph, GluedChartsAreDisks) {
         }
         // Edges bent like creases count for less than their length, 0.6 of it at the least.
         EXPECT_LE(after, before / 0.6);
+    }
+}
+
+// A graph that begins with given seams keeps no more than those; it is the graph that glued its way there.
+TEST(SeamGraph, BegunWithSeamsItIsTheOneThatLeftThem) {
+    for (const test::NastyMesh& nasty : test::nasty_meshes()) {
+        SCOPED_TRACE(nasty.name);
+        const mesh::TriangleMesh& m = nasty.mesh;
+        std::vector<std::uint32_t> all(m.n_triangles());
+        std::iota(all.begin(), all.end(), 0u);
+        const Patch patch = make_patch(m, twin_half_edges(m), all, std::sqrt(mesh::surface_area(m)));
+        SeamGraph glued(patch, {});
+        glued.glue_developable({});
+        SeamGraph begun(patch, glued.seams());
+        EXPECT_EQ(begun.seams(), glued.seams());
+        // The same charts, by their triangles, areas (summed in another order) and chains.
+        std::map<std::uint32_t, std::uint32_t> number;
+        for (const std::uint32_t t : all) {
+            const auto [it, first] = number.try_emplace(glued.chart_of(t), begun.chart_of(t));
+            ASSERT_EQ(it->second, begun.chart_of(t));
+        }
+        EXPECT_EQ(number.size(), begun.n_charts_at_first());
+        for (const auto& [a, b] : number) {
+            EXPECT_EQ(glued.n_triangles(a), begun.n_triangles(b));
+            EXPECT_NEAR(glued.moments(a).area, begun.moments(b).area, 1e-12);  // of 1, all together
+        }
+        const std::vector<SeamGraph::Chain> before = glued.chains(), after = begun.chains();
+        ASSERT_EQ(before.size(), after.size());
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            EXPECT_EQ(number[before[i].chart_a], after[i].chart_a);
+            EXPECT_EQ(before[i].closed, after[i].closed);
+            auto x = glued.half_edges(before[i].id), y = begun.half_edges(after[i].id);
+            std::sort(x.begin(), x.end());
+            std::sort(y.begin(), y.end());
+            EXPECT_EQ(x, y);
+        }
     }
 }
 

@@ -84,7 +84,7 @@ TEST(Packing, EveryBitComesBack) {
     for (const std::size_t element : {std::size_t{1}, std::size_t{4}, std::size_t{8}})
         for (const std::size_t lag : {std::size_t{1}, std::size_t{3}})
             for (const std::size_t count :
-                 {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{1000}}) {
+                 {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{1000}, (std::size_t{1} << 18) + 3}) {
                 std::vector<unsigned char> data(count * element), back(count * element);
                 for (std::size_t i = 0; i < data.size(); ++i)
                     data[i] = static_cast<unsigned char>(hash_bits(1, i));

@@ -63,6 +63,13 @@ std::vector<Triangles> parts_of(const CutMesh& cut, const Triangles& triangles) 
     return parts;
 }
 
+/// The graph takes three times the memory of the patch and goes again.
+std::vector<std::uint8_t> developable_seams(const Patch& patch, const GluingLimits& limits, const ProgressFn& progress) {
+    SeamGraph graph(patch, {});
+    graph.glue_developable(limits, progress);
+    return graph.seams();
+}
+
 /// Cuts a piece that would not lie flat: by developability with limits that tighten with
 /// every cut, then by size, at last into single triangles.
 std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& piece) {
@@ -77,15 +84,8 @@ std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const
             continue;
         }
         NormalMoments all;
-        for (std::uint32_t t = 0; t < patch.triangles.size(); ++t) {
-            const Vec3 n(patch.normal[t]);
-            const double a = patch.area[t];
-            all.add({a,
-                     a * n,
-                     {a * n.x * n.x, a * n.x * n.y, a * n.x * n.z, a * n.y * n.y, a * n.y * n.z,
-                      a * n.z * n.z}});
-        }
-        SeamGraph graph(patch, {}, 0);
+        for (std::uint32_t t = 0; t < patch.triangles.size(); ++t)
+            all.add(NormalMoments::of(patch.area[t], patch.normal[t]));
         GluingLimits limits;
         limits.crease = 4;
         limits.error = 0.4 * all.error() / std::max(all.area, 1e-300);
@@ -94,8 +94,7 @@ std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const
             limits.mean_normal = 0;
             limits.area = 0.6 * all.area;
         }
-        graph.glue_developable(limits);
-        const std::vector<std::uint8_t> seam = graph.seams();
+        const std::vector<std::uint8_t> seam = developable_seams(patch, limits, {});
         std::vector<std::uint32_t> local(patch.twin);
         for (std::uint32_t h = 0; h < seam.size(); ++h)
             if (seam[h]) local[h] = kNone;
@@ -207,7 +206,7 @@ void StretchBudget::spend(std::span<const FlatChart* const> before,
 Patch whole_patch(const mesh::TriangleMesh& mesh, const CutMesh& cut) {
     std::vector<std::uint32_t> all(mesh.n_triangles());
     std::iota(all.begin(), all.end(), 0u);
-    return make_patch(mesh, cut.twin, all, cut.unit);
+    return make_patch(mesh, cut.twin, std::move(all), cut.unit);
 }
 
 std::vector<std::uint8_t> seam_flags(const CutMesh& cut) {
@@ -245,15 +244,11 @@ CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& opti
     cut.glued = cut.twin;
     cut.place.resize(mesh.n_triangles());
     cut.unit = std::max(std::sqrt(mesh::surface_area(mesh)), 1e-30);
-    Triangles all(mesh.n_triangles());
-    for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
     {
-        const Patch patch = make_patch(mesh, cut.twin, all, cut.unit);
-        SeamGraph graph(patch, {}, 0);
+        const Patch patch = whole_patch(mesh, cut);
         GluingLimits limits;
         limits.triangles = options.triangles;
-        graph.glue_developable(limits, progress);
-        std::vector<std::uint8_t> seam = graph.seams();
+        std::vector<std::uint8_t> seam = developable_seams(patch, limits, progress);
         straighten_seams(patch, seam);
         cut_along(cut, patch, seam);
     }

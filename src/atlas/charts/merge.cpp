@@ -104,9 +104,9 @@ class Merger {
           merge_(merge),
           budget_(cut, options.l2_all),
           patch_(whole_patch(mesh, cut)),
-          graph_(patch_, seam_flags(cut), 0),
-          chart_at_(mesh.n_triangles(), kNone),
-          refused_(3 * mesh.n_triangles(), 0) {
+          graph_(patch_, seam_flags(cut)),
+          chart_at_(graph_.n_charts_at_first(), kNone),
+          refused_(graph_.n_edges(), 0) {
         for (std::uint32_t c = 0; c < cut.charts.size(); ++c)
             chart_at_[graph_.chart_of(cut.charts[c].mesh.triangles[0])] = c;
         number_charts(cut);
@@ -295,7 +295,7 @@ class Merger {
     StretchBudget budget_;
     Patch patch_;
     SeamGraph graph_;
-    std::vector<std::uint32_t> chart_at_;  // by the triangle that stands for it in the graph
+    std::vector<std::uint32_t> chart_at_;  // by the graph's number
     std::vector<std::uint8_t> refused_;    // by chain
 };
 

@@ -35,26 +35,6 @@ double least_eigenvalue(const std::array<double, 6>& m) {
     return q + 2 * p * std::cos(std::acos(r) / 3 + 2 * std::numbers::pi / 3);
 }
 
-/// Means of the normals over triangles joined by an edge bent less than `kKeep`.
-std::vector<Vec3f> smoothed_normals(const Patch& patch, int rounds) {
-    constexpr float kKeepCos = 0.77f;  // 40°: creases are not rounded off
-    std::vector<Vec3f> normal = patch.normal, next(normal.size());
-    for (int round = 0; round < rounds; ++round) {
-        for (std::size_t t = 0; t < normal.size(); ++t) {
-            Vec3f sum = patch.area[t] * normal[t];
-            for (int k = 0; k < 3; ++k) {
-                const std::uint32_t g = patch.twin[3 * t + k];
-                if (g != kNone && glm::dot(normal[g / 3], normal[t]) > kKeepCos)
-                    sum += patch.area[g / 3] * normal[g / 3];
-            }
-            const float length = glm::length(sum);
-            next[t] = length > 0 ? sum / length : normal[t];
-        }
-        normal.swap(next);
-    }
-    return normal;
-}
-
 double dihedral(const Patch& patch, std::uint32_t h) {
     const std::uint32_t g = patch.twin[h];
     const double flat = kFlatTriangle * patch.length[h] * patch.length[h];
@@ -64,6 +44,14 @@ double dihedral(const Patch& patch, std::uint32_t h) {
 }
 
 }  // namespace
+
+NormalMoments NormalMoments::of(double area, const Vec3f& normal) {
+    const Vec3 n(normal);
+    return {area,
+            area * n,
+            {area * n.x * n.x, area * n.x * n.y, area * n.x * n.z, area * n.y * n.y,
+             area * n.y * n.z, area * n.z * n.z}};
+}
 
 void NormalMoments::add(const NormalMoments& m) {
     area += m.area;
@@ -83,77 +71,88 @@ double NormalMoments::error() const {
     return std::max(0.0, least_eigenvalue(c));
 }
 
-SeamGraph::SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam, int smooth)
-    : patch_(patch) {
-    const auto n = static_cast<std::uint32_t>(patch.triangles.size());
-    edge_of_.assign(3 * std::size_t{n}, kNone);
-    for (std::uint32_t h = 0; h < 3 * n; ++h) {
-        const std::uint32_t g = patch.twin[h];
-        if (g == kNone || g < h) continue;
-        edge_of_[h] = edge_of_[g] = static_cast<std::uint32_t>(half_.size());
+SeamGraph::SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam) : patch_(patch) {
+    number_edges(seam);
+    number_charts(seam);
+    count_seams_at_vertices();
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t v = 0; v < patch.n_vertices; ++v)
+        if (degree_[v] <= 2) tidy(v, changed);
+}
+
+void SeamGraph::number_edges(std::span<const std::uint8_t> seam) {
+    edge_of_.assign(patch_.twin.size(), kNone);
+    const auto is_edge = [&](std::uint32_t h) {
+        return patch_.twin[h] != kNone && patch_.twin[h] > h && (seam.empty() || seam[h]);
+    };
+    std::uint32_t n_edges = 0;
+    for (std::uint32_t h = 0; h < edge_of_.size(); ++h) n_edges += is_edge(h);
+    half_.reserve(n_edges);
+    ends_.reserve(n_edges);
+    length_.reserve(n_edges);
+    bent_.reserve(n_edges);
+    for (std::uint32_t h = 0; h < edge_of_.size(); ++h) {
+        if (!is_edge(h)) continue;
+        edge_of_[h] = edge_of_[patch_.twin[h]] = static_cast<std::uint32_t>(half_.size());
         half_.push_back(h);
+        ends_.push_back({patch_.vertex[h], patch_.vertex[next_half(h)]});
+        length_.push_back(patch_.length[h]);
+        bent_.push_back(static_cast<float>(patch_.length[h] * dihedral(patch_, h)));
     }
-    const auto n_edges = static_cast<std::uint32_t>(half_.size());
     seam_.assign(n_edges, 1);
     chain_parent_.resize(n_edges);
     std::iota(chain_parent_.begin(), chain_parent_.end(), 0u);
     tail_ = chain_parent_;
     next_.assign(n_edges, kNone);
     version_.assign(n_edges, 0);
-    ends_.resize(n_edges);
-    length_.resize(n_edges);
-    bent_.resize(n_edges);
-    chart_parent_.resize(n);
-    std::iota(chart_parent_.begin(), chart_parent_.end(), 0u);
+}
 
-    degree_.assign(patch.n_vertices, 0);
-    vertex_half_.assign(patch.n_vertices, kNone);
-    stays_.assign(patch.n_vertices, 0);
-    for (std::uint32_t h = 0; h < 3 * n; ++h) {
-        const std::uint32_t v = patch.vertex[h];
+void SeamGraph::number_charts(std::span<const std::uint8_t> seam) {
+    const auto n = static_cast<std::uint32_t>(patch_.triangles.size());
+    first_chart_.resize(n);
+    std::iota(first_chart_.begin(), first_chart_.end(), 0u);
+    for (std::uint32_t h = 0; h < seam.size(); ++h) {
+        if (seam[h]) continue;
+        const std::uint32_t a = find_root(first_chart_, h / 3);
+        const std::uint32_t b = find_root(first_chart_, patch_.twin[h] / 3);
+        first_chart_[std::max(a, b)] = std::min(a, b);
+    }
+    // A root is the first triangle of its chart, so that those before it have their numbers.
+    std::uint32_t n_charts = 0;
+    for (std::uint32_t t = 0; t < n; ++t)
+        first_chart_[t] = first_chart_[t] == t ? n_charts++ : first_chart_[first_chart_[t]];
+    chart_parent_.resize(n_charts);
+    std::iota(chart_parent_.begin(), chart_parent_.end(), 0u);
+    n_triangles_.assign(n_charts, 0);
+    moments_.resize(n_charts);
+    for (std::uint32_t t = 0; t < n; ++t) {
+        ++n_triangles_[first_chart_[t]];
+        moments_[first_chart_[t]].add(NormalMoments::of(patch_.area[t], patch_.normal[t]));
+    }
+    error_.resize(n_charts);
+    for (std::uint32_t c = 0; c < n_charts; ++c) error_[c] = moments_[c].error();
+}
+
+void SeamGraph::count_seams_at_vertices() {
+    degree_.assign(patch_.n_vertices, 0);
+    vertex_half_.assign(patch_.n_vertices, kNone);
+    stays_.assign(patch_.n_vertices, 0);
+    for (std::uint32_t h = 0; h < edge_of_.size(); ++h) {
+        const std::uint32_t v = patch_.vertex[h];
         vertex_half_[v] = h;
-        if (patch.twin[h] != kNone) continue;
-        for (const std::uint32_t w : {v, patch.vertex[next_half(h)]}) {
+        if (patch_.twin[h] != kNone) continue;
+        for (const std::uint32_t w : {v, patch_.vertex[next_half(h)]}) {
             stays_[w] = 1;
             ++degree_[w];
         }
     }
-    const std::vector<float> angle = vertex_angles(patch);
-    for (std::uint32_t v = 0; v < patch.n_vertices; ++v)
+    const std::vector<float> angle = vertex_angles(patch_);
+    for (std::uint32_t v = 0; v < patch_.n_vertices; ++v)
         if (std::abs(angle[v] - 2 * std::numbers::pi) > kSlitDefect) stays_[v] = 1;
-
-    const std::vector<Vec3f> normal = smoothed_normals(patch, smooth);
-    n_triangles_.assign(n, 1);
-    moments_.resize(n);
-    for (std::uint32_t t = 0; t < n; ++t) {
-        const Vec3 m = Vec3(normal[t]);
-        const double a = patch.area[t];
-        moments_[t] = {a,
-                       a * m,
-                       {a * m.x * m.x, a * m.x * m.y, a * m.x * m.z, a * m.y * m.y, a * m.y * m.z,
-                        a * m.z * m.z}};
+    for (const Ends& e : ends_) {
+        ++degree_[e.a];
+        ++degree_[e.b];
     }
-    for (std::uint32_t e = 0; e < n_edges; ++e) {
-        const std::uint32_t h = half_[e];
-        ends_[e] = {patch.vertex[h], patch.vertex[next_half(h)]};
-        length_[e] = patch.length[h];
-        bent_[e] = static_cast<float>(length_[e] * dihedral(patch, h));
-        if (!seam.empty() && !seam[h]) {
-            seam_[e] = 0;
-            const std::uint32_t a = find_root(chart_parent_, h / 3);
-            const std::uint32_t b = find_root(chart_parent_, patch.twin[h] / 3);
-            if (a == b) continue;
-            chart_parent_[std::max(a, b)] = std::min(a, b);
-            moments_[std::min(a, b)].add(moments_[std::max(a, b)]);
-            n_triangles_[std::min(a, b)] += n_triangles_[std::max(a, b)];
-        } else {
-            ++degree_[ends_[e].a];
-            ++degree_[ends_[e].b];
-        }
-    }
-    std::vector<std::uint32_t> changed;
-    for (std::uint32_t v = 0; v < patch.n_vertices; ++v)
-        if (degree_[v] <= 2) tidy(v, changed);
 }
 
 std::uint32_t SeamGraph::chain_of(std::uint32_t edge) const {
@@ -161,7 +160,7 @@ std::uint32_t SeamGraph::chain_of(std::uint32_t edge) const {
 }
 
 std::uint32_t SeamGraph::chart_of(std::uint32_t triangle) const {
-    return find_root(chart_parent_, triangle);
+    return find_root(chart_parent_, first_chart_[triangle]);
 }
 
 /// The chain is a whole loop, so that gluing it would leave no border.
@@ -240,6 +239,7 @@ void SeamGraph::take_away(std::uint32_t chain, std::vector<std::uint32_t>& chang
     chart_parent_[std::max(a, b)] = std::min(a, b);
     if (a != b) {
         moments_[std::min(a, b)].add(moments_[std::max(a, b)]);
+        error_[std::min(a, b)] = moments_[std::min(a, b)].error();
         n_triangles_[std::min(a, b)] += n_triangles_[std::max(a, b)];
     }
     for (std::uint32_t e = chain; e != kNone; e = next_[e]) {
@@ -272,7 +272,7 @@ double SeamGraph::cost(std::uint32_t chain, const GluingLimits& limits) const {
         return kNever;
     const double error = both.error();
     if (error > limits.error * both.area) return kNever;
-    const double growth = std::max(0.0, error - moments_[a].error() - moments_[b].error());
+    const double growth = std::max(0.0, error - error_[a] - error_[b]);
     const double small = std::min(moments_[a].area, moments_[b].area);
     // Regular meshes are full of equal costs that rounding would put in order by chance,
     // and so by the mesh's unit: a small difference by number puts them in order for good.
@@ -289,6 +289,7 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
         }
     };
     std::vector<Entry> start;
+    start.reserve(half_.size() + half_.size() / 8);  // chains that change come back before they all went
     for (std::uint32_t e = 0; e < half_.size(); ++e)
         if (seam_[e] && chain_of(e) == e) start.push_back({cost(e, limits), e, version_[e]});
 
@@ -373,7 +374,7 @@ std::vector<std::uint32_t> SeamGraph::glued_with(std::uint32_t chain) const {
 std::vector<std::uint8_t> SeamGraph::seams() const {
     std::vector<std::uint8_t> seam(edge_of_.size());
     for (std::size_t h = 0; h < seam.size(); ++h)
-        seam[h] = edge_of_[h] == kNone || seam_[edge_of_[h]];
+        seam[h] = patch_.twin[h] == kNone || (edge_of_[h] != kNone && seam_[edge_of_[h]]);
     return seam;
 }
 

@@ -30,6 +30,7 @@ struct NormalMoments {
     Vec3 first{0};
     std::array<double, 6> second{};  ///< xx, xy, xz, yy, yz, zz
 
+    static NormalMoments of(double area, const Vec3f& normal);
     void add(const NormalMoments& m);
     double error() const;
 };
@@ -45,9 +46,9 @@ class SeamGraph {
         bool closed = false;  ///< gluing it would close the surface
     };
 
-    /// `seam` [3n] marks the seams to begin with; empty: every edge is one.
-    /// `smooth` rounds of averaging are given to the normals the error is made of.
-    SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam, int smooth);
+    /// `seam` [3n] marks the seams to begin with; empty: every edge is one. Takes some 20 bytes a
+    /// triangle, and 55 for each edge that is a seam and 100 for each chart.
+    SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam);
 
     /// Glues in the order of least (error growth + small area) / length while the limits hold.
     void glue_developable(const GluingLimits& limits, const ProgressFn& progress = {});
@@ -61,7 +62,10 @@ class SeamGraph {
     std::vector<std::uint32_t> glued_with(std::uint32_t chain) const;
     void glue(std::uint32_t chain);
 
-    std::uint32_t chart_of(std::uint32_t triangle) const;  ///< a triangle that stands for the chart
+    /// A number below that of the charts to begin with: the least of those glued together.
+    std::uint32_t chart_of(std::uint32_t triangle) const;
+    std::size_t n_charts_at_first() const { return chart_parent_.size(); }
+    std::size_t n_edges() const { return half_.size(); }  ///< ids of chains lie below
     const NormalMoments& moments(std::uint32_t chart) const { return moments_[chart]; }
     std::uint32_t n_triangles(std::uint32_t chart) const { return n_triangles_[chart]; }
     std::vector<std::uint8_t> seams() const;  ///< [3n], borders included
@@ -70,6 +74,9 @@ class SeamGraph {
     struct Ends {
         std::uint32_t a, b;
     };
+    void number_edges(std::span<const std::uint8_t> seam);
+    void number_charts(std::span<const std::uint8_t> seam);
+    void count_seams_at_vertices();
     double cost(std::uint32_t chain, const GluingLimits& limits) const;
     std::uint32_t chain_of(std::uint32_t edge) const;
     bool is_closed(std::uint32_t chain) const;
@@ -79,15 +86,17 @@ class SeamGraph {
     int seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>& edges) const;
 
     const Patch& patch_;
-    std::vector<std::uint32_t> edge_of_;  // [3n]
+    std::vector<std::uint32_t> edge_of_;  // [3n], kNone where there was no seam to begin with
     std::vector<std::uint32_t> half_;     // [n_edges] one half-edge each
     std::vector<std::uint8_t> seam_;      // [n_edges]
+    std::vector<std::uint32_t> first_chart_;  // [n]
     mutable std::vector<std::uint32_t> chain_parent_, chart_parent_;
     std::vector<std::uint32_t> next_, tail_;  // lists of the edges of a chain
     std::vector<Ends> ends_;
     std::vector<float> length_, bent_;  // of chains: sum of length, of length × angle
     std::vector<std::uint32_t> version_;
     std::vector<NormalMoments> moments_;      // of charts
+    std::vector<double> error_;               // of charts: dear to find anew for each of their chains
     std::vector<std::uint32_t> n_triangles_;  // of charts
     std::vector<std::uint32_t> vertex_half_;  // [n_vertices] a half-edge that leaves it
     std::vector<std::uint32_t> degree_;       // seam edges at a vertex, borders included

@@ -146,11 +146,10 @@ Rotation closest_rotation(const std::array<std::uint32_t, 3>& f, const Reference
 }
 
 /// Energy of a start, per area.
-double start_energy(const ChartMesh& chart, const std::vector<Reference>& references,
-                    const std::vector<Vec2>& uv) {
+double start_energy(const ChartMesh& chart, const std::vector<Vec2>& uv) {
     double energy = 0;
-    for (std::size_t t = 0; t < references.size(); ++t)
-        energy += closest_rotation(chart.faces[t], references[t], uv).energy;
+    for (std::size_t t = 0; t < chart.faces.size(); ++t)
+        energy += closest_rotation(chart.faces[t], reference_triangle(chart, t), uv).energy;
     return energy / std::max(chart.area, 1e-300);
 }
 
@@ -214,10 +213,12 @@ double fit_rotations(const ChartMesh& chart, const std::vector<Reference>& refer
     return energy;
 }
 
-double arap(const ChartMesh& chart, const std::vector<Reference>& references,
-            std::vector<Vec2>& uv, const ArapOptions& options) {
+}  // namespace
+
+double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options) {
     const std::size_t n = chart.n_vertices();
     if (n < 3) return 0;
+    const std::vector<Reference> references = reference_triangles(chart);
     const double area = std::max(chart.area, 1e-300);
     Factor factor;
     std::vector<Vec2> rhs(n);
@@ -240,12 +241,6 @@ double arap(const ChartMesh& chart, const std::vector<Reference>& references,
         for (std::size_t v = 1; v < n; ++v) uv[v] = pin + rhs[v];
     }
     return energy;
-}
-
-}  // namespace
-
-double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options) {
-    return arap(chart, reference_triangles(chart), uv, options);
 }
 
 bool untangle(const ChartMesh& chart, std::vector<Vec2>& uv) {
@@ -322,9 +317,8 @@ std::vector<Vec2> flatten(const ChartMesh& chart, const ArapOptions& options) {
     uv.clear();
     // Where the projection does not shrink much it is as good a start as any.
     constexpr double kGoodStart = 0.15;
-    const std::vector<Reference> references = reference_triangles(chart);
     std::vector<std::vector<Vec2>> starts{project_plane(chart, false)};
-    if (starts[0].empty() || start_energy(chart, references, starts[0]) > kGoodStart)
+    if (starts[0].empty() || start_energy(chart, starts[0]) > kGoodStart)
         starts.emplace(starts.begin());
     else
         starts.emplace_back();
@@ -332,7 +326,7 @@ std::vector<Vec2> flatten(const ChartMesh& chart, const ArapOptions& options) {
         if (start.empty())
             if (auto conformal = lscm(chart)) start = std::move(*conformal);
         if (start.empty()) continue;
-        arap(chart, references, start, options);
+        arap(chart, start, options);
         if (!all_finite(start)) continue;
         uv = std::move(start);
         if (all_positive(chart, uv)) break;

@@ -4,10 +4,16 @@
 #include <CGAL/Surface_mesh_parameterization/parameterize.h>
 
 #include <cmath>
+#include <mutex>
 
 #include "atlas/flatten/flatten.h"
 
 namespace tuft::atlas {
+namespace {
+
+constexpr std::size_t kLarge = 50000;  // triangles
+
+}  // namespace
 
 std::optional<std::vector<Vec2>> lscm(const ChartMesh& chart) {
     namespace Smp = CGAL::Surface_mesh_parameterization;
@@ -15,6 +21,11 @@ std::optional<std::vector<Vec2>> lscm(const ChartMesh& chart) {
     using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
     // CGAL crashes on anything but a disk instead of refusing it.
     if (!chart.disk) return std::nullopt;
+
+    // Takes some 700 bytes a triangle for a second or two: large charts one after the other.
+    static std::mutex large;
+    std::unique_lock<std::mutex> turn(large, std::defer_lock);
+    if (chart.faces.size() > kLarge) turn.lock();
 
     Mesh mesh;
     mesh.reserve(chart.n_vertices(), 3 * chart.faces.size(), chart.faces.size());

@@ -55,21 +55,31 @@ Piece make_piece(const TexelTile& tile, const TexelShape& shape, std::uint32_t s
     return piece;
 }
 
-/// A place where pieces i < j meet: border point and the normals on both sides.
+/// A place where pieces i < j meet. There are hundreds of thousands.
 struct Meeting {
     std::uint32_t i, j;
-    double distance2;  ///< to the middle between the centres
-    Vec3 point, normal_i, normal_j;
+    double distance2;               ///< of `point` to the middle between the centres
+    Vec3 point;                     ///< on the border
     std::uint8_t texel_i, texel_j;  ///< beside the point, on either side
-    Vec3 fold{0};  ///< unit, along the edge over which the sides unfold; zero: along n_i × n_j
+    std::uint32_t seam = kNone;     ///< its `Sides` where a seam lies between
 
     auto key() const { return std::tie(i, j, distance2, point.x, point.y, point.z); }
+};
+
+/// The surface on both sides of a meeting.
+struct Sides {
+    Vec3 normal_i, normal_j;
+    Vec3 fold{0};  ///< unit, along the edge over which the sides unfold; zero: along n_i × n_j
+};
+
+struct Meetings {
+    std::vector<Meeting> all;
+    std::vector<Sides> seams;
 };
 
 void put_in_order(Meeting& m) {
     if (m.i < m.j) return;
     std::swap(m.i, m.j);
-    std::swap(m.normal_i, m.normal_j);
     std::swap(m.texel_i, m.texel_j);
 }
 
@@ -79,14 +89,11 @@ void set_distance(Meeting& m, const std::vector<Piece>& pieces) {
     m.distance2 = glm::dot(d, d);
 }
 
-/// Keeps the meeting nearest to the middle for each pair.
-void keep_best(std::vector<Meeting>& meetings, const Meeting& m) {
-    for (Meeting& other : meetings) {
-        if (other.i != m.i || other.j != m.j) continue;
-        if (m.key() < other.key()) other = m;
-        return;
-    }
-    meetings.push_back(m);
+/// Where the meeting of m's pair is to be kept, if it is nearer to the middle than any so far.
+Meeting* place_of_best(std::vector<Meeting>& meetings, const Meeting& m) {
+    for (Meeting& other : meetings)
+        if (other.i == m.i && other.j == m.j) return m.key() < other.key() ? &other : nullptr;
+    return &meetings.emplace_back(m);
 }
 
 /// Border point of two neighbour texels: their middle where the surface is smooth; at a
@@ -124,13 +131,11 @@ void meet_inside_charts(const TexelMap& map, const std::vector<Piece>& pieces, s
             const Vec3 pa(map.position(slot, t)), pb(map.position(other.slot, other.texel));
             const double reach = std::max(map.reach[slot], map.reach[other.slot]);
             if (glm::dot(pa - pb, pa - pb) > reach * reach) continue;
-            Vec3 na(map.normal(slot, t)), nb(map.normal(other.slot, other.texel));
-            Meeting m{i,  j, 0, border_point(pa, na, pb, nb, reach), na, nb, static_cast<std::uint8_t>(t),
-                      other.texel};
-            if (glm::dot(na, nb) > kCreaseCos) m.normal_i = m.normal_j = glm::normalize(na + nb);
+            const Vec3 na(map.normal(slot, t)), nb(map.normal(other.slot, other.texel));
+            Meeting m{i, j, 0, border_point(pa, na, pb, nb, reach), static_cast<std::uint8_t>(t), other.texel};
             put_in_order(m);
             set_distance(m, pieces);
-            keep_best(found, m);
+            if (Meeting* const place = place_of_best(found, m)) *place = m;
         }
     }
 }
@@ -153,7 +158,7 @@ Vec3 edge_direction(const mesh::TriangleMesh& mesh, const SeamEdge& edge) {
 
 void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
                      const std::vector<Piece>& pieces, const SeamEdge& edge,
-                     std::vector<SeamSample>& samples, std::vector<Meeting>& found) {
+                     std::vector<SeamSample>& samples, Meetings& found) {
     samples.clear();
     sample_seam(mesh, atlas, edge, kSeamSpacing, samples);
     for (const SeamSample& s : samples) {
@@ -164,15 +169,22 @@ void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const T
                   map.piece_start[b.slot] + map.tiles[b.slot].piece[b.texel],
                   0,
                   s.position,
-                  s.a.normal,
-                  s.b.normal,
                   a.texel,
-                  b.texel,
-                  edge_direction(mesh, edge)};
+                  b.texel};
         if (m.i == m.j) continue;
+        Sides sides{s.a.normal, s.b.normal, edge_direction(mesh, edge)};
+        if (m.i > m.j) std::swap(sides.normal_i, sides.normal_j);
         put_in_order(m);
         set_distance(m, pieces);
-        keep_best(found, m);
+        Meeting* const place = place_of_best(found.all, m);
+        if (!place) continue;
+        m.seam = place->seam;
+        if (m.seam == kNone) {
+            m.seam = static_cast<std::uint32_t>(found.seams.size());
+            found.seams.emplace_back();
+        }
+        found.seams[m.seam] = sides;
+        *place = m;
     }
 }
 
@@ -226,12 +238,20 @@ Vec2 unfolded(const Frame& i, const Frame& j, const Vec3& fold) {
     return Vec2{a.x * b.x + a.y * b.y, a.y * b.x - a.x * b.y} / lengths;
 }
 
+Sides sides_of(const TexelMap& map, const Meeting& m, const std::vector<Piece>& pieces, const std::vector<Sides>& seams) {
+    if (m.seam != kNone) return seams[m.seam];
+    const Vec3 ni(map.normal(pieces[m.i].slot, m.texel_i)), nj(map.normal(pieces[m.j].slot, m.texel_j));
+    if (!(glm::dot(ni, nj) > kCreaseCos)) return {ni, nj};
+    const Vec3 mean = glm::normalize(ni + nj);
+    return {mean, mean};
+}
+
 /// The motion i → j of a meeting: hop = log_i(q) − R log_j(q), R from carrying both tangents
 /// to the border and j's over the normals on both sides of it.
-PieceEdge edge_of(const TexelMap& map, const Meeting& m, const std::vector<Piece>& pieces) {
-    const Way i = way_to_border(map, pieces[m.i], m.texel_i, m.point, m.normal_i);
-    const Way j = way_to_border(map, pieces[m.j], m.texel_j, m.point, m.normal_j);
-    const Vec2 turn = unfolded(i.frame, j.frame, m.fold);
+PieceEdge edge_of(const TexelMap& map, const Meeting& m, const Sides& sides, const std::vector<Piece>& pieces) {
+    const Way i = way_to_border(map, pieces[m.i], m.texel_i, m.point, sides.normal_i);
+    const Way j = way_to_border(map, pieces[m.j], m.texel_j, m.point, sides.normal_j);
+    const Vec2 turn = unfolded(i.frame, j.frame, sides.fold);
     const Vec2 li = i.place, lj = j.place;
     return {m.j, static_cast<float>(li.x - (turn.x * lj.x - turn.y * lj.y)),
             static_cast<float>(li.y - (turn.y * lj.x + turn.x * lj.y)), static_cast<float>(turn.x),
@@ -242,14 +262,32 @@ PieceEdge inverse(const PieceEdge& e, std::uint32_t from) {
     return {from, -(e.c * e.hop_u + e.s * e.hop_v), -(e.c * e.hop_v - e.s * e.hop_u), e.c, -e.s};
 }
 
-void store_edges(const TexelMap& map, std::vector<Meeting>& meetings, PieceGraph& graph) {
+/// Adds the parts in order, and empties them.
+void gather(std::vector<Meetings>& parts, Meetings& all) {
+    std::size_t n = all.all.size();
+    for (const Meetings& part : parts) n += part.all.size();
+    all.all.reserve(n);
+    for (Meetings& part : parts) {
+        const auto first = static_cast<std::uint32_t>(all.seams.size());
+        for (Meeting& m : part.all) {
+            if (m.seam != kNone) m.seam += first;
+            all.all.push_back(m);
+        }
+        all.seams.insert(all.seams.end(), part.seams.begin(), part.seams.end());
+        part = {};
+    }
+}
+
+void store_edges(const TexelMap& map, Meetings& found, PieceGraph& graph) {
+    std::vector<Meeting>& meetings = found.all;
     std::sort(meetings.begin(), meetings.end(),
               [](const Meeting& a, const Meeting& b) { return a.key() < b.key(); });
     const auto same = [](const Meeting& a, const Meeting& b) { return a.i == b.i && a.j == b.j; };
     meetings.erase(std::unique(meetings.begin(), meetings.end(), same), meetings.end());
     std::vector<PieceEdge> forward(meetings.size());
     parallel_for(meetings.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) forward[k] = edge_of(map, meetings[k], graph.pieces);
+        for (std::size_t k = begin; k < end; ++k)
+            forward[k] = edge_of(map, meetings[k], sides_of(map, meetings[k], graph.pieces, found.seams), graph.pieces);
     });
     graph.edge_start.assign(graph.n_pieces() + 1, 0);
     for (const Meeting& m : meetings) {
@@ -266,52 +304,6 @@ void store_edges(const TexelMap& map, std::vector<Meeting>& meetings, PieceGraph
         graph.edges[next[meetings[k].j]++] = inverse(forward[k], meetings[k].i);
     for (std::size_t k = 0; k < meetings.size(); ++k)
         graph.edges[next[meetings[k].i]++] = forward[k];
-}
-
-/// Barycentric weights of the point of the triangle that is near `p`: the projection to
-/// its plane, clamped.
-Vec3 clamped_weights(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const Vec3& p) {
-    const Vec3 a = mesh.position(triangle, 0);
-    const Vec3 e1 = mesh.position(triangle, 1) - a, e2 = mesh.position(triangle, 2) - a;
-    const Vec3 n = glm::cross(e1, e2);
-    const double nn = glm::dot(n, n);
-    if (!(nn > 0)) return {1, 0, 0};
-    const double b1 = glm::dot(glm::cross(p - a, e2), n) / nn;
-    const double b2 = glm::dot(glm::cross(e1, p - a), n) / nn;
-    const Vec3 w = glm::max(Vec3{1 - b1 - b2, b1, b2}, Vec3{0});
-    return w / (w.x + w.y + w.z);
-}
-
-/// Covered texel within `search` texels of the triangle's place in the atlas that is
-/// nearest to `p` in space.
-TexelRef texel_near(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                    std::uint32_t triangle, const Vec3& p, int search) {
-    const Vec3 w = clamped_weights(mesh, triangle, p);
-    Vec2 uv{0};
-    for (int k = 0; k < 3; ++k)
-        uv += w[k] * Vec2(atlas.corner_uvs[3 * std::size_t{triangle} + k]) * double(atlas.size);
-    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return {};
-    const auto x = static_cast<std::int64_t>(std::floor(std::clamp(uv.x, 0.0, double(atlas.size))));
-    const auto y = static_cast<std::int64_t>(std::floor(std::clamp(uv.y, 0.0, double(atlas.size))));
-    TexelRef best;
-    double best_distance = std::numeric_limits<double>::infinity();
-    for (std::int64_t dy = -search; dy <= search; ++dy) {
-        for (std::int64_t dx = -search; dx <= search; ++dx) {
-            const TexelRef ref = texel_ref(map, x + dx, y + dy);
-            if (!ref.valid()) continue;
-            const std::uint8_t piece = map.tiles[ref.slot].piece[ref.texel];
-            if (map.piece_chart[map.piece_start[ref.slot] + piece] !=
-                atlas.triangle_chart[triangle])
-                continue;
-            const Vec3 d = Vec3(map.position(ref.slot, ref.texel)) - p;
-            const double distance = glm::dot(d, d);
-            const double reach = (search + 1) * double(map.reach[ref.slot]);
-            if (distance >= best_distance || distance > reach * reach) continue;
-            best = ref;
-            best_distance = distance;
-        }
-    }
-    return best;
 }
 
 /// Tells pieces on which sides the surface ends.
@@ -349,25 +341,6 @@ Frame frame_of(const Piece& piece) {
     return f;
 }
 
-TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                  std::uint32_t triangle, const Vec3& position) {
-    if (triangle >= mesh.n_triangles()) return {};
-    constexpr std::size_t kMaxVisited = 64;
-    std::array<std::uint32_t, kMaxVisited> queue{triangle};
-    std::size_t n = 1;
-    for (std::size_t i = 0; i < n; ++i) {
-        const TexelRef ref = texel_near(mesh, atlas, map, queue[i], position, 1);
-        if (ref.valid()) return ref;
-        for (int k = 0; k < 3 && n < kMaxVisited; ++k) {
-            const std::uint32_t next = mesh.neighbours[3 * std::size_t{queue[i]} + k];
-            if (next >= mesh.n_triangles()) continue;
-            if (std::find(queue.begin(), queue.begin() + n, next) == queue.begin() + n)
-                queue[n++] = next;
-        }
-    }
-    return texel_near(mesh, atlas, map, triangle, position, 4);
-}
-
 PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                              const TexelMap& map, const ProgressFn& progress) {
     report(progress, "piece graph", 0);
@@ -387,7 +360,7 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
     });
 
     constexpr std::size_t kSlots = 64;
-    std::vector<std::vector<Meeting>> by_slots((n_slots + kSlots - 1) / kSlots);
+    std::vector<Meetings> by_slots((n_slots + kSlots - 1) / kSlots);
     parallel_for(by_slots.size(), 1, [&](std::size_t begin, std::size_t end) {
         std::vector<Meeting> found;
         for (std::size_t k = begin; k < end; ++k) {
@@ -395,7 +368,7 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
             for (std::size_t slot = k * kSlots; slot < last; ++slot) {
                 found.clear();
                 meet_inside_charts(map, graph.pieces, static_cast<std::uint32_t>(slot), found);
-                by_slots[k].insert(by_slots[k].end(), found.begin(), found.end());
+                by_slots[k].all.insert(by_slots[k].all.end(), found.begin(), found.end());
             }
         }
     });
@@ -403,7 +376,7 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
 
     const std::vector<SeamEdge> seams = find_seams(mesh, atlas);
     constexpr std::size_t kChunk = 64;
-    std::vector<std::vector<Meeting>> by_chunk((seams.size() + kChunk - 1) / kChunk);
+    std::vector<Meetings> by_chunk((seams.size() + kChunk - 1) / kChunk);
     parallel_for(by_chunk.size(), 1, [&](std::size_t begin, std::size_t end) {
         std::vector<SeamSample> samples;
         for (std::size_t chunk = begin; chunk < end; ++chunk) {
@@ -412,17 +385,9 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                 meet_over_seams(mesh, atlas, map, graph.pieces, seams[e], samples, by_chunk[chunk]);
         }
     });
-    std::vector<Meeting> all;
-    std::size_t n_all = 0;
-    for (const auto* parts : {&by_slots, &by_chunk})
-        for (const auto& m : *parts) n_all += m.size();
-    all.reserve(n_all);
-    for (auto* parts : {&by_slots, &by_chunk}) {
-        for (auto& m : *parts) {
-            all.insert(all.end(), m.begin(), m.end());
-            std::vector<Meeting>().swap(m);
-        }
-    }
+    Meetings all;
+    gather(by_slots, all);
+    gather(by_chunk, all);
     store_edges(map, all, graph);
     find_open_borders(mesh, atlas, map, graph.pieces);
     report(progress, "piece graph", 1);

@@ -5,6 +5,7 @@
 
 #include "atlas/texels/border_cells.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 
 namespace tuft::atlas {
@@ -312,7 +313,7 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
     map.tiles_per_side = (atlas.size + kTile - 1) / kTile;
     map.texel_size = atlas.texel_size;
     const std::uint32_t side = map.tiles_per_side;
-    const Bands bands = sort_into_bands(mesh, atlas, side);
+    Bands bands = sort_into_bands(mesh, atlas, side);
 
     std::vector<std::uint8_t> occupied(std::size_t{side} * side, 0);
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
@@ -365,6 +366,10 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         map.piece_start.push_back(static_cast<std::uint32_t>(map.piece_chart.size()));
     }
     for (const auto& b : boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
+    bands = {};
+    charts.clear();
+    boxes.clear();
+    release_free_memory();
     for (const BorderCell& c : build_border_cells(mesh, atlas, map, true).cells)
         map.tiles[c.texel.slot].area[c.texel.texel] = static_cast<float>(c.area);
     report(progress, "texel map", 1);

@@ -1,11 +1,11 @@
 #include "stroke/painting/model.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <string>
+
+#include "core/memory.h"
 
 namespace tuft::stroke {
 namespace {
@@ -27,20 +27,14 @@ void check_memory(std::uint32_t size, atlas::TexelStore texels, std::size_t limi
                     " MiB are free; choose a smaller --atlas-size or a larger --texel-size");
 }
 
-/// Hands back to the system what the heap holds and nobody uses: 250 MB of a million triangles'
-/// charts would otherwise stay beside the texels.
-void release_free_memory() {
-#ifdef __GLIBC__
-    ::malloc_trim(0);
-#endif
-}
-
 void finish(Model& model, atlas::TexelStore texels, const ProgressFn& progress) {
     release_free_memory();
+    keep_free_memory_below(std::size_t{1} << 20);  // few large blocks from here on
     report(progress, "search tree", 0);
     model.query = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
     report(progress, "search tree", 1);
     model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress, texels);
+    release_free_memory();
     model.pieces = atlas::build_piece_graph(*model.mesh, model.atlas, model.texels, progress);
     model.ground = ink::own_ground(*model.mesh, model.atlas, model.texels);
     release_free_memory();
