@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/error.h"
 
@@ -69,7 +70,19 @@ double part_within(const ReservoirLayout& l, std::size_t i, const Reach& reach) 
     return part * std::clamp((std::abs(reach.side) - from_side) / kSoftEdge + 0.5, 0.0, 1.0);
 }
 
-void flow_step(Reservoir& tuft, std::vector<Content>& change, std::vector<double>& total) {
+/// Planes of which some cell holds something.
+std::vector<int> planes_in(const Reservoir& tuft) {
+    Content most{};
+    for (const Content& c : tuft.content)
+        for (int p = 0; p < kPlanes; ++p) most[p] = std::max(most[p], c[p]);
+    std::vector<int> planes;
+    for (int p = 0; p < kPlanes; ++p)
+        if (most[p] > 0) planes.push_back(p);
+    return planes;
+}
+
+void flow_step(Reservoir& tuft, double seconds, std::span<const int> planes, std::vector<Content>& change,
+               std::vector<double>& total) {
     const std::size_t n = tuft.content.size();
     for (std::size_t i = 0; i < n; ++i) {
         change[i].fill(0);
@@ -77,19 +90,19 @@ void flow_step(Reservoir& tuft, std::vector<Content>& change, std::vector<double
     }
     for (const CellLink& link : tuft.links) {
         const double qa = total[link.a], qb = total[link.b];
-        const double net = kFlowStep * link.flow * (qa / tuft.room[link.a] - qb / tuft.room[link.b]);
-        const double exchange = kFlowStep * link.mixing * std::min(qa, qb);
+        const double net = seconds * link.flow * (qa / tuft.room[link.a] - qb / tuft.room[link.b]);
+        const double exchange = seconds * link.mixing * std::min(qa, qb);
         // Out of a and out of b, each of its own mixture.
         const double out_a = exchange + std::max(net, 0.0), out_b = exchange + std::max(-net, 0.0);
         const double part_a = qa > 0 ? out_a / qa : 0, part_b = qb > 0 ? out_b / qb : 0;
-        for (int p = 0; p < kPlanes; ++p) {
+        for (const int p : planes) {
             const double f = part_a * tuft.content[link.a][p] - part_b * tuft.content[link.b][p];
             change[link.a][p] -= f;
             change[link.b][p] += f;
         }
     }
     for (std::size_t i = 0; i < n; ++i)
-        for (int p = 0; p < kPlanes; ++p) tuft.content[i][p] += change[i][p];
+        for (const int p : planes) tuft.content[i][p] += change[i][p];
 }
 
 /// Calls f(cell, part) for what a touch takes part in, in order.
@@ -272,17 +285,19 @@ void absorb(Reservoir& tuft, const Content& lifted, const Touch& touch) {
 Mix mix_at(const Reservoir& tuft, const Touch& touch) { return mix_over(tuft, touch); }
 double saturation_at(const Reservoir& tuft, const Touch& touch) { return saturation_over(tuft, touch); }
 
-void flow(Reservoir& tuft, double dt) {
+void flow(Reservoir& tuft, double dt, FlowTo to) {
     if (tuft.links.empty() || !(dt > 0)) return;
     tuft.unspent += dt;
     // Half a part in a million of a step: sums of times that mean a whole step give one.
     const double due = std::floor(tuft.unspent / kFlowStep + 5e-7);
-    if (!(due >= 1)) return;
+    if (!(due >= 1) && to == FlowTo::whole_step) return;
     tuft.unspent = std::max(0.0, tuft.unspent - due * kFlowStep);
+    const std::vector<int> planes = planes_in(tuft);
     std::vector<Content> change(tuft.content.size());
     std::vector<double> total(tuft.content.size());
     const std::size_t steps = std::min(static_cast<std::size_t>(std::min(due, 1e9)), kMostSteps);
-    for (std::size_t k = 0; k < steps; ++k) flow_step(tuft, change, total);
+    for (std::size_t k = 0; k < steps; ++k) flow_step(tuft, kFlowStep, planes, change, total);
+    if (to == FlowTo::now) flow_step(tuft, std::exchange(tuft.unspent, 0), planes, change, total);
 }
 
 double shed(const Reservoir& tuft, const Drain& drain, double dt) {
@@ -322,7 +337,7 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
     const double asked = ink.film * contact.width;
     double target = ink.film * std::min(1.0, 0.85 + 0.3 * k);
     if (asked > 0) target *= std::max(-std::expm1(-offered / asked), contact.by_hair ? kThread : 0.0);
-    if (contact.area > 0) target = std::min(target, left / contact.area);
+    if (contact.area > 0) target = std::min(target, std::max(0.0, left - contact.owed) / contact.area);
     out.target = static_cast<float>(target);
     return out;
 }

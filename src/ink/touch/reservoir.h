@@ -106,15 +106,18 @@ void absorb(Reservoir& tuft, const Reservoir::Content& lifted, const Touch& touc
 Mix mix_at(const Reservoir& tuft, const Touch& touch);
 double saturation_at(const Reservoir& tuft, const Touch& touch);
 
+/// How far `flow` goes.
+enum class FlowTo { whole_step, now };
+
 /// Lets the ink move in the hair for `dt` seconds: between linked cells i and j
 ///
 ///     F = g (s_i − s_j),   s = content over room,
 ///
 /// of the giver's mixture, and a slow exchange of equal parts that makes mixtures alike. In
 /// steps of 5 ms on the tuft's own clock, so any division of a time gives the same within a
-/// step. What one cell loses another gains: the sum of each plane is kept to rounding.
-/// About 2 µs a step for 40 bundles of 4 cells.
-void flow(Reservoir& tuft, double dt);
+/// step; to `now` also what is left of a step, so that nothing jumps. What one cell loses another gains: the sum of
+/// each plane is kept to rounding. About 1 µs a step for 40 bundles of 4 cells.
+void flow(Reservoir& tuft, double dt, FlowTo to = FlowTo::whole_step);
 
 /// How liquid that hangs on a tuft runs down it.
 struct Drain {
@@ -145,6 +148,7 @@ struct StampContact {
     double moment_factor = 1;  ///< k = |M| / M_max of the tuft, 0–1
     double width = 0;          ///< metres across the motion, gaps between hairs left out
     double area = 0;           ///< m² of the contact patch
+    double owed = 0;           ///< film·m² of what the tuft still holds that is laid down already
     bool by_hair = false;      ///< single hairs touch, which leave a film of their own thickness or none
     std::span<const float> touch = {};  ///< as `Touch`; empty: the whole tuft alike
 };

@@ -249,7 +249,7 @@ void Painting::draw_poses() {
         h.tuft.ink_left = h.reservoir.fullness();
         h.tuft.wetness = wetness_of(h.reservoir);
         const double dt = h.moved ? pose.time - h.last_time : 0.0;
-        ink::flow(h.reservoir, dt);
+        ink::flow(h.reservoir, dt, h.by_hair ? ink::FlowTo::now : ink::FlowTo::whole_step);
         // A hair that painted before comes through the air, as it sprang back.
         if (!h.moved && h.tuft.posed) brush::step(h.tuft, pose, {}, 0);
         contact::Result contact =
@@ -282,6 +282,7 @@ void Painting::draw_poses() {
         const double along = glm::length(shift);
         const double up = std::abs(glm::dot(way, contact.frame.n));
         h.lands = up > 0 ? smooth_step((up / (up + along) - kSlants) / (kPlunges - kSlants)) : 0;
+        if (h.by_hair) h.pay(h.instalment);
         Stamp stamp = h.make_stamp(contact, dt);
         if (stamp.footprint.empty()) {
             h.was_touching = false;
@@ -297,6 +298,7 @@ void Painting::draw_poses() {
             .width = h.closed_area > 0 ? area / std::sqrt(h.closed_area) : std::sqrt(area),
             // A batch shares what is left; mixed ink comes stamp by stamp.
             .area = area * (h.mixed || h.paste ? 1.0 : static_cast<double>(Stamper::kBatch)),
+            .owed = h.owed,
             .by_hair = stamp.by_hair,
             .touch = h.touched};
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
@@ -327,6 +329,7 @@ StrokeReport Painting::finish_hand() {
     h.resampler.finish(h.poses);
     draw_poses();
     h.flush();
+    h.pay(h.owed);
     atlas::SeamLinks of_palette;
     const auto links = [&]() -> const atlas::SeamLinks& {
         if (h.model == model_) return seams();

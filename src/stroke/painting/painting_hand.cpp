@@ -22,6 +22,7 @@ constexpr double kGrainFilm = 7.5e-6;
 constexpr double kRests = 1;            // rms heights over the mean of the grain that dry hair is held up by its hills
 constexpr double kSoakLength = 0.2e-3;    // metres of travel over which ink comes to the parts of the hair that touch
 constexpr double kLieLength = 1e-3;     // metres of hair on the surface that turn the grid of its ink
+constexpr double kClings = 0.97;        // wetness below which hair that hangs together parts: it closes again at 1
 constexpr double kSplays = 0.4;         // lack of wetness at which no water holds the tip together
 
 footprint::StampOptions stamp_options(const Settings& settings) {
@@ -68,9 +69,20 @@ void Painting::Hand::flush() {
     float sum = 0;
     for (const float t : touch) sum += t;
     for (float& t : touch) t /= sum;
-    ink::take(reservoir, given, touch);
+    pay(owed);
+    owed = given;
+    instalment = given / static_cast<double>(Stamper::kBatch);
+    owed_by = std::move(touch);
     touch.clear();
+    if (!by_hair) pay(owed);
     report.ink_given += given;
+}
+
+void Painting::Hand::pay(double amount) {
+    amount = std::min(amount, owed);
+    if (!(amount > 0)) return;
+    ink::take(reservoir, amount, owed_by);
+    owed -= amount;
 }
 
 void Painting::Hand::move_on(const brush::Pose& pose, double dt) {
@@ -174,7 +186,8 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
 
     Stamp stamp;
     // On the palette the pool itself fills the gaps of dry hair.
-    const bool closed = least >= 1 || stroke.layer == kPaletteLayer;
+    const bool closed = least >= (by_hair ? 1 : kClings) || stroke.layer == kPaletteLayer;
+    by_hair = !closed;
     closed_area = 0;
     const double amount = closed ? 0 : std::clamp((1 - mean) / kSplays, 0.0, 1.0);
     footprint::splay(trails, tracks, slid, tuft.preset.length, amount);

@@ -46,6 +46,9 @@ struct Painting::Hand {
     Frame lay_frame;
     ink::Touch touched;            // by the last stamp
     ink::Touch touch;              // of the stamps since the last flush, summed
+    double owed = 0, instalment = 0;  // film·m² of the last batch that the reservoir still holds; of it each stamp takes so much
+    ink::Touch owed_by;            // of the stamps of that batch
+    bool by_hair = false;          // the last stamp has gaps
     double closed_area = 0;        // m², of the last stamp with its gaps; 0: it has none
     double parted = 0;             // travel up to which bundles have parted
     bool mixed = false;            // the tuft holds several inks, or thicker ink on one side
@@ -64,8 +67,11 @@ struct Painting::Hand {
     Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& on, ink::Canvas& canvas,
          const ink::Substrate& ground, double step_, double texel);
 
-    /// Lays down the stamps that were added, and takes their ink from the tuft.
+    /// Lays down the stamps that were added, and takes their ink from the tuft: hair that is half dry shows every
+    /// hundredth of its ink, and gives a batch's evenly over the next.
     void flush();
+    /// Takes so much of what is owed.
+    void pay(double amount);
     void move_on(const brush::Pose& pose, double dt);
     /// Bending since the last pose mixes what the bundles hold; keeps the tuft as it is now.
     void bend(brush::TuftState now, const brush::Pose& pose);
