@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <span>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -122,16 +123,41 @@ bool sandbox_write(std::string*, const std::string&, const std::vector<unsigned 
     return false;
 }
 
+template <class T>
+const T* element(const std::vector<T>& all, int index) {
+    return index >= 0 && static_cast<std::size_t>(index) < all.size() ? &all[index] : nullptr;
+}
+
 /// The bytes of each picture, as they are.
 using PictureFiles = std::vector<std::vector<char>>;
 
-bool take_picture(tinygltf::Image*, const int index, std::string*, std::string*, int, int,
+constexpr std::size_t kMostPictures = 4096;
+
+void keep_picture(PictureFiles& all, std::size_t index, std::span<const unsigned char> bytes) {
+    if (index >= kMostPictures || bytes.empty()) return;
+    if (all.size() <= index) all.resize(index + 1);
+    all[index].assign(bytes.begin(), bytes.end());
+}
+
+bool take_picture(tinygltf::Image* image, const int index, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void* files) {
-    auto& all = *static_cast<PictureFiles*>(files);
-    if (index < 0 || index > 4096 || size <= 0) return true;
-    if (all.size() <= static_cast<std::size_t>(index)) all.resize(static_cast<std::size_t>(index) + 1);
-    all[static_cast<std::size_t>(index)].assign(bytes, bytes + size);
+    // The library takes a buffer view's word for where it lies: those come afterwards.
+    if (image->bufferView < 0 && index >= 0 && size > 0)
+        keep_picture(*static_cast<PictureFiles*>(files), static_cast<std::size_t>(index),
+                     {bytes, static_cast<std::size_t>(size)});
     return true;
+}
+
+/// The pictures in buffers; one that does not lie within its buffer is none.
+void take_pictures_of_buffers(const tinygltf::Model& model, PictureFiles& files) {
+    for (std::size_t i = 0; i < model.images.size(); ++i) {
+        const tinygltf::BufferView* view = element(model.bufferViews, model.images[i].bufferView);
+        const tinygltf::Buffer* buffer = view ? element(model.buffers, view->buffer) : nullptr;
+        if (!buffer || view->byteOffset > buffer->data.size() ||
+            view->byteLength > buffer->data.size() - view->byteOffset)
+            continue;
+        keep_picture(files, i, std::span(buffer->data).subspan(view->byteOffset, view->byteLength));
+    }
 }
 
 /// What a file needs to be read that tuft has not, or nothing.
@@ -184,6 +210,7 @@ Loaded load(const std::vector<char>& bytes, const fs::path& path) {
     }
     if (model.asset.version.starts_with("1."))
         throw Error(name, "is glTF version " + model.asset.version + "; tuft reads version 2");
+    take_pictures_of_buffers(model, loaded.pictures);
     return loaded;
 }
 
@@ -222,11 +249,6 @@ struct Rows {
         return static_cast<double>(v);
     }
 };
-
-template <class T>
-const T* element(const std::vector<T>& all, int index) {
-    return index >= 0 && static_cast<std::size_t>(index) < all.size() ? &all[index] : nullptr;
-}
 
 Rows rows_of(const tinygltf::Model& model, int index, int type, const std::string& name) {
     const auto fail = [&](const std::string& what) {

@@ -130,6 +130,33 @@ TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
     EXPECT_EQ(without.warnings.size(), 1u);
 }
 
+// As in every GLB; tinygltf hands over what a buffer view says, wherever that lies.
+TEST(Gltf, PicturesInBuffersLieWithinThem) {
+    const Image8 image{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
+    const std::vector<unsigned char> png = png_bytes(view_of(image));
+    json j = triangle();
+    j["buffers"].push_back({{"byteLength", png.size()}, {"uri", "data:application/octet-stream;base64," + base64({png.begin(), png.end()})}});
+    j["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 0}, {"byteLength", png.size()}});
+    j["images"] = {{{"bufferView", 3}, {"mimeType", "image/png"}}};
+    j["textures"] = {{{"source", 0}}};
+    j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    j["meshes"][0]["primitives"][0]["material"] = 0;
+    const mesh::PolygonSoup soup = read(j);
+    ASSERT_TRUE(soup.materials[0].picture);
+    EXPECT_EQ(soup.materials[0].picture->rgb, image.pixels);
+    const auto left_out = [&](const char* place, std::size_t value) {
+        json k = j;
+        k["bufferViews"][3][place] = value;
+        const mesh::PolygonSoup without = read(k);
+        EXPECT_FALSE(without.materials[0].picture) << place << value;
+        EXPECT_EQ(without.warnings.size(), 1u);
+    };
+    left_out("byteLength", png.size() + 1);
+    left_out("byteLength", 100'000'000);
+    left_out("byteOffset", 1);
+    left_out("byteOffset", png.size() + 4096);
+}
+
 TEST(Gltf, MaterialsOfOneNameAreGroupsOfTheirOwn) {
     json j = triangle();
     j["materials"] = json::parse(R"([{"name":"m","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}},{"name":"m"}])");
