@@ -25,6 +25,8 @@ void append(Stroke& s, std::initializer_list<Key> keys) {
     s.keys.insert(s.keys.end(), keys);
 }
 
+constexpr double kThin = 100;  // bodies of strokes of a character among others
+
 /// Ends a stroke that runs out to a point: the finest line up to the last key, then the hand goes
 /// on as it lifts, for the tip trails behind it.
 void run_out(Stroke& s, double w) {
@@ -44,10 +46,16 @@ Stroke heng(Vec2 from, Vec2 to, double w, double bow) {
     append(s, {l.at(0.06 * w, -0.28 * w, 0, 0.5), l.at(0.18 * w, -0.24 * w, 0.30 * w, 0.5),
                l.at(0.58 * w, -0.06 * w, 0.72 * w, 0.5, 0),
                l.at(1.6 * w, 0.4 * b - 0.02 * w, 0.76 * w, 0.9), l.at(0.5 * n, b, 0.70 * w, 1.1),
-               l.at(n - 1.8 * w, 0.65 * b, 0.72 * w, 0.9),
-               // The tip lifts to the shoulder's corner, the belly comes down beside it and is
-               // drawn to the foot as it leaves.
-               l.at(n - 0.95 * w, 0.4 * b, 0.66 * w, 0.7),
+               l.at(n - 1.8 * w, 0.65 * b, 0.72 * w, 0.9)});
+    if (w < kThin) {
+        // Lightly pressed, the belly stays up: the tip comes to rest a little lower and leaves towards the foot.
+        append(s, {l.at(n - 0.92 * w, 0.4 * b, 0.67 * w, 0.7), l.at(n - 0.54 * w, 0.3 * b, 0.75 * w, 0.5, 0),
+                   l.at(n - 0.54 * w, 0.3 * b + 0.08 * w, 0.75 * w, 0.4, 0),
+                   l.at(n - 0.66 * w, 0.3 * b + 0.24 * w, 0, 0.4)});
+        return s;
+    }
+    // The tip lifts to the shoulder's corner, the belly comes down beside it and is drawn to the foot as it leaves.
+    append(s, {l.at(n - 0.95 * w, 0.4 * b, 0.66 * w, 0.7),
                l.at(n - 0.61 * w, 0.3 * b - 0.09 * w, 0.64 * w, 0.5, 0),
                l.at(n - 0.56 * w, 0.3 * b + 0.08 * w, 0.70 * w, 0.4, 0),
                l.at(n - 0.50 * w, 0.3 * b + 0.16 * w, 0.56 * w, 0.4, 0),
