@@ -25,7 +25,15 @@ void append(Stroke& s, std::initializer_list<Key> keys) {
     s.keys.insert(s.keys.end(), keys);
 }
 
-constexpr double kThin = 100;  // bodies of strokes of a character among others
+/// Ends a 横 by a shoulder: the hand turns down to the right while it lifts, so that the hair closes in a slanted cut,
+/// and goes back along the stroke as it leaves. `b`: how far the middle lies across.
+void shoulder(Stroke& s, const Axis& l, double b, double w) {
+    const double n = l.length;
+    append(s, {l.at(n - 0.94 * w, 0.4 * b + 0.04 * w, 0.66 * w, 0.7),
+               l.at(n - 0.685 * w, 0.3 * b + 0.01 * w, 0.73 * w, 0.5, 0),
+               l.at(n - 0.375 * w, 0.3 * b + 0.16 * w, 0.545 * w, 0.4, 0),
+               l.at(n - 0.43 * w, 0.3 * b + 0.14 * w, 0.34 * w, 0.4), l.at(n - 0.77 * w, 0.3 * b, 0, 0.4)});
+}
 
 /// Ends a stroke that runs out to a point: the finest line up to the last key, then the hand goes
 /// on as it lifts, for the tip trails behind it.
@@ -47,32 +55,18 @@ Stroke heng(Vec2 from, Vec2 to, double w, double bow) {
                l.at(0.58 * w, -0.06 * w, 0.72 * w, 0.5, 0),
                l.at(1.6 * w, 0.4 * b - 0.02 * w, 0.76 * w, 0.9), l.at(0.5 * n, b, 0.70 * w, 1.1),
                l.at(n - 1.8 * w, 0.65 * b, 0.72 * w, 0.9)});
-    if (w < kThin) {
-        // Lightly pressed, the belly stays up: the tip comes to rest a little lower and leaves towards the foot.
-        append(s, {l.at(n - 0.92 * w, 0.4 * b, 0.67 * w, 0.7), l.at(n - 0.54 * w, 0.3 * b, 0.75 * w, 0.5, 0),
-                   l.at(n - 0.54 * w, 0.3 * b + 0.08 * w, 0.75 * w, 0.4, 0),
-                   l.at(n - 0.66 * w, 0.3 * b + 0.24 * w, 0, 0.4)});
-        return s;
-    }
-    // The tip lifts to the shoulder's corner, the belly comes down beside it and is drawn to the foot as it leaves.
-    append(s, {l.at(n - 0.95 * w, 0.4 * b, 0.66 * w, 0.7),
-               l.at(n - 0.61 * w, 0.3 * b - 0.09 * w, 0.64 * w, 0.5, 0),
-               l.at(n - 0.56 * w, 0.3 * b + 0.08 * w, 0.70 * w, 0.4, 0),
-               l.at(n - 0.50 * w, 0.3 * b + 0.16 * w, 0.56 * w, 0.4, 0),
-               l.at(n - 0.58 * w, 0.3 * b + 0.18 * w, 0, 0.4)});
+    shoulder(s, l, b, w);
     return s;
 }
 
 Stroke short_heng(Vec2 from, Vec2 to, double w) {
     const Axis l(from, to);
-    const double n = l.length;
+    const double n = l.length, b = -0.02 * n;
     Stroke s{"heng", {}};
     append(s,
            {l.at(0.1 * w, -0.1 * w, 0, 0.6), l.at(0.6 * w, 0.02 * w, 0.70 * w, 0.7),
-            l.at(0.5 * n, -0.02 * n, 0.76 * w, 1), l.at(n - 1.0 * w, -0.02 * n, 0.74 * w, 0.7),
-            l.at(n - 0.64 * w, -0.08 * w, 0.76 * w, 0.5, 0),
-            l.at(n - 0.60 * w, 0.10 * w, 0.84 * w, 0.4, 0),
-            l.at(n - 0.54 * w, 0.18 * w, 0.62 * w, 0.4, 0), l.at(n - 0.62 * w, 0.2 * w, 0, 0.4)});
+            l.at(0.5 * n, b, 0.74 * w, 1), l.at(n - 1.5 * w, 0.6 * b, 0.72 * w, 0.9)});
+    shoulder(s, l, b, w);
     return s;
 }
 

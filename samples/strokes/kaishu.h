@@ -9,7 +9,7 @@ namespace tuft::samples {
 /// 横, left to right: a cut entry from above, a body that thins towards the middle and
 /// bows up a little, a shoulder to which the tip lifts, the belly pressed down beside it and drawn to the foot.
 Stroke heng(Vec2 from, Vec2 to, double w, double bow = 0.02);
-/// A short 横 that only lands and swells, as in 上 or 步.
+/// A short 横 that only lands and swells, with the same shoulder, as in 上 or 步.
 Stroke short_heng(Vec2 from, Vec2 to, double w);
 /// 竖 ending in a dew drop (垂露): it narrows, swells, and is lifted as it comes to rest.
 Stroke shu_drop(Vec2 from, Vec2 to, double w, double bow = 0.0);
