@@ -63,7 +63,7 @@ std::vector<Triangles> parts_of(const CutMesh& cut, const Triangles& triangles) 
     return parts;
 }
 
-/// The graph takes three times the memory of the patch and goes again.
+/// Seams between developable charts of a patch. The graph that finds them takes three times the patch's memory, and goes.
 std::vector<std::uint8_t> developable_seams(const Patch& patch, const GluingLimits& limits, const ProgressFn& progress) {
     SeamGraph graph(patch, {});
     graph.glue_developable(limits, progress);

@@ -47,7 +47,7 @@ class SeamGraph {
     };
 
     /// `seam` [3n] marks the seams to begin with; empty: every edge is one. Takes some 20 bytes a
-    /// triangle, and 55 for each edge that is a seam and 100 for each chart.
+    /// triangle, 37 for each edge that is a seam and 100 for each chart.
     SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam);
 
     /// Glues in the order of least (error growth + small area) / length while the limits hold.

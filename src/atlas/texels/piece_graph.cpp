@@ -73,7 +73,7 @@ struct Sides {
 };
 
 struct Meetings {
-    std::vector<Meeting> all;
+    std::vector<Meeting> found;
     std::vector<Sides> seams;
 };
 
@@ -158,7 +158,7 @@ Vec3 edge_direction(const mesh::TriangleMesh& mesh, const SeamEdge& edge) {
 
 void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
                      const std::vector<Piece>& pieces, const SeamEdge& edge,
-                     std::vector<SeamSample>& samples, Meetings& found) {
+                     std::vector<SeamSample>& samples, Meetings& meetings) {
     samples.clear();
     sample_seam(mesh, atlas, edge, kSeamSpacing, samples);
     for (const SeamSample& s : samples) {
@@ -176,14 +176,14 @@ void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const T
         if (m.i > m.j) std::swap(sides.normal_i, sides.normal_j);
         put_in_order(m);
         set_distance(m, pieces);
-        Meeting* const place = place_of_best(found.all, m);
+        Meeting* const place = place_of_best(meetings.found, m);
         if (!place) continue;
         m.seam = place->seam;
         if (m.seam == kNone) {
-            m.seam = static_cast<std::uint32_t>(found.seams.size());
-            found.seams.emplace_back();
+            m.seam = static_cast<std::uint32_t>(meetings.seams.size());
+            meetings.seams.emplace_back();
         }
-        found.seams[m.seam] = sides;
+        meetings.seams[m.seam] = sides;
         *place = m;
     }
 }
@@ -264,22 +264,22 @@ PieceEdge inverse(const PieceEdge& e, std::uint32_t from) {
 
 /// Adds the parts in order, and empties them.
 void gather(std::vector<Meetings>& parts, Meetings& all) {
-    std::size_t n = all.all.size();
-    for (const Meetings& part : parts) n += part.all.size();
-    all.all.reserve(n);
+    std::size_t n = all.found.size();
+    for (const Meetings& part : parts) n += part.found.size();
+    all.found.reserve(n);
     for (Meetings& part : parts) {
         const auto first = static_cast<std::uint32_t>(all.seams.size());
-        for (Meeting& m : part.all) {
+        for (Meeting& m : part.found) {
             if (m.seam != kNone) m.seam += first;
-            all.all.push_back(m);
+            all.found.push_back(m);
         }
         all.seams.insert(all.seams.end(), part.seams.begin(), part.seams.end());
         part = {};
     }
 }
 
-void store_edges(const TexelMap& map, Meetings& found, PieceGraph& graph) {
-    std::vector<Meeting>& meetings = found.all;
+void store_edges(const TexelMap& map, Meetings& all, PieceGraph& graph) {
+    std::vector<Meeting>& meetings = all.found;
     std::sort(meetings.begin(), meetings.end(),
               [](const Meeting& a, const Meeting& b) { return a.key() < b.key(); });
     const auto same = [](const Meeting& a, const Meeting& b) { return a.i == b.i && a.j == b.j; };
@@ -287,7 +287,7 @@ void store_edges(const TexelMap& map, Meetings& found, PieceGraph& graph) {
     std::vector<PieceEdge> forward(meetings.size());
     parallel_for(meetings.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
-            forward[k] = edge_of(map, meetings[k], sides_of(map, meetings[k], graph.pieces, found.seams), graph.pieces);
+            forward[k] = edge_of(map, meetings[k], sides_of(map, meetings[k], graph.pieces, all.seams), graph.pieces);
     });
     graph.edge_start.assign(graph.n_pieces() + 1, 0);
     for (const Meeting& m : meetings) {
@@ -368,7 +368,7 @@ PieceGraph build_piece_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
             for (std::size_t slot = k * kSlots; slot < last; ++slot) {
                 found.clear();
                 meet_inside_charts(map, graph.pieces, static_cast<std::uint32_t>(slot), found);
-                by_slots[k].all.insert(by_slots[k].all.end(), found.begin(), found.end());
+                by_slots[k].found.insert(by_slots[k].found.end(), found.begin(), found.end());
             }
         }
     });
