@@ -187,11 +187,13 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
     return trace;
 }
 
-void Series::add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::Care> before) {
+void Series::add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::Care> before,
+                 const Vec2& tilt) {
     WriteOptions options;
     options.size = 1;  // keys are in millimetres
     options.centre = {0, 0};
     options.speed = speed;
+    options.tilt = tilt;
     stroke::Trace t = write(stroke, WidthTable(brush::load_preset(brush)), options);
     t.placement = place;
     t.brush = brush;

@@ -60,7 +60,8 @@ struct Series {
     stroke::Placement place;
     std::vector<stroke::Trace> out = {};
 
-    void add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::Care> before = {});
+    void add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::Care> before = {},
+             const Vec2& tilt = WriteOptions{}.tilt);
 };
 
 }  // namespace tuft::samples

@@ -37,17 +37,22 @@ struct Painter : Series {
         return {name, {at(0, 0), at(0.12, 0.45 * width), at(0.42, width), at(0.75, 0.55 * width), at(1, 0, 1.4)}};
     }
 
-    /// Pressed with the tip outwards, drawn to the heart.
+    /// One press: the tuft leans away from the heart, so that its tip, in the deeper red, points
+    /// to it and its belly goes down outside and prints the round of the petal.
+    void petal(const Vec2& heart, const Vec2& u, double from, double to, double width, double red_tip, bool wait = false) {
+        const auto at = [&](double f, double w, double pace) {
+            const Vec2 p = heart + f * u;
+            return Key{p.x, p.y, w, pace};
+        };
+        std::vector<Care> care{kWipeTip(red_tip), kTip("cinnabar", red_tip)};
+        if (wait) care.insert(care.begin(), kDry);
+        add({"petal", {at(from, 0, 0.5), at(from + 0.35 * (to - from), 0.5 * width, 0.5), at(to, width, 0.5), at(to - 0.2, 0.4 * width, 0.6), at(to - 1.3, 0, 1)}},
+            "mixed-medium", "samples/inks/blossom-pink.toml", 0.03, care, 20 * kDegree * glm::normalize(u));
+    }
     void blossom(const Vec2& heart, double size, double turn, double flat) {
         for (int k = 0; k < 5; ++k) {
-            const double a = turn + 2 * kPi * k / 5;
-            const Vec2 u{std::cos(a), flat * std::sin(a)};
-            const auto at = [&](double f, double side, double w, double pace) {
-                const Vec2 p = heart + size * (1 - f) * u + side * size * Vec2{-u.y, u.x};
-                return Key{p.x, p.y, w, pace};
-            };
-            add({"petal", {at(0.08, 0, 0, 0.5), at(0.14, 0.04, 0.8 * size, 0.4), at(0.4, 0.06, 1.1 * size, 0.6), at(0.72, 0.02, 0.55 * size, 0.8), at(0.93, 0, 0, 1)}},
-                "mixed-medium", "titanium-white", 0.03, {kWipeTip(0.14), kTip("cinnabar", 0.14)});
+            const double a = turn + 2 * kPi * k / 5 + 0.07 * std::sin(3.0 * k + turn);
+            petal(heart, {std::cos(a), flat * std::sin(a)}, 0.24 * size, 0.74 * size, (1.0 + 0.06 * std::cos(2.0 * k + turn)) * size, 0.07);
         }
     }
     void stamens(const Vec2& heart, double size, double turn, double flat) {
@@ -60,11 +65,12 @@ struct Painter : Series {
             add({"anther", {{end.x, end.y, 0}, {end.x + 0.15, end.y + 0.05, 0.9, 0.5}, {end.x + 0.25, end.y, 0}}}, "wolf-small*0.6", "gamboge", 0.02);
         }
     }
-    void bud(const Vec2& at, double size, double turn, bool dry) {
-        std::vector<Care> care{kWipeTip(0.2), kTip("cinnabar", 0.2)};
-        if (dry) care.insert(care.begin(), kDry);
-        add(leaf("bud", at, turn, 1.3 * size, size, 0.05), "mixed-medium", "titanium-white", 0.03, care);
-        add(leaf("calyx", at - 0.15 * size * Vec2{std::cos(turn), std::sin(turn)}, turn + 0.2, 0.6 * size, 0.35 * size, 0.1), "wolf-small", "carbon", 0.04);
+    /// Two petals still closed, and the calyx that holds them.
+    void bud(const Vec2& at, double size, double turn, bool wait) {
+        const Vec2 u{std::cos(turn), std::sin(turn)};
+        petal(at, {std::cos(turn - 0.3), std::sin(turn - 0.3)}, 0.1 * size, 0.5 * size, 0.85 * size, 0.1, wait);
+        petal(at, {std::cos(turn + 0.35), std::sin(turn + 0.35)}, 0.05 * size, 0.4 * size, 0.75 * size, 0.1);
+        add(leaf("calyx", at - 0.35 * size * u, turn + 0.1, 0.55 * size, 0.28 * size, 0.1), "wolf-small", "carbon", 0.04);
     }
 };
 
@@ -72,14 +78,22 @@ struct Painter : Series {
 
 std::vector<stroke::Trace> vase_plum() {
     Painter p{{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::Laying::wrap}}};
-    // The rock: cobalt with a flank of bone black, its faces dragged with a brush that is nearly dry.
-    const std::vector<Care> half_dry{kWipe(0.3), kFlank("bone-black", 0.3), kWipe(0.66)};
-    p.add({"rock", {{-31, 21, 0, 0.6}, {-38, 23, 8, 0.8}, {-43, 31, 10, 1}, {-47, 45, 8, 1}, {-48, 54, 0, 1}}}, "mixed-large", "cobalt", 0.16, half_dry);
-    p.add({"rock", {{-31, 22, 0, 0.6}, {-29, 27, 9, 0.8}, {-31, 40, 11, 1}, {-34, 52, 8, 1}, {-36, 56, 0, 1}}}, "mixed-large", "cobalt", 0.18, half_dry);
-    p.add({"rock", {{-21, 36, 0, 0.6}, {-18, 38, 7, 0.8}, {-17, 46, 9, 1}, {-19, 54, 6, 1}, {-20, 56, 0, 1}}}, "mixed-large", "cobalt", 0.18, half_dry);
-    const double contours[][8] = {{-36, 18, -44, 25, -49, 40, -50, 53}, {-36, 18, -30, 19, -26, 24, -24, 34}, {-24, 35, -19, 32, -13, 38, -12, 54}, {-38, 32, -37, 40, -40, 46, -40, 54}, {-25, 36, -24, 44, -26, 50, -27, 55}};
-    for (const auto& c : contours)
-        p.add({"rock's edge", {{c[0], c[1], 1.2, 0.7}, {c[2], c[3], 2.4, 1}, {c[4], c[5], 1.4, 1}, {c[6], c[7], 0.9, 1.2}}}, "wolf-medium", "bone-black", 0.09, {kWipe(0.45)});
+    // Two boulders: a thin wash, axe-cut strokes with the side of a half-dry tuft, and their edges.
+    const double washes[][4] = {{-43, 33, -46, 50}, {-38, 29, -41, 52}, {-33, 31, -35, 53}, {-14.5, 47, -16, 54}, {-12, 44, -13, 53}};
+    for (const auto& c : washes) {
+        const double x = 0.5 * (c[0] + c[2]), y = 0.5 * (c[1] + c[3]);
+        p.add({"rock", {{c[2], c[3], 0, 0.6}, {0.5 * (c[2] + x), 0.5 * (c[3] + y), 6, 0.9}, {x, y, 6.5, 1}, {c[0], c[1], 0, 1.2}}}, "mixed-medium", "samples/inks/cobalt-wash.toml", 0.08);
+    }
+    p.add({"ground", {{-47, 53, 0, 0.7}, {-40, 54, 4, 0.9}, {-28, 54.5, 5, 1}, {-14, 54, 4.5, 1}, {-2, 55.5, 0, 1.2}}}, "mixed-medium", "samples/inks/cobalt-wash.toml", 0.08);
+    const double cuts[][3] = {{-38, 35, 9}, {-34.5, 36, 9}, {-31.5, 38, 8}, {-37, 43, 8}, {-33.5, 45, 8}, {-30.5, 46, 7}, {-46, 42, 8}, {-13, 48, 6}, {-10.5, 49.5, 5}, {-18, 50, 5}};
+    for (const auto& c : cuts)
+        p.add({"axe cut", {{c[0], c[1], 0, 0.6}, {c[0] + 0.3, c[1] + 1.4, 3.4, 0.7}, {c[0] - 0.02 * c[2], c[1] + 0.5 * c[2], 3, 1}, {c[0] - 0.2 * c[2], c[1] + c[2], 0, 1.4}}}, "wolf-large", "cobalt", 0.2,
+              {kDry, kWipe(0.3), kFlank("bone-black", 0.4), kWipe(0.7)}, {0.3, 0.2});
+    const std::vector<Key> edges[] = {{{-50, 57, 0.8, 1}, {-50, 47, 2, 1}, {-45, 36, 1.4, 0.7, 0.04}, {-39, 31, 2.4, 0.8, 0.04}, {-31, 33, 1.6, 0.8, 0.04}, {-27, 41, 2.6, 1}, {-25, 50, 1.4, 1}, {-24, 57, 0.6, 1.2}},
+                                      {{-39, 32, 0.8, 0.8}, {-40, 38, 1.8, 0.8, 0.03}, {-37, 43, 1.3, 1}, {-38, 50, 0.4, 1.2}},
+                                      {{-22, 57, 0.8, 1}, {-20, 50, 1.8, 0.8, 0.04}, {-15, 44.5, 2.2, 0.8, 0.04}, {-10, 46, 1.6, 0.8, 0.04}, {-6, 51, 2.2, 1}, {-6, 57, 0.6, 1.2}},
+                                      {{-15, 45, 0.8, 0.8}, {-15.5, 49, 1.6, 0.8, 0.03}, {-13.5, 51, 1, 1}, {-14, 55, 0.4, 1.2}}};
+    for (const auto& keys : edges) p.add({"rock's edge", keys}, "wolf-medium", "bone-black", 0.09, {kWipe(0.45)});
     // The trunk and its branches: iron red with bone black in one flank, faster where they are thin.
     p.add({"trunk", {{36, -38, 0, 1.4}, {24, -28, 3, 1.2}, {14, -12, 4.5, 1, 0.04}, {0, -2, 6, 0.9}, {-8, 12, 7, 0.8, 0.05}, {-20, 22, 8.5, 0.7}, {-26, 40, 8, 0.7}, {-27, 52, 4, 0.9}}},
           "mixed-large", "iron-red", 0.12, {kDry, kWipe(0.4), kFlank("bone-black", 0.5), kWipe(0.62)});
