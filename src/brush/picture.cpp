@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kPressings[] = {0.02, 0.1, 0.2, 0.32, 0.45};  ///< depths over length
 constexpr int kColumns = 6;
-constexpr double kLean = 0.45;     ///< radians
-constexpr double kStride = 0.02;   ///< lengths between two samples
-constexpr double kSample = 0.01;   ///< s
+constexpr double kLean = 0.45;    ///< radians
+constexpr double kStride = 0.02;  ///< lengths between two samples
+constexpr double kSample = 0.01;  ///< s
 
 struct Posed {
     Tuft tuft;
@@ -33,7 +33,8 @@ struct Hand {
 
     Hand(const Preset& p, double tilt, double slant) {
         now.tuft = make_tuft(p, 3);
-        now.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
+        now.pose.rotation =
+            glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
         lowest = p.length * -now.pose.axis().z;
         now.pose.position = {0, 0, lowest};
     }
@@ -56,7 +57,8 @@ struct Hand {
 
     void lift(double height) {
         const double from = now.pose.position.z;
-        for (int i = 1; i <= 60; ++i) move(-0.2 * kStride * now.tuft.preset.length, from + (lowest + height - from) * i / 60);
+        for (int i = 1; i <= 60; ++i)
+            move(-0.2 * kStride * now.tuft.preset.length, from + (lowest + height - from) * i / 60);
     }
 };
 
@@ -76,7 +78,8 @@ struct Sheet {
     void text(const std::string& words, Vec2 at, double size, const Vec3& colour) const {
         write_text(canvas, words, at, size * unit, colour);
     }
-    void centred(const std::string& words, double x, double y, double size, const Vec3& colour) const {
+    void centred(const std::string& words, double x, double y, double size,
+                 const Vec3& colour) const {
         text(words, {x - 0.5 * text_width(words, size * unit), y}, size, colour);
     }
     void rule(double y) const {
@@ -90,11 +93,17 @@ void draw_scale(const Sheet& sheet, const View& view, double x0, double x1) {
     const Vec3 ink = srgb(90, 86, 80);
     const double thin = 1.1 * sheet.unit, y = view.foot.y;
     const double mm = view.scale * kMillimetre;
-    for (int k = static_cast<int>(std::ceil((x0 - view.foot.x) / mm)); k <= static_cast<int>(std::floor((x1 - view.foot.x) / mm)); ++k) {
-        const double x = view.foot.x + k * mm, tall = (k % 10 == 0 ? 11 : k % 5 == 0 ? 8 : 4) * sheet.unit;
+    for (int k = static_cast<int>(std::ceil((x0 - view.foot.x) / mm));
+         k <= static_cast<int>(std::floor((x1 - view.foot.x) / mm)); ++k) {
+        const double x = view.foot.x + k * mm, tall = (k % 10 == 0  ? 11
+                                                       : k % 5 == 0 ? 8
+                                                                    : 4) *
+                                                      sheet.unit;
         const Vec2 tick[] = {{x, y}, {x, y + tall}};
         stroke_line(sheet.canvas, tick, {&thin, 1}, ink);
-        if (k % 10 == 0) sheet.centred(std::to_string(std::abs(k)), x + sheet.unit, y + 24 * sheet.unit, 8.5, ink);
+        if (k % 10 == 0)
+            sheet.centred(std::to_string(std::abs(k)), x + sheet.unit, y + 24 * sheet.unit, 8.5,
+                          ink);
     }
 }
 
@@ -118,22 +127,26 @@ void draw_row(const Sheet& sheet, double top, double tilt, const char* name) {
         hand.press(kPressings[std::min(k, kColumns - 2)] * length);
         if (lifted) hand.lift(0.12 * length);
         const Posed& at = hand.now;
-        // The scale begins under the tuft's root; where the holder leans, it begins at its axis' foot.
+        // The scale begins under the tuft's root; where the holder leans, it begins at its axis'
+        // foot.
         const double foot = std::tan(tilt) * at.pose.position.z;
         View view;
         view.scale = sheet.scale;
         view.origin = {at.pose.position.x + foot, 0, 0};
         view.foot = {(k + 0.33) * sheet.column + 0.35 * sheet.scale * foot, ground};
-        draw_holder(sheet.canvas, at.pose, sheet.preset, view, 2.5 * length);
-        draw_tuft_hair(sheet.canvas, at.tuft, at.state, view);
+        draw_brush(sheet.canvas, at.tuft, at.state, at.pose, view, 2.5 * length);
         draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
         if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, view, plan);
         const double x = (k + 0.5) * sheet.column, y = ground + 152 * u;
-        sheet.centred(lifted ? "lifted" : label("%.1f mm", at.depth / kMillimetre) + label("   %.2f N", at.state.normal_force), x, y, 12, sheet.ink);
+        sheet.centred(lifted ? "lifted"
+                             : label("%.1f mm", at.depth / kMillimetre) +
+                                   label("   %.2f N", at.state.normal_force),
+                      x, y, 12, sheet.ink);
     }
     sheet.rule(ground);
     // Over the handles' bands, so that it can be read.
-    const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
+    const Vec2 band[] = {
+        {0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
     fill_polygon(sheet.canvas, band, srgb(246, 243, 236));
     sheet.text(name, {24 * u, top + 27 * u}, 14, sheet.ink);
 }
@@ -151,7 +164,8 @@ void draw_tips(const Sheet& sheet, double top) {
         if (k == 2) {
             hand.now.tuft.ink_left = 0.05;
             hand.now.tuft.wetness = 0.4;
-            hand.now.tuft.preset.split_factor = 3;  // the paper's: shipped hair parts later, in bundles
+            hand.now.tuft.preset.split_factor =
+                3;  // the paper's: shipped hair parts later, in bundles
             name = "split tip, short of ink";
         } else if (k == 3) {
             look.dry = true;
@@ -179,8 +193,7 @@ void draw_tips(const Sheet& sheet, double top) {
         // A slanted holder stands aside from where its tip is.
         const double aside = view.scale * glm::dot(at.pose.axis(), view.right) * length;
         view.foot = {(k + 0.47) * column - 0.5 * aside, ground - 60 * u};
-        draw_holder(sheet.canvas, at.pose, sheet.preset, view, 2.5 * length);
-        draw_tuft_hair(sheet.canvas, at.tuft, at.state, view, look);
+        draw_brush(sheet.canvas, at.tuft, at.state, at.pose, view, 2.5 * length, look);
         View plan = view;
         plan.foot.x = (k + 0.42) * column;
         const std::vector<Section>& sections = at.state.branches.front().sections;
@@ -188,7 +201,8 @@ void draw_tips(const Sheet& sheet, double top) {
         draw_patch(sheet.canvas, at.tuft, at.state, plan, top + 440 * u, look);
         sheet.centred(name, (k + 0.5) * column, top + 522 * u, 12, sheet.ink);
     }
-    const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
+    const Vec2 band[] = {
+        {0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
     fill_polygon(sheet.canvas, band, srgb(246, 243, 236));
     sheet.text("tips", {24 * u, top + 27 * u}, 14, sheet.ink);
 }
@@ -201,14 +215,17 @@ Picture draw_tuft(const Preset& preset, int width) {
     const int height = static_cast<int>(std::ceil(head + 4 * row));
     Canvas canvas(width, height, srgb(246, 243, 236));
     const double column = static_cast<double>(width) / kColumns;
-    const Sheet sheet{canvas, preset, unit, static_cast<double>(width), column, 0.92 * column / (1.3 * preset.length)};
+    const Sheet sheet{canvas, preset,
+                      unit,   static_cast<double>(width),
+                      column, 0.92 * column / (1.3 * preset.length)};
     draw_tips(sheet, head + 3 * row);
     draw_row(sheet, head + 2 * row, -kLean, "leaning back, pushed");
     draw_row(sheet, head + row, kLean, "leaning ahead, pulled");
     draw_row(sheet, head, 0, "upright");
     const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};
     fill_polygon(canvas, band, srgb(246, 243, 236));
-    sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) + label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
+    sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) +
+                   label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
                {24 * unit, 36 * unit}, 18, sheet.ink);
     return {width, height, to_srgb(canvas)};
 }

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "brush/skin.h"
+#include "core/ease.h"
 #include "core/random.h"
 
 namespace tuft::brush {
@@ -58,15 +60,26 @@ std::vector<Strand> strands_of(const TuftState& state, const TuftLook& look) {
     return out;
 }
 
-/// A bristle's place in section i of strand k; nullptr where it belongs to another strand.
+constexpr double kBound =
+    0.3;  ///< of the sections, from the root, over which bundles leave the even hair in the ferrule
+
+/// A bristle's place in section i of strand k; none where it belongs to another strand.
 struct Placed {
-    Vec2 whole{0};
+    Vec2 bound{0}, whole{0};
     BranchPlace part;
-    const Vec2* at(const Strand& strand, std::size_t k, std::size_t i) const {
-        if (i >= strand.trunk) return &whole;
+
+    Placed(const Bundles& bundles, const Bristle& b, int branches)
+        : bound(b.place), whole(place_of(bundles, b)), part(in_branch(whole, branches)) {}
+    std::optional<Vec2> at(const Strand& strand, std::size_t k, std::size_t i) const {
+        if (i >= strand.trunk) {
+            const auto last = static_cast<double>(strand.sections.size() - 1);
+            return glm::mix(bound, whole,
+                            smooth_step((last - static_cast<double>(i)) / (kBound * last)));
+        }
         // Between the last section of its own and the trunk's first it goes straight.
-        if (part.branch != static_cast<int>(k) || i + kBetween + 1 > strand.trunk) return nullptr;
-        return &part.place;
+        if (part.branch != static_cast<int>(k) || i + kBetween + 1 > strand.trunk)
+            return std::nullopt;
+        return part.place;
     }
 };
 
@@ -101,27 +114,30 @@ void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, con
     }
 }
 
-}  // namespace
-
-void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, const TuftLook& look) {
+void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view,
+                    const TuftLook& look) {
     const std::vector<Strand> strands = strands_of(state, look);
     const int count = static_cast<int>(strands.size());
     if (!look.dry)
-        for (const Strand& strand : strands) fill_silhouette(canvas, strand, view, srgb(78, 55, 40));
+        for (const Strand& strand : strands)
+            fill_silhouette(canvas, strand, view, srgb(78, 55, 40));
     const std::vector<Bristle>& bristles = tuft.bundles.bristles;
     std::vector<Placed> placed;
     std::vector<double> near;
     const Vec3 viewer = view.toward();
     for (const Bristle& b : bristles) {
-        const Vec2 place = place_of(tuft.bundles, b);
-        placed.push_back({place, in_branch(place, count)});
+        placed.emplace_back(tuft.bundles, b, count);
         const Strand& strand = strands[static_cast<std::size_t>(placed.back().part.branch)];
         const Section& s = strand.sections[strand.sections.size() / 3];
-        near.push_back(glm::dot(point_of(s, strand.sections.size() / 3 < strand.trunk ? placed.back().part.place : place), viewer));
+        near.push_back(glm::dot(
+            point_of(s, strand.sections.size() / 3 < strand.trunk ? placed.back().part.place
+                                                                  : placed.back().whole),
+            viewer));
     }
     std::vector<std::size_t> order(bristles.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return near[a] < near[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return near[a] < near[b]; });
     const Vec3 light = glm::normalize(0.75 * view.up - 0.45 * view.right + 0.5 * viewer);
     Random random(tuft.bundles.seed + 7);
     std::vector<double> shade(bristles.size());
@@ -134,47 +150,99 @@ void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, co
         const std::vector<Section>& fine = strands[k].sections;
         const double readiness = bristles[h].readiness, n = static_cast<double>(fine.size());
         // Hairs end at unequal lengths; water draws all of them to the point.
-        const double short_by = look.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
+        const double short_by =
+            look.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
         const auto stop = static_cast<std::size_t>(short_by * n);
         line.clear();
         width.clear();
         double lit = 0;
         for (std::size_t i = stop; i < fine.size(); ++i) {
-            const Vec2* at = p.at(strands[k], k, i);
+            const std::optional<Vec2> at = p.at(strands[k], k, i);
             if (!at) continue;
             line.push_back(view(point_of(fine[i], *at)));
-            width.push_back(0.5 + (look.dry ? 0.7 : 1.1) * std::min(1.0, 4 * static_cast<double>(i - stop) / n));
+            width.push_back(0.5 + (look.dry ? 0.7 : 1.1) *
+                                      std::min(1.0, 4 * static_cast<double>(i - stop) / n));
             lit += glm::dot(at->x * fine[i].e + at->y * fine[i].m, light);
         }
         if (line.size() < 2) continue;
         lit /= static_cast<double>(line.size());
         const double tone = std::clamp(0.42 + 0.5 * lit + shade[h], 0.0, 1.0);
-        stroke_line(canvas, line, width, glm::mix(srgb(48, 32, 22), srgb(206, 168, 120), tone), 0.8);
+        stroke_line(canvas, line, width, glm::mix(srgb(48, 32, 22), srgb(206, 168, 120), tone),
+                    0.8);
     }
 }
 
-void draw_holder(Canvas& canvas, const Pose& pose, const Preset& p, const View& view, double length) {
-    const Vec3 up = -pose.axis();
-    Vec3 side = glm::cross(up, view.toward());
+/// A turned piece along the holder's axis, from one height over the mouth to another, metres.
+struct Turned {
+    double from, to, from_radius, to_radius;
+    Vec3 dark, light;
+};
+
+/// What of a turned piece faces the viewer, and the end that does.
+void fill_turned(Canvas& canvas, const Turned& piece, const Pose& pose, const View& view) {
+    constexpr int kShades = 48;
+    const Vec3 up = -pose.axis(), viewer = view.toward();
+    Vec3 side = glm::cross(up, viewer);
     side = glm::length(side) > 1e-6 ? glm::normalize(side) : view.right;
-    const double r = 1.12 * rest_radius(p, 0);
-    const auto bar = [&](double from, double to, double w0, double w1, const Vec3& dark, const Vec3& light) {
-        constexpr int kShades = 32;
-        for (int k = 0; k < kShades; ++k) {
-            const double a = -1 + 2.0 * k / kShades, b = -1 + 2.0 * (k + 1) / kShades + (k + 1 < kShades ? 0.02 : 0), mid = 0.5 * (a + b);
-            const double shade = std::max(0.0, std::sqrt(std::max(0.0, 1 - mid * mid)) * 0.8 - 0.25 * mid * glm::dot(side, view.right));
-            const Vec2 quad[] = {view(pose.position + from * up + a * w0 * side), view(pose.position + from * up + b * w0 * side),
-                                 view(pose.position + to * up + b * w1 * side), view(pose.position + to * up + a * w1 * side)};
-            fill_polygon(canvas, quad, glm::mix(dark, light, shade));
-        }
+    const Vec3 front = glm::cross(side, up);
+    const auto rim = [&](double height, double radius, double w) {
+        return view(pose.position + height * up +
+                    radius * (std::sin(w) * side + std::cos(w) * front));
     };
-    bar(0.2 * p.length, length, 0.92 * r, 0.9 * r, srgb(96, 66, 34), srgb(222, 184, 120));
-    bar(0, 0.22 * p.length, r, 1.04 * r, srgb(28, 28, 32), srgb(150, 150, 158));
+    const double lean = 0.25 * glm::dot(side, view.right);
+    std::vector<Vec2> lower, upper;
+    for (int k = 0; k <= kShades; ++k) {
+        const double w = std::numbers::pi * (static_cast<double>(k) / kShades - 0.5);
+        lower.push_back(rim(piece.from, piece.from_radius, w));
+        upper.push_back(rim(piece.to, piece.to_radius, w));
+    }
+    for (int k = 0; k < kShades; ++k) {
+        const double w = std::numbers::pi * ((k + 0.5) / kShades - 0.5);
+        const double shade = std::max(0.0, 0.8 * std::cos(w) - lean * std::sin(w));
+        // To the far edge: the next one covers the rest, and no paper shows between two.
+        std::vector<Vec2> strip(lower.begin() + k, lower.end());
+        strip.insert(strip.end(), upper.rbegin(), upper.rend() - k);
+        fill_polygon(canvas, strip, glm::mix(piece.dark, piece.light, shade));
+    }
+    const bool top = glm::dot(up, viewer) > 0;
+    std::vector<Vec2> end;
+    for (int k = 0; k < 2 * kShades; ++k)
+        end.push_back(rim(top ? piece.to : piece.from, top ? piece.to_radius : piece.from_radius,
+                          std::numbers::pi * k / kShades));
+    fill_polygon(canvas, end, glm::mix(piece.dark, piece.light, top ? 0.5 : 0));
 }
 
-void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, double y, const TuftLook& look) {
+}  // namespace
+
+void draw_brush(Canvas& canvas, const Tuft& tuft, const TuftState& state, const Pose& pose,
+                const View& view, double length, const TuftLook& look) {
+    const Preset& p = tuft.preset;
+    const double r = 1.12 * rest_radius(p, 0);
+    const Turned handle{0.2 * p.length, length,           0.92 * r,
+                        0.9 * r,        srgb(96, 66, 34), srgb(222, 184, 120)};
+    const Turned ferrule{0, 0.22 * p.length, r, 1.04 * r, srgb(28, 28, 32), srgb(150, 150, 158)};
+    const bool into_mouth = glm::dot(pose.axis(), view.toward()) > 0;
+    if (into_mouth) {
+        fill_turned(canvas, handle, pose, view);
+        fill_turned(canvas, ferrule, pose, view);
+        draw_tuft_hair(canvas, tuft, state, view, look);
+    } else {
+        // The near rim hides the roots; the handle stands in the ferrule.
+        draw_tuft_hair(canvas, tuft, state, view, look);
+        fill_turned(canvas, ferrule, pose, view);
+        Turned out = handle;
+        out.from = ferrule.to;
+        fill_turned(canvas, out, pose, view);
+    }
+}
+
+void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view,
+                double y, const TuftLook& look) {
     const Vec3 ink = srgb(24, 22, 24);
-    const auto plan = [&](const Vec3& p) { return Vec2{view.foot.x + view.scale * (p.x - view.origin.x), y + view.scale * (p.y - view.origin.y)}; };
+    const auto plan = [&](const Vec3& p) {
+        return Vec2{view.foot.x + view.scale * (p.x - view.origin.x),
+                    y + view.scale * (p.y - view.origin.y)};
+    };
     if (look.dry) {
         // The lines of the bristles that lie on the sheet.
         TuftLook as_pressed = look;
@@ -182,16 +250,17 @@ void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const 
         const std::vector<Strand> strands = strands_of(state, as_pressed);
         const double width = 0.6;
         for (const Bristle& b : tuft.bundles.bristles) {
-            const Vec2 whole = place_of(tuft.bundles, b);
-            const Placed placed{whole, in_branch(whole, static_cast<int>(strands.size()))};
+            const Placed placed(tuft.bundles, b, static_cast<int>(strands.size()));
             const auto k = static_cast<std::size_t>(placed.part.branch);
             std::vector<Vec2> line;
             for (std::size_t i = 0; i < strands[k].sections.size(); ++i) {
                 const Section& s = strands[k].sections[i];
-                const Vec2* at = placed.at(strands[k], k, i);
+                const std::optional<Vec2> at = placed.at(strands[k], k, i);
                 if (!at || at->y * s.m.z > 0) continue;
-                const double under = std::sqrt(std::max(0.0, 1 - at->x * at->x)) * s.b * std::abs(s.m.z);
-                if (s.centre.z + s.a * at->x * s.e.z - under <= 1e-4) line.push_back(plan(point_of(s, *at)));
+                const double under =
+                    std::sqrt(std::max(0.0, 1 - at->x * at->x)) * s.b * std::abs(s.m.z);
+                if (s.centre.z + s.a * at->x * s.e.z - under <= 1e-4)
+                    line.push_back(plan(point_of(s, *at)));
             }
             stroke_line(canvas, line, {&width, 1}, ink, 0.85);
         }
