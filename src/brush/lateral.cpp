@@ -110,6 +110,7 @@ LateralRow lateral_row(const std::vector<double>& at, const LateralSprings& s) {
         m[i][1] += k * c.in * c.own;
         m[i + 1][2] += k * c.in * c.out;
     }
+    row.at_root = {m[1][1], m.size() > 2 ? m[2][2] : 0};
     m[0] = {1, 0, 0};
     m[1][1] = 0;
     if (m.size() > 2) m[2][2] = 0;
@@ -129,10 +130,10 @@ std::vector<double> solve_lateral(const LateralRow& row, const LateralSide& side
     Band m;
     for (int pass = 0; pass < kWallPasses; ++pass) {
         m = row.band;
-        u[0] = 0;
+        u[0] = side.root;
         for (std::size_t i = 1; i < count; ++i) {
             const double w = row.weight[i], r = row.taper[i];
-            u[i] = w * side.push[i] * r;
+            u[i] = w * side.push[i] * r - (i < 3 ? row.at_root[i - 1] * side.root : 0);
             if (!held[i]) continue;
             m[i][0] += row.wall * w * r * r;
             u[i] += row.wall * w * side.clear[i] * r;
@@ -259,6 +260,12 @@ double half_width(double r, double u, double most) {
     if (r <= 0) return 0;
     const double v = u / r, room = v > 0 ? most - 1 : 0.6;
     return r * (1 + (room > 0 ? room * std::tanh(v / room) : 0));
+}
+
+double side_of_width(double r, double width, double most) {
+    if (r <= 0) return 0;
+    const double v = width / r - 1, room = v > 0 ? most - 1 : 0.6;
+    return room > 0 ? r * room * std::atanh(std::clamp(v / room, -0.999, 0.999)) : 0;
 }
 
 }  // namespace tuft::brush

@@ -35,6 +35,7 @@ struct LateralSprings {
 struct LateralSide {
     std::vector<double> push;  ///< q, N/m, outward
     std::vector<double> clear; ///< c, m, displacement at which a wall is met; infinite: none
+    double root = 0;           ///< u_0, m: 0 in a ferrule; where a sub-spine leaves, what its trunk has
 };
 
 /// The springs of one row of side nodes, made once for all that is solved with them.
@@ -43,11 +44,12 @@ struct LateralRow {
                                               ///< element (i, i - d); that of the root holds it at 0
     std::vector<double> weight, taper;        ///< w_i, metres; r_i / r_0
     double wall = 0;                          ///< κ_w, N/m²
+    std::array<double, 2> at_root{};          ///< elements (1, 0) and (2, 0) before the root was held
 };
 LateralRow lateral_row(const std::vector<double>& at, const LateralSprings& springs);
 
 /// Displacements u, metres, outward, of the nodes at arc lengths `at` (metres from the ferrule,
-/// strictly growing). [n+1]; u_0 = 0.
+/// strictly growing). [n+1]; u_0 = `side.root`.
 std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSprings& springs,
                                   const LateralSide& side);
 std::vector<double> solve_lateral(const LateralRow& row, const LateralSide& side);
@@ -92,5 +94,7 @@ LateralShift drag_lateral(const LateralRow& row, const LateralFriction& friction
 /// Half-width r (1 + v): v = u/r with the outward part bent over to stay below `most` - 1, the
 /// inward part to stay above -0.6: hair packs, and cannot pass through itself.
 double half_width(double r, double u, double most);
+/// The displacement u of a half-width: the inverse, as far as to 0.999 of the room that there is.
+double side_of_width(double r, double width, double most);
 
 }  // namespace tuft::brush

@@ -30,6 +30,7 @@ struct Spine {
     rod::Memory memory;             ///< joints, contacts
     std::vector<double> rest_radius;///< [n+1] m
     Vec3 wide{1, 0, 0};             ///< unit, ferrule frame: direction e at the root of the last step
+    double root_width = 0;          ///< m, half-width at the root, of a sub-spine; 0: the ferrule's
     Vec2 one_sided{0};              ///< mean direction of splayed hair, across the clamp; see splay.h
     std::vector<Vec3> side;         ///< side nodes of the last step, metres from the root, ferrule
                                     ///< frame, tip first, two to a node; or none

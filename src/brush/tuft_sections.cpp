@@ -158,6 +158,8 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
     std::vector<double> at(count, 0);
     LateralSide plus{std::vector<double>(count, 0),
                      std::vector<double>(count, std::numeric_limits<double>::infinity())};
+    const double root = in.spine.root_width;
+    if (root > 0) plus.root = side_of_width(in.spine.rest_radius.front(), root, p.flatten_max);
     LateralSide minus = plus;
     LateralFriction friction{std::vector<double>(count, 0), std::vector<double>(count, 0), in.spine.slips};
     for (std::size_t i = 0; i < count; ++i) {

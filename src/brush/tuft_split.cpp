@@ -105,6 +105,9 @@ void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& st
         if (planes.size() > 1) own = planes.subspan(next, count);
         next += count;
         const rod::Clamp clamp = twig_clamp(tuft, k, index);
+        const Section& trunk = whole[whole.size() - 1 - static_cast<std::size_t>(k)];
+        const double part = 1 / std::sqrt(static_cast<double>(count_all));
+        twig.root_width = part * trunk.a;
         Solved solved = solve_spine(p, twig, clamp, tuft.pose.rotation, own, tuft.wetness, count_all, dt);
         state.iterations += solved.result.iterations;
         state.converged = state.converged && solved.result.converged;
@@ -117,6 +120,13 @@ void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& st
                 section.m = -section.m;
             }
         }
+        // It begins as the strip of the trunk that it took its hair from.
+        Section& root = branch.sections.back();
+        root = trunk;
+        const double same = glm::dot(clamp.side, trunk.e) < 0 ? -1 : 1;
+        root.centre += same * p.length * beside(tuft, index) * trunk.e;
+        root.a *= part;
+        root.b *= part;
         if (index == count_all / 2) {
             // The middle one carries the trunk.
             branch.sections.pop_back();

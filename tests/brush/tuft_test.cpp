@@ -420,6 +420,16 @@ TEST(Tuft, SplitsWhenBentAndDryAndMergesWhenWetAgain) {
     const double r = tuft.spine.rest_radius[15];
     EXPECT_NEAR(area, r * r, 1e-9 * r * r);
     EXPECT_GT(glm::length(state.branches[0].sections[0].centre - state.branches[2].sections[0].centre), 5e-4);
+    // They leave side by side from edge to edge of the trunk, as flat as it is.
+    const std::size_t leave = state.branches[0].sections.size() - 1;
+    const Section& trunk = state.branches[1].sections[leave];
+    for (const int side : {0, 2}) {
+        const Section& root = state.branches[side].sections[leave];
+        EXPECT_NEAR(root.a / root.b, trunk.a / trunk.b, 1e-9 * trunk.a / trunk.b);
+        EXPECT_NEAR(glm::length(root.centre - trunk.centre) + root.a, trunk.a, 1e-6 * trunk.a);
+        // The next section, a segment on, goes on from there; one that began round was not half as wide.
+        EXPECT_GT(state.branches[side].sections[leave - 1].a, 0.7 * root.a);
+    }
     EXPECT_EQ(predicted_nodes(tuft, tuft.pose).size(), 17 + 3 * tuft.twigs[0].rest_radius.size());
     tuft.ink_left = 1;
     const ContactPlane plane;
