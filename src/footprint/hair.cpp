@@ -21,6 +21,7 @@ constexpr double kThinning = 0.02;     // wetness over which a thread of ink tap
 constexpr double kAside = 0.35;        // sine of the angle from the tuft's way at which hair that lands or leaves is swept aside
 constexpr double kSwept = 0.8;         // wetness that it needs more then
 constexpr double kMark = 45e-6;        // m, half width of what a bristle leaves by itself: hair is 70–135 µm thick
+constexpr double kSkirt = 0.7, kFullSkirt = 0.9;  // wetness from which ink stands out beyond the outermost hair, and as far as it bridges
 constexpr double kBridge = 0.5;        // spacings that ink bridges from one bristle to the next at half wetness
 constexpr double kLeastContact = 0.1;  // part of what lies down of it that the driest bristle touches with
 constexpr double kSameEnd = 0.01;      // of the length
@@ -181,14 +182,15 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
         const double aside = ink.lands > 0 ? ink.lands * smooth_step(laid.across.off_way(lower[i].x, ink.way) / kAside) : 0;
-        const double wet = wet_of(b), breaks = breaks_at(bundles, b, ink.travel) + kSwept * aside;
+        const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel), breaks = own + kSwept * aside * (1 - own);
         const double active = std::clamp((wet - std::min(breaks, 1 - kThinning)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;
         const double bridge = wet >= 1 ? 8 * a : active * std::max(kMark, kBridge * spacing * wet / (1 - wet));
         const double mark = active * kMark;
         const Lying on = touching(bundles, b, wet, lower[i].x, laid);
-        const double past_lo = i == 0 && wet >= 1 ? bridge : mark;
-        const double past_hi = i + 1 == lower.size() && wet >= 1 ? bridge : mark;
+        const double skirt = std::lerp(mark, bridge, smooth_step((wet - kSkirt) / (kFullSkirt - kSkirt)));
+        const double past_lo = i == 0 ? skirt : mark;
+        const double past_hi = i + 1 == lower.size() ? skirt : mark;
         const double gap = strands.empty() ? 1e9 : (lower[i].x - strands.back().hi) * a;
         const bool bridged = gap <= bridge_before + bridge;
         if (bridged && std::abs(strands.back().begin - on.begin) < kSameEnd && std::abs(strands.back().end - on.end) < kSameEnd) {

@@ -62,18 +62,19 @@ struct HairMarks {
 ///
 ///     0.1 + 1.25 wet²,   and no more than measures max(1, wet / (2 (1 − wet)²)) streaks across its motion (`Across`):
 ///
-/// drawn sideways it has ink for no wider a way.
+/// drawn sideways it has ink for no wider a way. From wetness 0.7 on ink stands out beyond the outermost hair, from 0.9
+/// on as far as it bridges.
 ///
 /// Hair that a press spreads, or that closes again in a lifted tuft, is swept off the tuft's way. Dry hair draws no line
 /// by that: while the hand presses or lifts a thread needs
 ///
 ///     0.8 lands S(sin ψ / 0.35)
 ///
-/// more wetness, ψ the angle between the hair's way and the tuft's, S the smooth step. Strokes begin and end ragged,
+/// of what its need lacks to 1 more wetness, ψ the angle between the hair's way and the tuft's, S the smooth step. Strokes begin and end ragged,
 /// along themselves.
 ///
 /// All this is of the hair and of the way, in metres, and the same for any sampling and texel. Areas are exact at the
-/// edges. With wetness 1 in every bundle it is the picture of `rasterise`. All 500 bristles: about 0.2 ms.
+/// edges. As the wetness of every bundle goes to 1 it closes into the picture of `rasterise`. All 500 bristles: about 0.2 ms.
 HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines,
                      const brush::Bundles& bundles, int branches, const HairInk& ink,
                      const Frame& frame, std::uint32_t triangle, double cell);

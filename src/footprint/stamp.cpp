@@ -247,7 +247,7 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
     const double texel_size = surface.texels.texel_size;
     const double wanted = motion.turn == 0 ? poses_wanted(footprint, motion, texel_size, options) : 0;
-    const bool passes_over = options.passes_over && wanted > 0;
+    const bool passes_over = options.passes_over > 0 && wanted > 0;
     const bool swept = passes_over || (options.prefix_sums > 0 && wanted >= options.prefix_sums);
     if (!swept) jobs.sub_poses = spread_poses(footprint, motion, texel_size, options);
     list_pieces(surface.pieces, footprint, motion, scratch, jobs);
@@ -258,7 +258,8 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.reach_lo = reach.lo / float(footprint.cell) - to_cells - 2.0f;
     jobs.reach_hi = reach.hi / float(footprint.cell) - to_cells + 2.0f;
     if (swept) {
-        (passes_over ? sweep_over : sweep)(footprint, motion.shift, jobs, scratch.sweep);
+        if (passes_over) sweep_over(footprint, motion.shift, options.passes_over, jobs, scratch.sweep);
+        else sweep(footprint, motion.shift, jobs, scratch.sweep);
         return jobs;
     }
     jobs.width = footprint.width - 1;

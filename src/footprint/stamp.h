@@ -43,8 +43,8 @@ struct StampOptions {
     double sub_pose = 1.0;  ///< longest way of any point between sub-poses, texels
     int max_sub_poses = 64;
     int prefix_sums = 12;   ///< straight ways of so many sub-poses and more are integrated at once
-    bool passes_over = false;  ///< the motion, not turned, leaves what the picture passes over at all, not
-                               ///< the mean over it: for hairs finer than a texel
+    float passes_over = 0;  ///< 0–1: the motion, not turned, leaves so much of what the picture passes over at
+                            ///< all, the rest of the mean over it: for hairs finer than a texel
     Isa isa = best_isa();
 };
 

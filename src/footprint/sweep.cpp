@@ -134,10 +134,8 @@ struct Sheared {
     }
 };
 
-}  // namespace
-
-void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, SweepScratch& scratch) {
-    const Sheared sheared(footprint, shift);
+/// E into the scratch's picture; returns the gain that belongs to it.
+float mean_over(const Sheared& sheared, const Footprint& footprint, SweepScratch& scratch) {
     const int n_lines = sheared.n_lines, across = sheared.across;
     const double length = sheared.length;
     std::vector<float>&lines = scratch.lines, &sums = scratch.sums;
@@ -155,8 +153,8 @@ void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, Sweep
              across);
 
     const int start = sheared.start(), along = sheared.stop() - start + 1;
-    jobs.gain = static_cast<float>(std::min(1.0, (n_lines + 1) / std::abs(length)));
-    const auto scale = static_cast<float>(1 / (std::abs(length) * jobs.gain));
+    const auto gain = static_cast<float>(std::min(1.0, (n_lines + 1) / std::abs(length)));
+    const auto scale = static_cast<float>(1 / (std::abs(length) * gain));
     const auto upper = [&](double x) {  // line k of `lines` lies at k − 1
         const double p = std::clamp(x + 1, 0.0, double(n_lines + 1));
         const int k = std::min(static_cast<int>(p), n_lines);
@@ -171,11 +169,11 @@ void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, Sweep
         difference(upper(std::max(x, x + length)), upper(std::min(x, x + length)), scale,
                    swept.coverage.data() + std::size_t(k) * across, across);
     }
-    sheared.hand_over(swept, jobs);
+    return gain;
 }
 
-void sweep_over(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, SweepScratch& scratch) {
-    const Sheared sheared(footprint, shift);
+/// M likewise.
+void most_over(const Sheared& sheared, const Footprint& footprint, SweepScratch& scratch) {
     const int n_lines = sheared.n_lines, across = sheared.across;
     const double back = std::min(sheared.length, 0.0), on = std::max(sheared.length, 0.0);
     // The same number of whole lines lies between both ends of the way at every place.
@@ -195,7 +193,6 @@ void sweep_over(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, 
         for (int i = 0; i + wide < total; ++i) larger(at(most, i), at(most, i + wide), at(most, i), across);
 
     const int start = sheared.start(), along = sheared.stop() - start + 1;
-    jobs.gain = 1;
     Footprint& swept = scratch.swept;
     swept.width = across;
     swept.height = along;
@@ -212,7 +209,38 @@ void sweep_over(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, 
         largest(between(x + back), between(x + on), at(most, a), at(most, b), line.data() + 1, across);
         soften(line.data(), swept.coverage.data() + std::size_t(k) * across, across);
     }
-    sheared.hand_over(swept, jobs);
+}
+
+/// most = gain mean + part (most − gain mean), rounded.
+TUFT_CLONES void mix(const std::uint8_t* __restrict mean, float gain, float part, std::uint8_t* __restrict most, int n) {
+#pragma omp simd
+    for (int j = 0; j < n; ++j) {
+        const float e = gain * static_cast<float>(int{mean[j]});
+        most[j] = static_cast<std::uint8_t>(static_cast<int>(e + part * (static_cast<float>(int{most[j]}) - e) + 0.5f));
+    }
+}
+
+}  // namespace
+
+void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, SweepScratch& scratch) {
+    const Sheared sheared(footprint, shift);
+    jobs.gain = mean_over(sheared, footprint, scratch);
+    sheared.hand_over(scratch.swept, jobs);
+}
+
+void sweep_over(const Footprint& footprint, const Vec2& shift, float part, StampJobs& jobs, SweepScratch& scratch) {
+    const Sheared sheared(footprint, shift);
+    std::vector<std::uint8_t> mean;
+    float gain = 1;
+    if (part < 1) {
+        gain = mean_over(sheared, footprint, scratch);
+        mean = scratch.swept.coverage;
+    }
+    most_over(sheared, footprint, scratch);
+    std::vector<std::uint8_t>& swept = scratch.swept.coverage;
+    if (part < 1) mix(mean.data(), gain, part, swept.data(), static_cast<int>(swept.size()));
+    jobs.gain = 1;
+    sheared.hand_over(scratch.swept, jobs);
 }
 
 }  // namespace tuft::footprint

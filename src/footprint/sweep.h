@@ -13,8 +13,8 @@ namespace tuft::footprint {
 /// passes over, 0.3 ns each, however long the motion.
 void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, SweepScratch& scratch);
 
-/// The same with the largest value on the way instead of the mean, max_ρ P(x + ρ w): what the
-/// picture passes over at all. A hair drawn sideways leaves an area, not a thin film of its own width's share.
-void sweep_over(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, SweepScratch& scratch);
+/// The same with the largest value on the way, M(x) = max_ρ P(x + ρ w), what the picture passes over at
+/// all: E + part (M − E). A hair drawn sideways leaves an area, not a thin film of its own width's share.
+void sweep_over(const Footprint& footprint, const Vec2& shift, float part, StampJobs& jobs, SweepScratch& scratch);
 
 }  // namespace tuft::footprint

@@ -65,6 +65,22 @@ TEST(Hair, WetHairCoversTheOutline) {
     EXPECT_LE(worst, 13) << "of 255: pieces of a band overlap or miss a little where it bends";
 }
 
+TEST(Hair, MarksCloseIntoTheOutlineAsTheyGetWet) {
+    // So that a tuft may be drawn in one closed shape from wetness 1 on, and nothing jumps there.
+    const brush::Bundles& bundles = pressed().tuft.bundles;
+    const Footprint closed = marks(bundles, 1);
+    const auto open = [&](double wet) {
+        const Footprint f = marks(bundles, wet, 5e-3);
+        double sum = 0;
+        for (std::size_t i = 0; i < f.coverage.size(); ++i)
+            sum += std::abs(int(closed.coverage[i]) - int(f.coverage[i])) / 255.0;
+        return sum * f.cell * f.cell / area_of(closed);
+    };
+    EXPECT_GT(open(0.8), 0.02);
+    // Pieces of a band overlap or miss a little where it bends.
+    for (const double wet : {0.9, 0.97, 0.999}) EXPECT_LT(open(wet), 1.5e-3) << wet;
+}
+
 TEST(Hair, LessInkCoversLess) {
     double before = area_of(marks(pressed().tuft.bundles, 1));
     const double whole = before;

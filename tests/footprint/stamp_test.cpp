@@ -4,6 +4,8 @@
 
 #include <bit>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <numbers>
 #include <set>
 
@@ -115,7 +117,7 @@ TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
                     f.coverage[static_cast<std::size_t>(j) * f.width + i] =
                         end < 20 ? static_cast<std::uint8_t>(255 * std::clamp(1.5 - off, 0.0, 1.0)) : 0;
                 }
-            const StampJobs jobs = stage.plan(f, {way * texel * on, 0}, {.passes_over = true});
+            const StampJobs jobs = stage.plan(f, {way * texel * on, 0}, {.passes_over = 1});
             ASSERT_EQ(jobs.sub_poses.size(), 1u);
             double inside = 1, outside = 0;
             for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
@@ -126,6 +128,16 @@ TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
                 if (x > -way && x < 0 && y < 18.5) inside = std::min(inside, double(e));
                 if (x < -way - 1.8 || x > 1.8 || y > 21.5) outside = std::max(outside, double(e));
             });
+            // Half of it: half of what lies over the mean that any closed picture leaves.
+            const auto exposed = [&](float part) {
+                std::map<std::pair<std::uint32_t, int>, float> by_texel;
+                const StampJobs some = stage.plan(f, {way * texel * on, 0}, {.passes_over = part});
+                for_exposed(stage, some, [&](std::uint32_t slot, int t, float e) { by_texel[{slot, t}] = e; });
+                return by_texel;
+            };
+            auto half = exposed(0.5f), none = exposed(1e-6f);
+            // Each of the three pictures is rounded to 1/255.
+            for (const auto& [texel_of, e] : exposed(1)) ASSERT_NEAR(half[texel_of], 0.5f * (e + none[texel_of]), 1.1f / 255);
             // Between the cells of the sheared picture some of the hair's peak is lost, and little goes beyond.
             EXPECT_GT(inside, 0.75) << way << " " << angle;
             EXPECT_LT(outside, 0.01) << way << " " << angle;

@@ -321,7 +321,7 @@ double supply_quantity(double eta, double moment_factor, double remaining, doubl
 DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampContact& contact,
                             const Substrate& substrate) {
     DepositParams out;
-    out.transfer_length = static_cast<float>((contact.by_hair ? kThreadWets : 1) * ink.transfer_length);
+    out.transfer_length = static_cast<float>(std::lerp(1.0, kThreadWets, contact.by_hair) * ink.transfer_length);
     out.capacity = substrate.capacity;
     out.extinction = extinction_of(ink);
     out.mix = mix_over(tuft, contact.touch);
@@ -336,7 +336,7 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
     const double offered = ink.supply * squeezed * near / ink.supply_length;  // film·m² per metre
     const double asked = ink.film * contact.width;
     double target = ink.film * std::min(1.0, 0.85 + 0.3 * k);
-    if (asked > 0) target *= std::max(-std::expm1(-offered / asked), contact.by_hair ? kThread : 0.0);
+    if (asked > 0) target *= std::max(-std::expm1(-offered / asked), kThread * contact.by_hair);
     if (contact.area > 0) target = std::min(target, std::max(0.0, left - contact.owed) / contact.area);
     out.target = static_cast<float>(target);
     return out;

@@ -149,7 +149,7 @@ struct StampContact {
     double width = 0;          ///< metres across the motion, gaps between hairs left out
     double area = 0;           ///< m² of the contact patch
     double owed = 0;           ///< film·m² of what the tuft still holds that is laid down already
-    bool by_hair = false;      ///< single hairs touch, which leave a film of their own thickness or none
+    double by_hair = 0;        ///< 0–1: how much single hairs touch, which leave a film of their own thickness or none
     std::span<const float> touch = {};  ///< as `Touch`; empty: the whole tuft alike
 };
 

@@ -299,7 +299,7 @@ void Painting::draw_poses() {
             // A batch shares what is left; mixed ink comes stamp by stamp.
             .area = area * (h.mixed || h.paste ? 1.0 : static_cast<double>(Stamper::kBatch)),
             .owed = h.owed,
-            .by_hair = stamp.by_hair,
+            .by_hair = static_cast<double>(stamp.apart),
             .touch = h.touched};
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
         stamp.ink.capacity = std::max(h.substrate->capacity, static_cast<float>(ink::standing_film(h.ink.yield)));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/ease.h"
 #include "core/simd.h"
 #include "footprint/hair.h"
 #include "footprint/slip.h"
@@ -22,7 +23,7 @@ constexpr double kGrainFilm = 7.5e-6;
 constexpr double kRests = 1;            // rms heights over the mean of the grain that dry hair is held up by its hills
 constexpr double kSoakLength = 0.2e-3;    // metres of travel over which ink comes to the parts of the hair that touch
 constexpr double kLieLength = 1e-3;     // metres of hair on the surface that turn the grid of its ink
-constexpr double kClings = 0.97;        // wetness below which hair that hangs together parts: it closes again at 1
+constexpr double kApart = 0.05;         // mean lack of wetness of the bundles at which all of a tuft touches by single hairs
 constexpr double kSplays = 0.4;         // lack of wetness at which no water holds the tip together
 
 footprint::StampOptions stamp_options(const Settings& settings) {
@@ -170,7 +171,7 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
     const std::size_t n = reservoir.n_bundles(), cells = reservoir.n_cells();
     std::vector<double> saturation(n, 0), wetness(n), depth(cells, 0);
     for (std::size_t i = 0; i < touched.size(); ++i) depth[i % cells] += static_cast<double>(touched[i]);
-    double least = 1e9, mean = 0;
+    double mean = 0, lack = 0;
     // Which hair touches with which part of it flickers from stamp to stamp: threads of ink would break in dashes.
     const double soaks = -std::expm1(-(travel - parted) / kSoakLength);
     for (std::size_t k = 0; k < n; ++k) {
@@ -178,7 +179,7 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
         wetness[k] = footprint::wetness_of_bundle(saturation[k], tuft.bundles.holds[k], speed);
         if (soaked.size() == n) wetness[k] = std::lerp(soaked[k], wetness[k], soaks);
         mean += wetness[k] / static_cast<double>(n);
-        least = std::min(least, wetness[k]);
+        lack += std::max(0.0, 1 - wetness[k]) / static_cast<double>(n);
     }
     soaked = wetness;
     brush::part_bundles(tuft.bundles, tuft.preset, stress(contact), saturation, travel - parted, dt);
@@ -186,7 +187,7 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
 
     Stamp stamp;
     // On the palette the pool itself fills the gaps of dry hair.
-    const bool closed = least >= (by_hair ? 1 : kClings) || stroke.layer == kPaletteLayer;
+    const bool closed = !(lack > 0) || stroke.layer == kPaletteLayer;
     by_hair = !closed;
     closed_area = 0;
     const double amount = closed ? 0 : std::clamp((1 - mean) / kSplays, 0.0, 1.0);
@@ -211,6 +212,7 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
                                                            {wetness, travel, heading, lay, lands}, contact.frame, contact.triangle, cell);
         stamp.footprint = std::move(marks.footprint);
         stamp.by_hair = true;
+        stamp.apart = static_cast<float>(smooth_step(lack / kApart));
         const double dry = std::max(1e-3, 1 - mean);
         stamp.grain_film = kGrainFilm * 2 * mean / (dry * dry) - kRests * static_cast<double>(substrate->relief) * dry;
         closed_area = marks.closed_area;

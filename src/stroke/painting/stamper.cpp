@@ -41,7 +41,7 @@ const Stamper::Grain& Stamper::grain(std::uint32_t slot) {
 footprint::Motion Stamper::motion_of(const Stamp& stamp) const {
     footprint::Motion motion = stamp.motion;
     const double way = glm::length(motion.shift);
-    if (stamp.by_hair && way > 0) motion.shift *= 1 + model_.texels.texel_size / way;
+    if (stamp.apart > 0 && way > 0) motion.shift *= 1 + static_cast<double>(stamp.apart) * model_.texels.texel_size / way;
     return motion;
 }
 

@@ -24,7 +24,8 @@ struct Stamp {
     ink::DepositParams ink;
     double ds = 0;               ///< metres of travel it stands for
     double erases = 0;           ///< strength of an eraser, which takes ink instead; 0: it is none
-    bool by_hair = false;        ///< single hairs touch, and the surface's grain where it is not filled
+    bool by_hair = false;        ///< drawn by its hair: the surface's grain shows where it is not filled
+    float apart = 0;             ///< 0–1: how much of it is single hairs; 0: one closed patch
     double grain_film = 0;       ///< then: metres of ink under the hair over the grain's mean height
     ink::TouchGrid grid;         ///< over the footprint, for ink that is not the same all over it
 };
@@ -86,7 +87,7 @@ class Stamper {
     /// Single hairs drawn sideways ink all that they pass over; sub-poses would leave a comb.
     footprint::StampOptions options_of(const Stamp& stamp) const {
         footprint::StampOptions o = options_;
-        o.passes_over = stamp.by_hair;
+        o.passes_over = stamp.apart;
         return o;
     }
 
