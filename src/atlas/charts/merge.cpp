@@ -7,25 +7,19 @@
 #include "atlas/charts/meter.h"
 #include "atlas/charts/seam_graph.h"
 #include "atlas/charts/tasks.h"
+#include "atlas/flatten/carry_uvs.h"
 #include "atlas/flatten/hull.h"
+#include "atlas/flatten/rigid_motion.h"
 
 namespace tuft::atlas {
 namespace {
 
 constexpr std::size_t kDear = 4096;     // triangles
+constexpr std::size_t kLong = 20000;    // triangles: chains are long there
 constexpr double kNearEnds = 1.0 / 32;  // of the border's length
 constexpr double kAsLong = 1.05;        // as another
 constexpr double kAtFirst = 1.1;        // beyond limits of form, before a chart is laid flat
 constexpr double kUsualWork = 5;        // triangles in all trials, over those of the mesh
-
-/// A rigid motion of the plane.
-struct Motion {
-    double c = 1, s = 0;
-    Vec2 shift{0};
-    Vec2 operator()(const Vec2& p) const {
-        return Vec2(c * p.x - s * p.y, s * p.x + c * p.y) + shift;
-    }
-};
 
 /// One pair of charts to be tried along one chain.
 struct Trial {
@@ -44,8 +38,8 @@ Vec2 corner_uv(const FlatChart& chart, std::uint32_t h) {
 
 /// The motion of b's UVs that brings the two sides of the chain together best, and the
 /// root mean square distance that is left.
-std::pair<Motion, double> fit_sides(const FlatChart& a, const FlatChart& b,
-                                    std::span<const std::uint32_t> twin, const Trial& trial) {
+std::pair<RigidMotion, double> fit_sides(const FlatChart& a, const FlatChart& b, std::span<const std::uint32_t> twin,
+                                         const Trial& trial) {
     std::vector<std::array<Vec2, 2>> pairs;
     for (std::size_t i = 0; i < trial.n_chain; ++i) {
         std::uint32_t h = trial.halves[i], g = twin[h];
@@ -53,29 +47,29 @@ std::pair<Motion, double> fit_sides(const FlatChart& a, const FlatChart& b,
         pairs.push_back({corner_uv(a, h), corner_uv(b, next_half(g))});
         pairs.push_back({corner_uv(a, next_half(h)), corner_uv(b, g)});
     }
-    Vec2 mean_a(0), mean_b(0);
-    for (const auto& [p, q] : pairs) {
-        mean_a += p;
-        mean_b += q;
-    }
-    mean_a /= double(pairs.size());
-    mean_b /= double(pairs.size());
-    double c = 0, s = 0;
-    for (const auto& [p, q] : pairs) {
-        const Vec2 u = p - mean_a, v = q - mean_b;
-        c += glm::dot(u, v);
-        s += u.y * v.x - u.x * v.y;
-    }
-    const double norm = std::hypot(c, s);
-    Motion m;
-    if (norm > 0) {
-        m.c = c / norm;
-        m.s = s / norm;
-    }
-    m.shift = mean_a - Vec2(m.c * mean_b.x - m.s * mean_b.y, m.s * mean_b.x + m.c * mean_b.y);
+    const RigidMotion m = fit_motion(pairs);
     double misfit = 0;
     for (const auto& [p, q] : pairs) misfit += glm::dot(p - m(q), p - m(q));
     return {m, std::sqrt(misfit / double(pairs.size()))};
+}
+
+/// Both charts where they lie, b moved, and the corners that they share in the middle.
+std::vector<Vec2> side_by_side(const FlatChart& a, const FlatChart& b, const RigidMotion& motion, const ChartMesh& both) {
+    std::vector<Vec2> uv(both.n_vertices(), Vec2(0));
+    std::vector<std::uint32_t> count(both.n_vertices(), 0);
+    std::size_t ia = 0, ib = 0;
+    for (std::size_t f = 0; f < both.faces.size(); ++f) {
+        const bool in_a = ia < a.mesh.triangles.size() && a.mesh.triangles[ia] == both.triangles[f];
+        const FlatChart& from = in_a ? a : b;
+        const auto& face = from.mesh.faces[in_a ? ia++ : ib++];
+        for (int k = 0; k < 3; ++k) {
+            const Vec2& p = from.uv[face[k]];
+            uv[both.faces[f][k]] += in_a ? p : motion(p);
+            ++count[both.faces[f][k]];
+        }
+    }
+    for (std::size_t v = 0; v < count.size(); ++v) uv[v] /= double(count[v]);
+    return uv;
 }
 
 /// How compact a chart is.
@@ -197,6 +191,10 @@ class Merger {
         return order;
     }
 
+    bool lies_flat(const FlatCheck& check, double worst) const {
+        return check.sound() && check.l2 <= options_.l2 && check.stretch_999 <= options_.largest && check.linf <= worst;
+    }
+
     /// Flattens the two charts as one from where they lie now.
     void attempt(Trial& t, MeterPart& part) {
         const FlatChart& a = cut_.charts[chart_at_[t.a]];
@@ -212,21 +210,13 @@ class Merger {
         t.flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         ChartMesh& mesh = t.flat.mesh;
         if (!mesh.disk) return;
-        t.flat.uv.assign(mesh.n_vertices(), Vec2(0));
-        std::vector<std::uint32_t> count(mesh.n_vertices(), 0);
-        std::size_t ia = 0, ib = 0;
-        for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-            const bool in_a =
-                ia < a.mesh.triangles.size() && a.mesh.triangles[ia] == mesh.triangles[f];
-            const FlatChart& from = in_a ? a : b;
-            const auto& face = from.mesh.faces[in_a ? ia++ : ib++];
-            for (int k = 0; k < 3; ++k) {
-                const Vec2& p = from.uv[face[k]];
-                t.flat.uv[mesh.faces[f][k]] += in_a ? p : motion(p);
-                ++count[mesh.faces[f][k]];
-            }
+        if (mesh.faces.size() > kLong) {  // a start from which few steps lead on
+            const bool grows = a.mesh.triangles.size() < b.mesh.triangles.size();  // b, by a
+            const FlatChart &kept = grows ? b : a, &taken = grows ? a : b;
+            t.flat.uv = carry_uvs(kept, taken, taken.mesh.triangles, mesh);
+        } else {
+            t.flat.uv = side_by_side(a, b, motion, mesh);
         }
-        for (std::size_t v = 0; v < count.size(); ++v) t.flat.uv[v] /= double(count[v]);
 
         // Charts that lie one over the other stay so; only near the ends of the chain do small
         // crossings go away. That is worth a look where laying flat is dear.
@@ -244,9 +234,7 @@ class Merger {
             scale_to_area(mesh, t.flat.uv);
             check = check_flat(mesh, t.flat.uv, options_.gap);
         }
-        if (!check.sound() || check.l2 > options_.l2 || check.stretch_999 > options_.largest ||
-            check.linf > std::max({options_.worst, a.worst, b.worst}))
-            return;
+        if (!lies_flat(check, std::max({options_.worst, a.worst, b.worst}))) return;
         t.flat.worst = check.linf;
         t.flat.l2 = check.l2;
         t.merged = !misshapen(form_of(t.flat), parts, 1);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <utility>
 
 #include "atlas/charts/meter.h"
 #include "atlas/charts/seam_paths.h"
@@ -16,6 +18,9 @@ constexpr int kReaches = 2;
 constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
 constexpr double kLeastSaved = 0.02;  // of a seam's length, for which charts are laid anew
 constexpr int kIterations = 8;         // from where a chart lies, most of it well
+constexpr std::size_t kDear = 20000;    // triangles of a chart
+constexpr std::size_t kAround = 5;     // times the triangles taken over, laid anew
+constexpr std::size_t kLeastAround = 500;
 constexpr double kLeastValue = 0.05;  // saved, over the unit, for laying all of the mesh anew
 constexpr double kLeastValueDear = 0.1;  // the same where that takes many seconds
 constexpr double kMostWork = 8;       // triangles laid flat, over those of the mesh
@@ -86,9 +91,25 @@ class Mover {
                cut_.charts[t.chart[1]].mesh.faces.size();
     }
 
+    /// The newest version of each chart and those next to it.
+    std::vector<std::uint32_t> newest_versions() const {
+        std::vector<std::uint32_t> newest(cut_.charts.size());
+        for (std::size_t c = 0; c < newest.size(); ++c) newest[c] = cut_.charts[c].version;
+        for (std::uint32_t h = 0; h < paths_.seams().size(); ++h) {
+            if (!paths_.seams()[h] || patch_.twin[h] == kNone) continue;
+            std::uint32_t& own = newest[paths_.charts()[h / 3]];
+            own = std::max(own, cut_.charts[paths_.charts()[patch_.twin[h] / 3]].version);
+        }
+        return newest;
+    }
+
     /// Moves of disjoint pairs of charts, those that save most first.
     std::vector<Trial> next_trials() {
         std::vector<Trial> all;
+        // A path found before is still the shortest while the charts beside it and all around them are
+        // as they were.
+        const std::vector<std::uint32_t> newest = newest_versions();
+        std::map<Refusals::Change, Found> found;
         std::vector<std::uint8_t> seen(paths_.seams().size(), 0);
         for (std::uint32_t h = 0; h < seen.size(); ++h) {
             if (seen[h] || !paths_.starts_chain(h)) continue;
@@ -102,12 +123,20 @@ class Mover {
             const double least = std::max(kLeastSaved * length, least_value_ * work);
             t.change = {h, cut_.charts[t.chart[0]].version, cut_.charts[t.chart[1]].version};
             int& refused = cut_.refused.moved[t.change];
-            for (; refused < kReaches; ++refused) {
-                t.move = paths_.shorten(chain, kReach[refused], Corners::move);
-                if (t.move.saved > least) break;
+            const Refusals::Change around{h, newest[t.chart[0]], newest[t.chart[1]]};
+            if (const auto known = found_.find(around); known != found_.end() && known->second.refused == refused) {
+                t.move = known->second.move;
+            } else {
+                for (; refused < kReaches; ++refused) {
+                    t.move = paths_.shorten(chain, kReach[refused], Corners::move);
+                    if (t.move.saved > least) break;
+                }
             }
-            if (refused < kReaches) all.push_back(std::move(t));
+            if (refused == kReaches) continue;
+            found[around] = {refused, t.move};
+            all.push_back(std::move(t));
         }
+        found_ = std::move(found);
         std::stable_sort(all.begin(), all.end(), [](const Trial& a, const Trial& b) {
             return a.move.saved > b.move.saved;
         });
@@ -135,32 +164,91 @@ class Mover {
         }
     }
 
-    /// The triangles of one of the charts after the move.
-    std::vector<std::uint32_t> triangles_after(const Trial& t, int side) const {
-        std::vector<std::uint32_t> kept, gone = t.swept[side], come = t.swept[1 - side];
-        if (t.n_charts() == 1) return cut_.charts[t.chart[0]].mesh.triangles;
-        std::sort(gone.begin(), gone.end());
+    /// Triangles that one of the charts takes over, ascending.
+    std::vector<std::uint32_t> taken(const Trial& t, int side) const {
+        if (t.n_charts() == 1) return change_sides(t);
+        std::vector<std::uint32_t> come = t.swept[1 - side];
         std::sort(come.begin(), come.end());
+        return come;
+    }
+
+    /// Where both sides of the chain are one chart: the triangles between where the seam was and where
+    /// it is, which are all but the largest of the parts that the two leave.
+    std::vector<std::uint32_t> change_sides(const Trial& t) const {
+        const std::vector<std::uint32_t>& own = cut_.charts[t.chart[0]].mesh.triangles;
+        std::vector<std::uint32_t> chain(t.move.chain);
+        for (const std::uint32_t h : t.move.chain) chain.push_back(cut_.twin[h]);
+        std::sort(chain.begin(), chain.end());
+        std::vector<std::uint8_t> seen(own.size(), 0);
+        std::vector<std::uint32_t> largest, others;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            if (seen[i]) continue;
+            seen[i] = 1;
+            std::vector<std::uint32_t> part{own[i]};
+            for (std::size_t k = 0; k < part.size(); ++k)
+                for (std::uint32_t h = 3 * part[k]; h < 3 * part[k] + 3; ++h) {
+                    const std::uint32_t g = cut_.glued[h];
+                    if (g == kNone || std::binary_search(chain.begin(), chain.end(), h)) continue;
+                    const auto at = std::lower_bound(own.begin(), own.end(), g / 3) - own.begin();
+                    if (std::exchange(seen[static_cast<std::size_t>(at)], 1)) continue;
+                    part.push_back(g / 3);
+                }
+            if (part.size() > largest.size()) std::swap(part, largest);
+            others.insert(others.end(), part.begin(), part.end());
+        }
+        std::sort(others.begin(), others.end());
+        return others;
+    }
+
+    /// The triangles of one of the charts after the move, of which it has taken some over.
+    std::vector<std::uint32_t> triangles_after(const Trial& t, int side, const std::vector<std::uint32_t>& come) const {
         const std::vector<std::uint32_t>& own = cut_.charts[t.chart[side]].mesh.triangles;
-        std::set_difference(own.begin(), own.end(), gone.begin(), gone.end(),
-                            std::back_inserter(kept));
+        if (t.n_charts() == 1) return own;
+        std::vector<std::uint32_t> kept, gone = t.swept[side];
+        std::sort(gone.begin(), gone.end());
+        std::set_difference(own.begin(), own.end(), gone.begin(), gone.end(), std::back_inserter(kept));
         std::vector<std::uint32_t> after(kept.size() + come.size());
         std::merge(kept.begin(), kept.end(), come.begin(), come.end(), after.begin());
         return kept.empty() ? kept : after;
+    }
+
+    /// Faces of a chart that are laid anew after it took some over: those and as many again around
+    /// them, `kAround` times. None where that is most of the chart, which is all of it.
+    static std::vector<std::uint32_t> around(const ChartMesh& chart, const std::vector<std::uint32_t>& come) {
+        const std::size_t wanted = std::max(kAround * come.size(), kLeastAround);
+        if (2 * wanted > chart.faces.size()) return {};
+        std::vector<std::uint8_t> seen(chart.faces.size(), 0);
+        std::vector<std::uint32_t> faces;
+        const auto add = [&](std::uint32_t f) {
+            if (!std::exchange(seen[f], 1)) faces.push_back(f);
+        };
+        for (std::size_t f = 0, k = 0; f < chart.faces.size(); ++f) {
+            while (k < come.size() && come[k] < chart.triangles[f]) ++k;
+            if (k < come.size() && come[k] == chart.triangles[f]) add(static_cast<std::uint32_t>(f));
+        }
+        for (std::size_t i = 0; i < faces.size() && faces.size() < wanted; ++i)
+            for (std::uint32_t h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
+                if (chart.twin[h] != kNone) add(chart.twin[h] / 3);
+        return faces;
     }
 
     /// Lays one of the charts flat as it would be from where it lies.
     bool lay(Trial& t, int side) {
         const FlatChart& old = cut_.charts[t.chart[side]];
         FlatChart& flat = t.flat[side];
-        std::vector<std::uint32_t> triangles = triangles_after(t, side);
+        const std::vector<std::uint32_t> come = taken(t, side);
+        std::vector<std::uint32_t> triangles = triangles_after(t, side, come);
         if (triangles.empty() || triangles.size() > options_.triangles) return false;
         flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         if (!flat.mesh.disk) return false;
-        flat.uv = carry_uvs(old, flat.mesh);
-        ArapOptions trial = trial_arap(options_);
-        trial.iterations = kIterations;
-        arap(flat.mesh, flat.uv, trial);
+        const bool dear = flat.mesh.faces.size() > kDear;
+        flat.uv = dear ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh) : unfold_uvs(old, flat.mesh);
+        // Where that is dear, what only gave triangles away is left as it lies, no less flat than before.
+        if (!dear || !come.empty()) {
+            ArapOptions trial = trial_arap(options_);
+            trial.iterations = kIterations;
+            arap(flat.mesh, flat.uv, trial, dear ? around(flat.mesh, come) : std::vector<std::uint32_t>{});
+        }
         scale_to_area(flat.mesh, flat.uv);
         const FlatCheck check = check_flat(flat.mesh, flat.uv, options_.gap);
         if (!check.sound() || check.l2 > options_.l2 || check.stretch_999 > options_.largest ||
@@ -203,6 +291,12 @@ class Mover {
     StretchBudget budget_;
     Patch patch_;
     SeamPaths paths_;
+
+    struct Found {
+        int refused = 0;  // how often before
+        SeamMove move;
+    };
+    std::map<Refusals::Change, Found> found_;  // in the last round
 };
 
 }  // namespace

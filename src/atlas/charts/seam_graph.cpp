@@ -7,6 +7,7 @@
 #include <numeric>
 #include <queue>
 
+#include "core/parallel.h"
 #include "core/random.h"
 
 namespace tuft::atlas {
@@ -17,8 +18,13 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kFlatTriangle = 1e-3;
 constexpr double kTie = 0.02;
 
+/// Writes nothing where the way is a step long already, so that threads may ask then.
 std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    while (parent[i] != i) {
+        const std::uint32_t next = parent[parent[i]];
+        if (parent[i] != next) parent[i] = next;
+        i = next;
+    }
     return i;
 }
 
@@ -291,7 +297,11 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
     std::vector<Entry> start;
     start.reserve(half_.size() + half_.size() / 8);  // chains that change come back before they all went
     for (std::uint32_t e = 0; e < half_.size(); ++e)
-        if (seam_[e] && chain_of(e) == e) start.push_back({cost(e, limits), e, version_[e]});
+        if (seam_[e] && chain_parent_[e] == e) start.push_back({kNever, e, version_[e]});
+    for (std::uint32_t c = 0; c < chart_parent_.size(); ++c) chart_parent_[c] = find_root(chart_parent_, c);
+    parallel_for(start.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) start[i].cost = cost(start[i].chain, limits);
+    });
 
     std::size_t left = start.size();
     const std::size_t all = std::max<std::size_t>(left, 1);

@@ -1,14 +1,23 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "atlas/charts/charts.h"
 
 namespace tuft::atlas {
 
-/// Where a chart lies to begin with that took some triangles over from its neighbours: the
-/// triangles that it shares with `old` stay, the others are unfolded from those one by one.
-/// There must be a shared one.
-std::vector<Vec2> carry_uvs(const FlatChart& old, const ChartMesh& chart);
+/// Where a chart lies to begin with that took the triangles `taken` (ascending) over from `donor`:
+/// its other triangles stay where they lie in `old`. Each connected part of those taken comes as
+/// it lies in `donor`, moved rigidly to where it fits best along the border with the others; what
+/// is still open there is shared out over it. `donor` may be `old` itself, where a part goes over
+/// to the other side of a slit.
+std::vector<Vec2> carry_uvs(const FlatChart& old, const FlatChart& donor,
+                            std::span<const std::uint32_t> taken, const ChartMesh& chart);
+
+/// The same for a small chart: the triangles that it shares with `old` stay, the others are
+/// unfolded from those one by one. It follows a winding border better, but in a large chart small
+/// errors grow.
+std::vector<Vec2> unfold_uvs(const FlatChart& old, const ChartMesh& chart);
 
 }  // namespace tuft::atlas

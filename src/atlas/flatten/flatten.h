@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "atlas/charts/chart_mesh.h"
@@ -25,8 +26,12 @@ std::optional<std::vector<Vec2>> lscm(const ChartMesh& chart);
 /// Minimises Σ_t Σ_k cot α_k |(u_i − u_j) − R_t (x_i − x_j)|² over UVs u and one rotation
 /// R_t per triangle, by turns (Liu et al. 2008: local/global). The matrix is factorised
 /// once. Slivers are laid out a little fatter so that their weights stay finite. `uv` is
-/// the start and the result; returns its energy before the last step.
-double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options = {});
+/// the start and the result; returns its energy before the last step. With `faces`, only those
+/// are laid anew, and the corners that they share with others stay where they are.
+double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options = {},
+            std::span<const std::uint32_t> faces = {});
+/// That energy of UVs as they are.
+double arap_energy(const ChartMesh& chart, const std::vector<Vec2>& uv);
 
 /// Moves vertices of triangles without positive area, and their neighbours, until
 /// every triangle around them has some; true when none is left.

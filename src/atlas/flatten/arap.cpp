@@ -1,0 +1,226 @@
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "atlas/flatten/flatten.h"
+#include "atlas/flatten/reference.h"
+
+namespace tuft::atlas {
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+/// The part of a chart that is laid out anew: its triangles and their vertices, those that move
+/// first.
+struct Part {
+    std::vector<std::array<std::uint32_t, 3>> faces;  ///< vertices of the part
+    std::vector<Reference> references;
+    std::vector<std::uint32_t> vertex;  ///< of the chart
+    std::size_t n_free = 0;
+    double area = 0;
+};
+
+/// All of a chart; its first vertex stays.
+Part whole(const ChartMesh& chart) {
+    const auto n = static_cast<std::uint32_t>(chart.n_vertices());
+    Part part;
+    part.vertex.resize(n);
+    std::iota(part.vertex.begin(), part.vertex.end(), 1u);
+    part.vertex[n - 1] = 0;
+    part.n_free = n - 1;
+    part.faces = chart.faces;
+    for (auto& f : part.faces)
+        for (std::uint32_t& v : f) v = v > 0 ? v - 1 : n - 1;
+    part.references.resize(part.faces.size());
+    for (std::size_t t = 0; t < part.references.size(); ++t)
+        part.references[t] = reference_triangle(chart, t);
+    part.area = chart.area;
+    return part;
+}
+
+/// Some triangles of a chart; the vertices that they share with others stay.
+Part part_of(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
+    std::vector<std::uint32_t> slot(chart.n_vertices(), kNone);
+    std::vector<std::uint8_t> inside(chart.faces.size(), 0);
+    for (const std::uint32_t f : faces) inside[f] = 1;
+    constexpr std::uint32_t kHeld = kNone - 1;
+    for (std::size_t f = 0; f < chart.faces.size(); ++f)
+        if (!inside[f])
+            for (const std::uint32_t v : chart.faces[f]) slot[v] = kHeld;
+    Part part;
+    part.references.reserve(faces.size());
+    for (const std::uint32_t f : faces) {
+        for (const std::uint32_t v : chart.faces[f])
+            if (slot[v] == kNone) {
+                slot[v] = static_cast<std::uint32_t>(part.vertex.size());
+                part.vertex.push_back(v);
+            }
+        part.references.push_back(reference_triangle(chart, f));
+        part.area += part.references.back().area;
+    }
+    part.n_free = part.vertex.size();
+    for (const std::uint32_t f : faces) {
+        std::array<std::uint32_t, 3> own = chart.faces[f];
+        for (std::uint32_t& v : own) {
+            if (slot[v] == kHeld) {
+                slot[v] = static_cast<std::uint32_t>(part.vertex.size());
+                part.vertex.push_back(v);
+            }
+            v = slot[v];
+        }
+        part.faces.push_back(own);
+    }
+    return part;
+}
+
+/// Stiffness matrix Σ half_cot over edges, rows and columns of the vertices that move; `held` is
+/// what the others pull with.
+Matrix stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& held) {
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(6 * part.faces.size() + part.n_free);
+    std::vector<double> diagonal(part.vertex.size(), 0);
+    held.assign(part.n_free, Vec2(0));
+    for (std::size_t t = 0; t < part.faces.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const auto [i, j] = std::minmax(part.faces[t][k], part.faces[t][(k + 1) % 3]);
+            const double w = part.references[t].half_cot[k];
+            diagonal[i] += w;
+            diagonal[j] += w;
+            if (j < part.n_free)
+                entries.emplace_back(static_cast<int>(j), static_cast<int>(i), -w);
+            else if (i < part.n_free)
+                held[i] += w * uv[j];
+        }
+    for (std::size_t v = 0; v < part.n_free; ++v)
+        entries.emplace_back(static_cast<int>(v), static_cast<int>(v), diagonal[v]);
+    const auto size = static_cast<Eigen::Index>(part.n_free);
+    Matrix matrix(size, size);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+}
+
+struct Rotation {
+    double c = 1, s = 0;  // cosine and sine
+    double energy = 0;    // left after it
+};
+
+/// Closest rotation (c, −s; s, c) to Σ w (u_i − u_j)(x_i − x_j)ᵀ over the edges of a triangle.
+Rotation closest_rotation(const std::array<std::uint32_t, 3>& f, const Reference& r,
+                          const std::vector<Vec2>& uv) {
+    double c = 0, s = 0, square = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3;
+        const Vec2 du = uv[f[k]] - uv[f[l]], dx = r.corner[k] - r.corner[l];
+        const double w = r.half_cot[k];
+        c += w * (du.x * dx.x + du.y * dx.y);
+        s += w * (du.y * dx.x - du.x * dx.y);
+        square += w * (glm::dot(du, du) + glm::dot(dx, dx));
+    }
+    const double norm = std::sqrt(c * c + s * s);
+    if (!(norm > 0)) return {1, 0, std::max(0.0, square)};
+    return {c / norm, s / norm, std::max(0.0, square - 2 * norm)};
+}
+
+/// A factorised stiffness matrix: both coordinates are solved for in one pass over it.
+class Factor {
+  public:
+    bool compute(const Matrix& matrix) {
+        ldlt_.compute(matrix);
+        if (ldlt_.info() != Eigen::Success) return false;
+        diagonal_ = ldlt_.vectorD();
+        permuted_.resize(static_cast<std::size_t>(matrix.rows()));
+        return true;
+    }
+
+    /// Replaces the right hand side by the solution.
+    void solve(std::span<Vec2> x) {
+        const auto& place = ldlt_.permutationP().indices();
+        const auto& factor = ldlt_.matrixL().nestedExpression();  // below the diagonal of ones
+        const int* start = factor.outerIndexPtr();
+        const int* row = factor.innerIndexPtr();
+        const double* value = factor.valuePtr();
+        const auto n = static_cast<Eigen::Index>(x.size());
+        Vec2* p = permuted_.data();
+        for (Eigen::Index i = 0; i < n; ++i) p[place[i]] = x[static_cast<std::size_t>(i)];
+        for (Eigen::Index j = 0; j < n; ++j)
+            for (int k = start[j]; k < start[j + 1]; ++k) p[row[k]] -= value[k] * p[j];
+        for (Eigen::Index j = 0; j < n; ++j) p[j] /= diagonal_[j];
+        for (Eigen::Index j = n; j-- > 0;) {
+            Vec2 sum = p[j];
+            for (int k = start[j]; k < start[j + 1]; ++k) sum -= value[k] * p[row[k]];
+            p[j] = sum;
+        }
+        for (Eigen::Index i = 0; i < n; ++i) x[static_cast<std::size_t>(i)] = p[place[i]];
+    }
+
+  private:
+    Eigen::SimplicialLDLT<Matrix> ldlt_;
+    Eigen::VectorXd diagonal_;
+    std::vector<Vec2> permuted_;
+};
+
+/// The local step: `rhs` of the global one for the rotations that fit `uv` best. Returns the
+/// energy of `uv`.
+double fit_rotations(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& rhs) {
+    std::fill(rhs.begin(), rhs.end(), Vec2(0));
+    double energy = 0;
+    for (std::size_t t = 0; t < part.references.size(); ++t) {
+        const auto& f = part.faces[t];
+        const Reference& r = part.references[t];
+        const auto [c, s, e] = closest_rotation(f, r, uv);
+        energy += e;
+        for (int k = 0; k < 3; ++k) {
+            const int l = (k + 1) % 3;
+            const Vec2 dx = r.corner[k] - r.corner[l];
+            const Vec2 b = r.half_cot[k] * Vec2(c * dx.x - s * dx.y, s * dx.x + c * dx.y);
+            rhs[f[k]] += b;
+            rhs[f[l]] -= b;
+        }
+    }
+    return energy;
+}
+
+}  // namespace
+
+double arap_energy(const ChartMesh& chart, const std::vector<Vec2>& uv) {
+    double energy = 0;
+    for (std::size_t t = 0; t < chart.faces.size(); ++t)
+        energy += closest_rotation(chart.faces[t], reference_triangle(chart, t), uv).energy;
+    return energy / std::max(chart.area, 1e-300);
+}
+
+double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options,
+            std::span<const std::uint32_t> faces) {
+    if (chart.n_vertices() < 3) return 0;
+    const Part part = faces.empty() ? whole(chart) : part_of(chart, faces);
+    if (part.n_free == 0) return 0;
+    const double area = std::max(part.area, 1e-300);
+    Factor factor;
+    std::vector<Vec2> at(part.vertex.size()), rhs(part.vertex.size()), held;
+    for (std::size_t v = 0; v < at.size(); ++v) at[v] = uv[part.vertex[v]];
+    double before = -1, energy = 0;
+    for (int step = 0; step < options.iterations; ++step) {
+        if (options.on_step) options.on_step();
+        energy = fit_rotations(part, at, rhs) / area;
+        if (energy < options.enough) break;
+        if (before >= 0 && before - energy < options.tolerance * energy) break;
+        if (step >= 3) {
+            // What is left after the remaining steps if each helps as much as the last one.
+            const double left = energy * std::pow(energy / before, options.iterations - step);
+            if (left > options.hopeless) break;
+        }
+        before = energy;
+        if (step == 0 && !factor.compute(stiffness(part, at, held))) break;
+        for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += held[v];
+        factor.solve(std::span(rhs).first(part.n_free));
+        std::copy(rhs.begin(), rhs.begin() + static_cast<std::ptrdiff_t>(part.n_free), at.begin());
+    }
+    for (std::size_t v = 0; v < part.n_free; ++v) uv[part.vertex[v]] = at[v];
+    return energy;
+}
+
+}  // namespace tuft::atlas
