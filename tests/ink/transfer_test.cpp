@@ -39,9 +39,9 @@ struct Touching {
             if (mix[p] > 0) canvas.touch(0, p).fill(film * mix[p]);
     }
     NodeAreas areas() const {
-        NodeAreas out{};
-        for (int k = 0; k < tents.count; ++k)
-            out[tents.node[k]] = static_cast<double>(tent_sum(tents.weight[k], nullptr, area));
+        NodeAreas out{}, of_tents;
+        tent_sums(of_tents, tents, nullptr, area);
+        for (int k = 0; k < tents.count; ++k) out[tents.node[k]] = of_tents[k];
         return out;
     }
     NodeTouch nodes() const { return node_touch(tuft, {}, {}, touch); }

@@ -191,16 +191,14 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         move(w.data(), up.data(), down.data(), v.up.data(), v.down.data(), mix[p].data(), strength.data());
         const double stored = change_sum(w.data(), old.data(), area.data());
         double lifted = 0;
-        for (int k = 0; k < tents.count; ++k) {
-            shares[k] = there ? static_cast<double>(tent_sum(tents.weight[k], up.data(), area)) : 0;
-            lifted += shares[k];
-        }
+        if (there) tent_sums(shares, tents, up.data(), area);
+        else shares.fill(0);
+        for (int k = 0; k < tents.count; ++k) lifted += shares[k];
         // What rounding makes of it: nothing may be given that does not come down.
         if (!used[p]) lifted = std::max(-stored, 0.0);
         const double laid = std::max(stored + lifted, 0.0);
         deal(taken, p, laid - stored, shares, tents);
-        for (int k = 0; k < tents.count; ++k)
-            shares[k] = static_cast<double>(tent_sum(tents.weight[k], down.data(), area));
+        tent_sums(shares, tents, down.data(), area);
         mixture.pigment(p, laid, shares);
     }
     mixture.water();

@@ -99,9 +99,8 @@ void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, kN
         if (!used[p]) continue;
         const double stored =
             store(canvas.touch(slot, p).data(), film.data(), dw[p].data(), part.data(), mix[p].data(), area.data());
-        for (int k = 0; k < tents.count; ++k)
-            shares[k] = static_cast<double>(mixes[p][tents.node[k]]) *
-                        static_cast<double>(tent_sum(tents.weight[k], film.data(), area));
+        tent_sums(shares, tents, film.data(), area);
+        for (int k = 0; k < tents.count; ++k) shares[k] *= static_cast<double>(mixes[p][tents.node[k]]);
         mixture.pigment(p, stored, shares);
     }
     mixture.water();

@@ -21,8 +21,8 @@ inline float limited(float x, float last) {
 }
 
 TUFT_CLONES void place(float* __restrict along, float* __restrict across, const float* __restrict x,
-                       const float* __restrict y, const float* __restrict z, const Vec3f& origin, const Vec3f& a,
-                       const Vec3f& b, float a0, float b0) {
+                       const float* __restrict y, const float* __restrict z, const Vec3f& origin,
+                       const Vec3f& a, const Vec3f& b, float a0, float b0) {
     for (int t = 0; t < kN; ++t) {
         const float dx = x[t] - origin.x, dy = y[t] - origin.y, dz = z[t] - origin.z;
         along[t] = limited(dx * a.x + dy * a.y + dz * a.z + a0, kAlong - 1);
@@ -30,8 +30,8 @@ TUFT_CLONES void place(float* __restrict along, float* __restrict across, const 
     }
 }
 
-TUFT_CLONES void values_at(float* __restrict out, const float* __restrict across, const float* __restrict comb,
-                           float scale) {
+TUFT_CLONES void values_at(float* __restrict out, const float* __restrict across,
+                           const float* __restrict comb, float scale) {
     for (int t = 0; t < kN; ++t) {
         const float x = across[t] * scale;
         int i = static_cast<int>(x);
@@ -40,25 +40,55 @@ TUFT_CLONES void values_at(float* __restrict out, const float* __restrict across
     }
 }
 
-TUFT_CLONES void hat(float* __restrict out, const float* __restrict at, const float* __restrict coverage, float node) {
+TUFT_CLONES void hat(float* __restrict out, const float* __restrict at,
+                     const float* __restrict coverage, float node) {
     for (int t = 0; t < kN; ++t) {
         const float d = at[t] - node, w = 1 - (d < 0 ? -d : d);
         out[t] = w > 0 && coverage[t] > 0 ? w : 0;
     }
 }
 
-TUFT_CLONES void product(float* __restrict out, const float* __restrict a, const float* __restrict b) {
+TUFT_CLONES void product(float* __restrict out, const float* __restrict a,
+                         const float* __restrict b) {
     for (int t = 0; t < kN; ++t) out[t] = a[t] * b[t];
 }
 
-TUFT_CLONES void add_scaled(float* __restrict out, const float* __restrict w, float value) {
-    for (int t = 0; t < kN; ++t) out[t] += w[t] * value;
+// Planes of weights follow each other; a few at a time, so that each pass over the texels does more
+// than read them.
+constexpr int kAtOnce = 4;
+
+/// out, or 0 if fresh, plus Σ of kCount planes of weights times their values.
+template <int kCount, bool kFresh>
+inline __attribute__((always_inline)) void add_scaled(float* __restrict out,
+                                                      const float* __restrict w,
+                                                      const float* value) {
+    float v[kCount];
+    for (int k = 0; k < kCount; ++k) v[k] = value[k];
+    for (int t = 0; t < kN; ++t) {
+        float sum = kFresh ? 0 : out[t];
+        for (int k = 0; k < kCount; ++k) sum += w[k * kN + t] * v[k];
+        out[t] = sum;
+    }
+}
+TUFT_CLONES void weighted_sum(float* __restrict out, const float* __restrict w, const float* values,
+                              int count) {
+    int k = 0;
+    if (count >= kAtOnce)
+        add_scaled<kAtOnce, true>(out, w, values), k = kAtOnce;
+    else if (count >= 2)
+        add_scaled<2, true>(out, w, values), k = 2;
+    else
+        add_scaled<1, true>(out, w, values), k = 1;
+    for (; k + kAtOnce <= count; k += kAtOnce)
+        add_scaled<kAtOnce, false>(out, w + k * kN, values + k);
+    for (; k + 2 <= count; k += 2) add_scaled<2, false>(out, w + k * kN, values + k);
+    for (; k < count; ++k) add_scaled<1, false>(out, w + k * kN, values + k);
 }
 
-TUFT_CLONES float dot_area(const float* __restrict w, const float* __restrict x, const float* __restrict area) {
+TUFT_CLONES float dot(const float* __restrict w, const float* __restrict x) {
     float sums[kSums] = {};
     for (int t = 0; t < kN; t += kSums)
-        for (int i = 0; i < kSums; ++i) sums[i] += w[t + i] * x[t + i] * area[t + i];
+        for (int i = 0; i < kSums; ++i) sums[i] += w[t + i] * x[t + i];
     float sum = 0;
     for (const float s : sums) sum += s;
     return sum;
@@ -80,13 +110,28 @@ struct Range {
     int first, last;
 };
 
+/// The least and greatest of what lies on covered texels, by lanes.
+TUFT_CLONES void extent(float* __restrict lo, float* __restrict hi, const float* __restrict at,
+                        const float* __restrict coverage) {
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    float least[kSums], most[kSums];
+    for (int i = 0; i < kSums; ++i) least[i] = kFar, most[i] = -kFar;
+    for (int t = 0; t < kN; t += kSums)
+        for (int i = 0; i < kSums; ++i) {
+            const bool covered = coverage[t + i] > 0;
+            const float low = covered ? at[t + i] : kFar, high = covered ? at[t + i] : -kFar;
+            least[i] = low < least[i] ? low : least[i];
+            most[i] = high > most[i] ? high : most[i];
+        }
+    for (int i = 0; i < kSums; ++i) lo[i] = least[i], hi[i] = most[i];
+}
+
 /// Nodes whose tents reach covered texels; none when there are none.
 Range reached(const Texels& at, std::span<const float, kN> coverage, int nodes) {
-    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-    for (int t = 0; t < kN; ++t) {
-        lo = std::min(lo, coverage[t] > 0 ? at[t] : lo);
-        hi = std::max(hi, coverage[t] > 0 ? at[t] : hi);
-    }
+    std::array<float, kSums> least, most;
+    extent(least.data(), most.data(), at.data(), coverage.data());
+    const float lo = *std::min_element(least.begin(), least.end()),
+                hi = *std::max_element(most.begin(), most.end());
     if (!(lo <= hi)) return {0, -1};
     return {static_cast<int>(lo), std::min(static_cast<int>(hi) + 1, nodes - 1)};
 }
@@ -107,11 +152,13 @@ TouchGrid touch_grid(std::span<const Vec2> places, const Vec2& axis) {
     return grid;
 }
 
-void place_texels(TexelPlaces& out, const TouchGrid& grid, const Frame& frame, const atlas::TexelShape& shape) {
+void place_texels(TexelPlaces& out, const TouchGrid& grid, const Frame& frame,
+                  const atlas::TexelShape& shape) {
     const Vec3 along = (grid.axis.x * frame.t + grid.axis.y * frame.b) / grid.step.x;
     const Vec3 across = (grid.axis.x * frame.b - grid.axis.y * frame.t) / grid.step.y;
-    place(out.along.data(), out.across.data(), shape.px.data(), shape.py.data(), shape.pz.data(), Vec3f(frame.origin),
-          Vec3f(along), Vec3f(across), static_cast<float>(-grid.lo.x / grid.step.x),
+    place(out.along.data(), out.across.data(), shape.px.data(), shape.py.data(), shape.pz.data(),
+          Vec3f(frame.origin), Vec3f(along), Vec3f(across),
+          static_cast<float>(-grid.lo.x / grid.step.x),
           static_cast<float>(-grid.lo.y / grid.step.y));
 }
 
@@ -120,7 +167,8 @@ void comb_at(std::span<float, kN> out, const TexelPlaces& places, const Comb& co
 }
 
 void tents_of(Tents& out, const TexelPlaces& places, std::span<const float, kN> coverage) {
-    const Range along = reached(places.along, coverage, kAlong), across = reached(places.across, coverage, kAcross);
+    const Range along = reached(places.along, coverage, kAlong),
+                across = reached(places.across, coverage, kAcross);
     alignas(64) Texels rows;
     alignas(64) std::array<Texels, kAcross> columns;
     for (int j = across.first; j <= across.last; ++j)
@@ -136,19 +184,20 @@ void tents_of(Tents& out, const TexelPlaces& places, std::span<const float, kN> 
     }
 }
 
-float tent_sum(std::span<const float, kN> weight, const float* x, std::span<const float, kN> area) {
-    static constexpr Texels kOnes = [] {
-        Texels ones{};
-        ones.fill(1);
-        return ones;
-    }();
-    return dot_area(weight.data(), x ? x : kOnes.data(), area.data());
+void tent_sums(std::span<double, kNodes> out, const Tents& tents, const float* x,
+               std::span<const float, kN> area) {
+    alignas(64) Texels amounts;
+    if (x) product(amounts.data(), x, area.data());
+    const float* by = x ? amounts.data() : area.data();
+    for (int k = 0; k < tents.count; ++k)
+        out[k] = static_cast<double>(dot(tents.weight[k].data(), by));
 }
 
 void interpolate(Texels& out, const Tents& tents, const std::array<float, kNodes>& values) {
-    out.fill(0);
-    for (int k = 0; k < tents.count; ++k)
-        if (const float v = values[tents.node[k]]; v != 0) add_scaled(out.data(), tents.weight[k].data(), v);
+    if (tents.count == 0) return out.fill(0);
+    std::array<float, kNodes> by_tent;
+    for (int k = 0; k < tents.count; ++k) by_tent[k] = values[tents.node[k]];
+    weighted_sum(out.data(), tents.weight[0].data(), by_tent.data(), tents.count);
 }
 
 double change_sum(const float* after, const float* before, const float* area) {

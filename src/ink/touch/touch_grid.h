@@ -58,8 +58,8 @@ struct Tents {
 /// About 10 ns for each node that reaches the tile.
 void tents_of(Tents& out, const TexelPlaces& places, std::span<const float, atlas::kTileTexels> coverage);
 
-/// Σ w · x · area over a tile, in an order of its own; x may be null: 1. Float sums.
-float tent_sum(std::span<const float, atlas::kTileTexels> weight, const float* x,
+/// Σ w · x · area over a tile for each of the tents, in an order of its own; x may be null: 1. Float sums.
+void tent_sums(std::span<double, kNodes> out, const Tents& tents, const float* x,
                std::span<const float, atlas::kTileTexels> area);
 
 /// Σ (after − before) · area over a tile, in an order of its own. Double sums.

@@ -10,12 +10,13 @@ namespace {
 
 constexpr int kN = atlas::kTileTexels;
 constexpr int kWater = kMaxPigments;
-constexpr double kSkinFilm = 4;         // film units on full hair
-constexpr double kHalfFull = 0.5;       // saturation from which hair is wet outside all over
-constexpr double kSkinTime = 0.3;       // seconds
+constexpr int kSums = 16;
+constexpr double kSkinFilm = 4;    // film units on full hair
+constexpr double kHalfFull = 0.5;  // saturation from which hair is wet outside all over
+constexpr double kSkinTime = 0.3;  // seconds
 constexpr double kExchangeLength = 4e-3, kExchangeTime = 0.5;  // metres, seconds
-constexpr double kGentle = 0.3;         // of the exchange under firm pressure
-constexpr double kMostGiven = 0.999;    // of the skin: rounding may not take more than there is
+constexpr double kGentle = 0.3;       // of the exchange under firm pressure
+constexpr double kMostGiven = 0.999;  // of the skin: rounding may not take more than there is
 
 using Texels = std::array<float, kN>;
 
@@ -25,9 +26,15 @@ double sum_of(const Reservoir::Content& c) {
     return sum;
 }
 
-inline float larger(float a, float b) { return a > b ? a : b; }
-inline float smaller(float a, float b) { return a < b ? a : b; }
-inline float positive(float a) { return a > 0 ? a : 0; }
+inline float larger(float a, float b) {
+    return a > b ? a : b;
+}
+inline float smaller(float a, float b) {
+    return a < b ? a : b;
+}
+inline float positive(float a) {
+    return a > 0 ? a : 0;
+}
 
 /// a = a b, 1 at most.
 TUFT_CLONES void scale(float* __restrict a, const float* __restrict b) {
@@ -41,10 +48,10 @@ struct Volumes {
     alignas(64) Texels down, up;
 };
 
-TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict goal,
-                         const float* __restrict w, const float* __restrict total,
-                         const float* __restrict film, const float* __restrict exchange, const TransferParams& p,
-                         float rate) {
+TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage,
+                         const float* __restrict goal, const float* __restrict w,
+                         const float* __restrict total, const float* __restrict film,
+                         const float* __restrict exchange, const TransferParams& p, float rate) {
     for (int t = 0; t < kN; ++t) {
         const float touched = coverage[t] > 0 ? 1.0f : 0.0f;
         const float lack = positive(smaller(goal[t] - w[t], p.deposit.capacity - total[t])) * rate;
@@ -58,58 +65,100 @@ TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const f
     }
 }
 
-TUFT_CLONES void add_concentration(float* __restrict sum, const float* __restrict p, const float* __restrict total) {
-    for (int t = 0; t < kN; ++t) sum[t] += total[t] > 0 ? p[t] / total[t] : 0;
+TUFT_CLONES void add(float* __restrict sum, const float* __restrict p) {
+    for (int t = 0; t < kN; ++t) sum[t] += p[t];
 }
 
 /// up becomes the part of the open film's pigments that goes with the liquid.
-TUFT_CLONES void lifted_part(float* __restrict up, const float* __restrict total, const float* __restrict dense) {
-    for (int t = 0; t < kN; ++t) {
-        const float most = dense[t] > 1 ? 1 / dense[t] : 1;
-        up[t] = total[t] > 0 ? up[t] / total[t] * most : 0;
-    }
+TUFT_CLONES void lifted_part(float* __restrict up, const float* __restrict total,
+                             const float* __restrict pigments) {
+    for (int t = 0; t < kN; ++t) up[t] = total[t] > 0 ? up[t] / larger(total[t], pigments[t]) : 0;
 }
 
 /// down becomes the part that leaves of what the skin can give.
-TUFT_CLONES void given_part(float* __restrict part, const float* __restrict down, const float* __restrict film) {
+TUFT_CLONES void given_part(float* __restrict part, const float* __restrict down,
+                            const float* __restrict film) {
     for (int t = 0; t < kN; ++t) part[t] = film[t] > 0 ? down[t] / film[t] : 0;
 }
 
-/// What goes up of a plane, and the plane after it and what comes down.
-TUFT_CLONES void move(float* __restrict p, float* __restrict up, const float* __restrict lifted,
-                      const float* __restrict part, const float* __restrict film) {
-    for (int t = 0; t < kN; ++t) {
-        up[t] = p[t] * lifted[t];
-        p[t] = (p[t] - up[t]) + part[t] * film[t];
+/// p after `up` left and `down` came. Returns Σ of what was stored · area, in double.
+struct Changes {
+    double sums[kSums] = {};
+
+    inline __attribute__((always_inline)) void move(int lane, float& p, float up, float down,
+                                                    float area) {
+        const float before = p;
+        p = (before - up) + down;
+        sums[lane] +=
+            (static_cast<double>(p) - static_cast<double>(before)) * static_cast<double>(area);
     }
+    double sum() const {
+        double all = 0;
+        for (const double s : sums) all += s;
+        return all;
+    }
+};
+
+TUFT_CLONES double move_liquid(float* __restrict w, const float* __restrict up,
+                               const float* __restrict down, const float* __restrict area) {
+    Changes changes;
+    for (int t = 0; t < kN; t += kSums)
+        for (int i = 0; i < kSums; ++i)
+            changes.move(i, w[t + i], up[t + i], down[t + i], area[t + i]);
+    return changes.sum();
+}
+
+/// `up`: what goes up of a plane, its part `lifted`.
+TUFT_CLONES double move_pigment(float* __restrict p, float* __restrict up,
+                                const float* __restrict lifted, const float* __restrict part,
+                                const float* __restrict film, const float* __restrict area) {
+    Changes changes;
+    for (int t = 0; t < kN; t += kSums)
+        for (int i = 0; i < kSums; ++i) {
+            const float leaves = p[t + i] * lifted[t + i];
+            up[t + i] = leaves;
+            changes.move(i, p[t + i], leaves, part[t + i] * film[t + i], area[t + i]);
+        }
+    return changes.sum();
+}
+
+/// Planes lie here and there: all of a tile's are on their way while the first sums are made.
+void ask_for(const Plane* plane) {
+    if (!plane) return;
+    for (int t = 0; t < kN; t += 64 / static_cast<int>(sizeof(float)))
+        __builtin_prefetch(plane->data() + t);
 }
 
 /// What a tile's nodes gave and took, before it is made to agree with what was stored.
 struct Booked {
-    std::array<double, kNodes> part{};                  ///< m² that gave all that lay over it
-    std::array<Reservoir::Content, kNodes> taken{};     ///< by the surface's planes; water: all liquid
-    Reservoir::Content stored{};                        ///< likewise, given less taken
+    std::array<double, kNodes> part{};  ///< m² that gave all that lay over it
+    /// By the surface's planes, of each the tents; water: all liquid.
+    std::array<std::array<double, kNodes>, Reservoir::kPlanes> taken{};
+    Reservoir::Content stored{};  ///< likewise, given less taken
 };
 
 /// Deals the stored change of each plane out to the nodes: what they took, and the rest by what
 /// lies over them, where the sums differ by the rounding of the texels.
-void settle(const Booked& b, const Tents& tents, const TransferParams& params, NodeContents& given) {
+void settle(const Booked& b, const Tents& tents, const TransferParams& params,
+            NodeContents& given) {
     double all = 0;
-    for (int k = 0; k < tents.count; ++k) all += b.part[k] + b.taken[k][kWater];
+    for (int k = 0; k < tents.count; ++k) all += b.part[k] + b.taken[kWater][k];
     Reservoir::Content stored = b.stored;
-    for (int p = 0; p < kMaxPigments; ++p) stored[kWater] -= stored[p];  // the liquid counts its pigments
+    for (int p = 0; p < kMaxPigments; ++p)
+        stored[kWater] -= stored[p];  // the liquid counts its pigments
     for (int p = 0; p < Reservoir::kPlanes; ++p) {
         std::array<double, kNodes> net;
         double sum = 0;
         for (int k = 0; k < tents.count; ++k) {
-            double taken = b.taken[k][p];
-            for (int q = 0; q < kMaxPigments && p == kWater; ++q) taken -= b.taken[k][q];
+            double taken = b.taken[p][k];
+            for (int q = 0; q < kMaxPigments && p == kWater; ++q) taken -= b.taken[q][k];
             net[k] = b.part[k] * static_cast<double>(params.film[p][tents.node[k]]) - taken;
             sum += net[k];
         }
         const double left = stored[p] - sum;
         for (int k = 0; k < tents.count; ++k) {
-            const double share = all > 0 ? (b.part[k] + b.taken[k][kWater]) / all : 1.0 / tents.count;
+            const double share =
+                all > 0 ? (b.part[k] + b.taken[kWater][k]) / all : 1.0 / tents.count;
             given[tents.node[k]][p] += net[k] + left * share;
         }
     }
@@ -119,8 +168,8 @@ void settle(const Booked& b, const Tents& tents, const TransferParams& params, N
 
 namespace {
 
-/// Where the hair has left the surface, what was on it spreads among the rest in line with it, which lacks
-/// some as it comes down: one film wets it all. What nobody lacks goes `back`.
+/// Where the hair has left the surface, what was on it spreads among the rest in line with it,
+/// which lacks some as it comes down: one film wets it all. What nobody lacks goes `back`.
 void pass_on(Skin& skin, NodeContents& back, const std::array<double, kNodes>& want, int across) {
     constexpr double kSpare = 1.25;  // of what a node wants
     std::array<double, kAlong> lack{}, over{};
@@ -144,7 +193,8 @@ void pass_on(Skin& skin, NodeContents& back, const std::array<double, kNodes>& w
         }
     }
     for (int i = 0; i < kAlong && lacking > 0; ++i)
-        for (int p = 0; p < Reservoir::kPlanes; ++p) skin.content[i * kAcross + across][p] += lack[i] / lacking * sum[p];
+        for (int p = 0; p < Reservoir::kPlanes; ++p)
+            skin.content[i * kAcross + across][p] += lack[i] / lacking * sum[p];
 }
 
 }  // namespace
@@ -161,16 +211,19 @@ std::array<double, kAlong> firmness(const NodeAreas& areas) {
     return width;
 }
 
-double Skin::volume(int node) const { return sum_of(content[node]); }
+double Skin::volume(int node) const {
+    return sum_of(content[node]);
+}
 
 void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes) {
     absorb(tuft, skin.content, nodes, touch);
     skin.content = {};
 }
 
-void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes, const NodeAreas& areas,
-             double dt, double pour) {
-    const double filled = std::min(1.0, saturation_at(tuft, touch) / kHalfFull), wet = filled * filled;
+void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes,
+             const NodeAreas& areas, double dt, double pour) {
+    const double filled = std::min(1.0, saturation_at(tuft, touch) / kHalfFull),
+                 wet = filled * filled;
     const double part = -std::expm1(-std::max(dt, 0.0) / kSkinTime);
     std::array<double, kNodes> want, lack;
     NodeContents back{};
@@ -220,13 +273,18 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
     return out;
 }
 
-void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,
-              const Tents& tents, std::span<const float, kN> area, double ds, const TransferParams& params, NodeContents& given) {
+void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
+              const TexelPlaces& places, const Tents& tents, std::span<const float, kN> area,
+              double ds, const TransferParams& params, NodeContents& given) {
     if (tents.count == 0) return;
+    ask_for(canvas.liquid(slot, Liquid::film));
+    ask_for(canvas.liquid(slot, Liquid::pores));
+    for (int p = 0; p < kMaxPigments; ++p) ask_for(canvas.plane(slot, p));
     std::array<float, kNodes> over{};  // film units of all planes
     for (int k = 0; k < tents.count; ++k)
-        for (int p = 0; p < Reservoir::kPlanes; ++p) over[tents.node[k]] += params.film[p][tents.node[k]];
-    alignas(64) Texels film, exchange, goal, total, dense{}, part, up, before;
+        for (int p = 0; p < Reservoir::kPlanes; ++p)
+            over[tents.node[k]] += params.film[p][tents.node[k]];
+    alignas(64) Texels film, exchange, goal, total, pigments{}, part, up;
     interpolate(film, tents, over);
     interpolate(exchange, tents, params.exchange);
     comb_at(part, places, params.rub);
@@ -236,32 +294,27 @@ void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
     const Plane* s = canvas.liquid(slot, Liquid::pores);
     for (int t = 0; t < kN; ++t) total[t] = s ? w[t] + (*s)[t] : w[t];
     Volumes v;
-    const auto rate = static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
-    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), exchange.data(), params, rate);
+    const auto rate =
+        static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
+    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), exchange.data(),
+            params, rate);
     given_part(part.data(), v.down.data(), film.data());
     Booked booked;
-    for (int k = 0; k < tents.count; ++k) {
-        booked.part[k] = static_cast<double>(tent_sum(tents.weight[k], part.data(), area));
-        booked.taken[k][kWater] = static_cast<double>(tent_sum(tents.weight[k], v.up.data(), area));
-    }
-    before = w;
-    for (int t = 0; t < kN; ++t) w[t] = (w[t] - v.up[t]) + v.down[t];
-    booked.stored[kWater] = change_sum(w.data(), before.data(), area.data());
+    tent_sums(booked.part, tents, part.data(), area);
+    tent_sums(booked.taken[kWater], tents, v.up.data(), area);
+    booked.stored[kWater] = move_liquid(w.data(), v.up.data(), v.down.data(), area.data());
     for (int p = 0; p < kMaxPigments; ++p)
-        if (const Plane* here = canvas.plane(slot, p)) add_concentration(dense.data(), here->data(), total.data());
-    lifted_part(v.up.data(), total.data(), dense.data());
+        if (const Plane* here = canvas.plane(slot, p)) add(pigments.data(), here->data());
+    lifted_part(v.up.data(), total.data(), pigments.data());
     for (int p = 0; p < kMaxPigments; ++p) {
         float most = 0;
         for (int k = 0; k < tents.count; ++k) most = std::max(most, params.film[p][tents.node[k]]);
         const bool there = canvas.plane(slot, p) != nullptr;
         if (!(most > 0) && !there) continue;
         interpolate(film, tents, params.film[p]);
-        Plane& here = canvas.touch(slot, p);
-        before = here;
-        move(here.data(), up.data(), v.up.data(), part.data(), film.data());
-        booked.stored[p] = change_sum(here.data(), before.data(), area.data());
-        for (int k = 0; k < tents.count && there; ++k)
-            booked.taken[k][p] = static_cast<double>(tent_sum(tents.weight[k], up.data(), area));
+        booked.stored[p] = move_pigment(canvas.touch(slot, p).data(), up.data(), v.up.data(),
+                                        part.data(), film.data(), area.data());
+        if (there) tent_sums(booked.taken[p], tents, up.data(), area);
     }
     settle(booked, tents, params, given);
 }

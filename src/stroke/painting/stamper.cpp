@@ -159,9 +159,9 @@ ink::NodeAreas Stamper::expose(const Stamp& stamp) {
                 ink::expose_relief(e.exposure, grain(slot), grain_rms_, static_cast<float>(stamp.grain_film));
             ink::place_texels(e.places, stamp.grid, stamp.footprint.frame, atlas::shape_of(model_.texels, slot, room));
             ink::tents_of(tents, e.places, e.exposure);
-            for (int k = 0; k < tents.count; ++k)
-                e.areas[tents.node[k]] = static_cast<double>(
-                    ink::tent_sum(tents.weight[k], nullptr, model_.texels.tiles[slot].area));
+            ink::NodeAreas of_tents;
+            ink::tent_sums(of_tents, tents, nullptr, model_.texels.tiles[slot].area);
+            for (int k = 0; k < tents.count; ++k) e.areas[tents.node[k]] = of_tents[k];
         }
     });
     ink::NodeAreas areas{};
