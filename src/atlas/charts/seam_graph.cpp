@@ -283,7 +283,8 @@ double SeamGraph::cost(std::uint32_t chain, const GluingLimits& limits) const {
     // Regular meshes are full of equal costs that rounding would put in order by chance,
     // and so by the mesh's unit: a small difference by number puts them in order for good.
     const double tie = 1 + kTie * uniform(0, chain);
-    return tie * (growth + limits.small * small) / std::max(length_[chain], 1e-30f);
+    const double cost = tie * (growth + limits.small * small) / std::max(length_[chain], 1e-30f);
+    return cost < kNever ? cost : kNever;  // also where it is no number: costs must have an order
 }
 
 void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& progress) {
@@ -291,11 +292,14 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
         double cost;
         std::uint32_t chain, version;
         bool operator<(const Entry& o) const {
-            return cost != o.cost ? cost > o.cost : chain > o.chain;
+            return cost != o.cost ? cost < o.cost : chain < o.chain;
         }
     };
+    struct Later {
+        bool operator()(const Entry& a, const Entry& b) const { return b < a; }
+    };
     std::vector<Entry> start;
-    start.reserve(half_.size() + half_.size() / 8);  // chains that change come back before they all went
+    start.reserve(half_.size());
     for (std::uint32_t e = 0; e < half_.size(); ++e)
         if (seam_[e] && chain_parent_[e] == e) start.push_back({kNever, e, version_[e]});
     for (std::uint32_t c = 0; c < chart_parent_.size(); ++c) chart_parent_[c] = find_root(chart_parent_, c);
@@ -309,12 +313,16 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
     for (bool glued = true; glued && !start.empty();) {
         glued = false;
         std::vector<Entry> refused;
-        std::priority_queue<Entry> queue(std::less<Entry>{}, std::move(start));
+        // Those known from the start are sorted once and read in their order; only what comes back
+        // goes through the heap, which stays small.
+        std::sort(start.begin(), start.end());
+        std::priority_queue<Entry, std::vector<Entry>, Later> queue;
         std::vector<std::uint32_t> changed;
         std::size_t steps = 0;
-        while (!queue.empty()) {
-            const Entry top = queue.top();
-            queue.pop();
+        for (std::size_t next = 0; next < start.size() || !queue.empty();) {
+            const bool back = next == start.size() || (!queue.empty() && queue.top() < start[next]);
+            const Entry top = back ? queue.top() : start[next++];
+            if (back) queue.pop();
             if ((++steps & 0xfff) == 0)
                 report(progress, "charts",
                        1.0 - static_cast<double>(left) / static_cast<double>(all));
@@ -337,6 +345,7 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
                 if (seam_[j] && chain_parent_[j] == j)
                     queue.push({cost(j, limits), j, version_[j]});
         }
+        start.clear();
         for (const Entry& e : refused) {
             if (!seam_[e.chain] || chain_parent_[e.chain] != e.chain) continue;
             if (chart_of(half_[e.chain] / 3) == chart_of(patch_.twin[half_[e.chain]] / 3)) continue;
