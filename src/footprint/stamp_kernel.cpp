@@ -152,7 +152,8 @@ struct Finish {
     float most[lanes];
 };
 
-/// Adds the picture's value at each texel, 255 for full coverage; the `last` pose finishes.
+/// Adds the picture's value at each texel, 255 for full coverage; the `last` pose finishes. In three
+/// loops, so that no texel waits for another's place in the picture.
 template <int lanes, bool last>
 [[gnu::always_inline]] inline void gather(const StampJobs& jobs, const std::uint16_t* __restrict pairs,
                                           const SubPose& pose, const Runs& runs, const float* __restrict fu,
@@ -164,27 +165,41 @@ template <int lanes, bool last>
     const float xu = pose.xu, xv = pose.xv, yu = pose.yu, yv = pose.yv, du = pose.du, dv = pose.dv;
     const float scale = finish.scale;
     float* __restrict most = finish.most;
+    alignas(64) std::int32_t cell[kTileTexels];
+    alignas(64) std::uint32_t four[kTileTexels];
+    alignas(64) float part_x[kTileTexels], part_y[kTileTexels], within[kTileTexels];
     for (int run = 0; run < runs.count; ++run) {
-        const int begin = runs.start[run];
-        const float *u = fu + begin, *v = fv + begin;
-        float* __restrict to = sum + begin;
+        const float *u = fu + runs.start[run], *v = fv + runs.start[run];
+        const int at = run * lanes;
 #pragma omp simd
         for (int t = 0; t < lanes; ++t) {
             const float x = xu * u[t] + xv * v[t] + du, y = yu * u[t] + yv * v[t] + dv;
             const float xp = x > 0.0f ? x : 0.0f, yp = y > 0.0f ? y : 0.0f;
             const float xi = xp < last_x ? xp : last_x, yi = yp < last_y ? yp : last_y;
-            // A factor, not a selection: that would become a branch around the gather.
-            const float inside = ((xi == x) & (yi == y)) ? 1.0f : 0.0f;
+            // A factor, not a selection: that would become a branch around what follows.
+            within[at + t] = ((xi == x) & (yi == y)) ? 1.0f : 0.0f;
             const int i = static_cast<int>(xi), j = static_cast<int>(yi);
-            const float fx = xi - static_cast<float>(i), fy = yi - static_cast<float>(j);
-            const std::uint32_t q = *reinterpret_cast<const TwoPairs*>(pairs + (j * stride + i));
+            part_x[at + t] = xi - static_cast<float>(i);
+            part_y[at + t] = yi - static_cast<float>(j);
+            cell[at + t] = j * stride + i;
+        }
+    }
+    const int n = runs.count * lanes;
+    for (int t = 0; t < n; ++t) four[t] = *reinterpret_cast<const TwoPairs*>(pairs + cell[t]);
+    for (int run = 0; run < runs.count; ++run) {
+        float* __restrict to = sum + runs.start[run];
+        const int at = run * lanes;
+#pragma omp simd
+        for (int t = 0; t < lanes; ++t) {
+            const std::uint32_t q = four[at + t];
+            const float fx = part_x[at + t], fy = part_y[at + t];
             const float q00 = static_cast<float>(static_cast<int>(q & 255));
             const float q01 = static_cast<float>(static_cast<int>((q >> 8) & 255));
             const float q10 = static_cast<float>(static_cast<int>((q >> 16) & 255));
             const float q11 = static_cast<float>(static_cast<int>(q >> 24));
             const float low = q00 + fx * (q10 - q00), high = q01 + fx * (q11 - q01);
             const float value = low + fy * (high - low);
-            const float all = to[t] + inside * value;
+            const float all = to[t] + within[at + t] * value;
             if constexpr (last) {
                 const float scaled = all * scale;
                 to[t] = scaled < 1.0f ? scaled : 1.0f;
