@@ -18,7 +18,9 @@ constexpr double kRolling = 12e-3;     // m of travel over which the hair of a b
 constexpr double kBreaking = 4e-3;     // m of travel over which the ink under a single bristle breaks and closes
 constexpr double kRollingPart = 0.2, kBreakingPart = 0.2;  // of the wetness at which they stop
 constexpr double kThinning = 0.02;     // wetness over which a thread of ink tapers before it breaks
-constexpr double kAside = 0.35;        // sine of the angle from the tuft's way at which hair that lands or leaves is swept aside
+constexpr double kAside = 0.35;        // sine of the angle from the tuft's way, or the hand's course, at which hair that lands or leaves is swept aside
+constexpr double kLessLanding = 0.75;  // of what it may measure across its motion, that it lacks while it lands or leaves
+constexpr double kCurve = 0.08;        // sine from the course up to which a tuft that bends round a curve goes along itself
 constexpr double kSwept = 0.8;         // wetness that it needs more then
 constexpr double kMark = 45e-6;        // m, half width of what a bristle leaves by itself: hair is 70–135 µm thick
 constexpr double kSkirt = 0.7, kFullSkirt = 0.9;  // wetness from which ink stands out beyond the outermost hair, and as far as it bridges
@@ -149,10 +151,22 @@ double breaks_at(const brush::Bundles& bundles, const brush::Bristle& b, double 
                               kRollingPart * (0.5 + 0.5 * rolls) + kBreakingPart * (0.5 + 0.5 * breaks));
 }
 
-/// What lies down of the hair, parts of the tuft's length, and what it measures across its motion.
+/// What lies down of the hair, parts of the tuft's length, and what it measures across its motion; of hair that lands or
+/// leaves also across the hand's course.
 struct Laid {
     Lying lies;
     Across across;
+    double lands = 0, over_course = 0;  ///< metres, of that
+
+    Laid(const Trail& trail, std::size_t begin, std::size_t end, const HairInk& ink)
+        : lies{trail.along[end - 1], trail.along[begin]}, across(trail, begin, end, ink.before, ink.way), lands(ink.lands) {
+        const double size = glm::length(ink.course);
+        for (std::size_t i = begin; i + 1 < end && size > 0; ++i) {
+            const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
+            over_course += std::abs(run.x * ink.course.y - run.y * ink.course.x) / size;
+        }
+    }
+    double measure(double x) const { return std::max(across.at(x), lands * over_course); }
 };
 
 /// Where a bristle touches: with all that lies down of it where ink closes the gaps, with a part of it, here or there,
@@ -163,10 +177,16 @@ Lying touching(const brush::Bundles& bundles, const brush::Bristle& b, double we
     if (wet >= 1) return {-4, 4};
     // Water draws the ends to a point.
     const double end = static_cast<double>(b.end) + (1 - static_cast<double>(b.end)) * std::max(0.0, 2 * wet - 1);
-    const double way = 2 * kMark * std::max(1.0, 0.5 * wet / ((1 - wet) * (1 - wet)));
-    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, way / std::max(laid.across.at(x), 1e-9)});
+    const double way = 2 * kMark * std::max(1.0, (1 - kLessLanding * laid.lands) * 0.5 * wet / ((1 - wet) * (1 - wet)));
+    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, way / std::max(laid.measure(x), 1e-9)});
     const double rest = (1 - part) * std::max(0.0, end - lies.begin), behind = uniform(own_seed(bundles, b), 2);
     return {part < 1 ? lies.begin + (1 - behind * behind) * rest : -4, part < 1 ? end - behind * behind * rest : end};
+}
+
+/// How much what the hand presses or lifts sweeps the hair at x aside, 0–1: off the way of the tuft, or with it off the course.
+double swept_aside(const Across& across, double x, const HairInk& ink) {
+    const double off_course = std::max(ink.swings, across.off_way(x, ink.course)) - kCurve;
+    return ink.lands * smooth_step(std::max(across.off_way(x, ink.way), off_course) / kAside);
 }
 
 /// Bristles side by side into bands, in a section of half width `a` metres.
@@ -181,7 +201,7 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
     double bridge_before = 0;
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
-        const double aside = ink.lands > 0 ? ink.lands * smooth_step(laid.across.off_way(lower[i].x, ink.way) / kAside) : 0;
+        const double aside = ink.lands > 0 ? swept_aside(laid.across, lower[i].x, ink) : 0;
         const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel), breaks = own + kSwept * aside * (1 - own);
         const double active = std::clamp((wet - std::min(breaks, 1 - kThinning)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;
@@ -350,7 +370,7 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
     std::vector<Lower> lower;
     const auto draw = [&](const Trail& trail, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
-        const Laid laid{{trail.along[end - 1], trail.along[begin]}, {trail, begin, end, ink.before, ink.way}};
+        const Laid laid(trail, begin, end, ink);
         double widest = 0;
         // Heights over the middle, of all sections together: one of them would be another at every stamp, and hair that
         // sticks together lies on the same side.

@@ -38,6 +38,8 @@ struct HairInk {
     Vec2 way{0};                  ///< unit, where the tuft is drawn, in the stamp's (u, v); zero: it stands
     std::span<const Trail> before = {};  ///< of the stamp before, in this one's frame: each hair's own way; none: all go `way`
     double lands = 0;             ///< 0–1: how much of the hand's motion is pressing or lifting
+    Vec2 course{0};               ///< where the hand goes over the surface, any length, in the stamp's (u, v); zero: nowhere
+    double swings = 0;            ///< 0–1: sine of the angle between the way of the tuft over its last millimetre and `course`
 };
 
 /// Film that a bundle brings over the film that closes its gaps,
@@ -65,13 +67,18 @@ struct HairMarks {
 /// drawn sideways it has ink for no wider a way. From wetness 0.7 on ink stands out beyond the outermost hair, from 0.9
 /// on as far as it bridges.
 ///
-/// Hair that a press spreads, or that closes again in a lifted tuft, is swept off the tuft's way. Dry hair draws no line
-/// by that: while the hand presses or lifts a thread needs
+/// Hair that a press spreads, that closes again in a lifted tuft, or swings round with one that leans, is swept off the
+/// hand's course. Dry hair draws no line by that: while the hand presses or lifts a thread needs
 ///
-///     0.8 lands S(sin ψ / 0.35)
+///     0.8 lands S(max(sin ψ, sin φ − 0.08) / 0.35)
 ///
-/// of what its need lacks to 1 more wetness, ψ the angle between the hair's way and the tuft's, S the smooth step. Strokes begin and end ragged,
-/// along themselves.
+/// of what its need lacks to 1 more wetness, ψ the angle between the hair's way and the tuft's, φ that of the hair's way or
+/// of the tuft's over its last millimetre, the larger one, to the course, S the smooth step; and it touches with no more than measures
+///
+///     max(1, (1 − 0.75 lands) wet / (2 (1 − wet)²))
+///
+/// streaks across its motion and, by `lands`, across the course: hair set down across it prints no bars. Strokes begin
+/// and end ragged, along themselves.
 ///
 /// All this is of the hair and of the way, in metres, and the same for any sampling and texel. Areas are exact at the
 /// edges. As the wetness of every bundle goes to 1 it closes into the picture of `rasterise`. All 500 bristles: about 0.2 ms.

@@ -15,6 +15,8 @@ namespace {
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteStep = 1e-4, kPasteCell = 4e-5;
 
+constexpr double kCourse = 2e-3, kSwing = 1e-3;  // metres of travel over which the hand's course is taken, and the hair's
+constexpr double kComesToLie = 2e-3;  // metres of travel after a press in which hair turns to where it is drawn
 // Parts of the hand's motion that are up or down, from one to the other of which it presses or lifts.
 constexpr double kSlants = 0.2, kPlunges = 0.5;
 
@@ -280,8 +282,11 @@ void Painting::draw_poses() {
         h.slid += slid;
         if (slid > 0) h.heading = drawn / slid;
         const double along = glm::length(shift);
+        h.course = h.was_touching ? std::exp(-along / kCourse) * h.course + shift.x * contact.frame.t + shift.y * contact.frame.b : Vec3{0};
+        h.went = h.was_touching ? std::exp(-slid / kSwing) * h.went + drawn.x * contact.frame.t + drawn.y * contact.frame.b : Vec3{0};
         const double up = std::abs(glm::dot(way, contact.frame.n));
-        h.lands = up > 0 ? smooth_step((up / (up + along) - kSlants) / (kPlunges - kSlants)) : 0;
+        const double plunges = up > 0 ? smooth_step((up / (up + along) - kSlants) / (kPlunges - kSlants)) : 0;
+        h.lands = std::max(plunges, h.was_touching ? std::exp(-along / kComesToLie) * h.lands : 0);
         if (h.by_hair) h.pay(h.instalment);
         Stamp stamp = h.make_stamp(contact, dt);
         if (stamp.footprint.empty()) {
@@ -289,7 +294,8 @@ void Painting::draw_poses() {
             continue;
         }
         ++h.report.stamps;
-        stamp.motion.shift = shift;  // the hand's way, not the frame's: the patch also grows and shrinks
+        // The hand's way, not the frame's: the patch also grows and shrinks. Hair that lies by itself may swing round.
+        stamp.motion.shift = glm::mix(shift, drawn, static_cast<double>(stamp.apart));
         h.was_touching = true;
         h.last_position = pose.position;
         const double area = footprint_area(stamp.footprint);

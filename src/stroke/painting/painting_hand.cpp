@@ -208,8 +208,11 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
     if (closed) {
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, cell);
     } else {
+        const Vec2 onward(contact.frame.to_local(contact.frame.origin + course)), way(contact.frame.to_local(contact.frame.origin + went));
+        const double lengths = glm::length(onward) * glm::length(way);
+        const double swings = lengths > 0 ? std::abs(onward.x * way.y - onward.y * way.x) / lengths : 0;
         footprint::HairMarks marks = footprint::hair_marks(trails, outlines, tuft.bundles, branches,
-                                                           {wetness, travel, heading, lay, lands}, contact.frame, contact.triangle, cell);
+                                                           {wetness, travel, heading, lay, lands, onward, swings}, contact.frame, contact.triangle, cell);
         stamp.footprint = std::move(marks.footprint);
         stamp.by_hair = true;
         stamp.apart = static_cast<float>(smooth_step(lack / kApart));
