@@ -17,16 +17,20 @@ constexpr double kCatchment = 2;             // radii from which a bead draws li
 constexpr double kStart = 1.3;               // volumes that run on: with less a bead does not come off a film
 constexpr double kRing = 1.5;                // radii: about a bead lies the film that it stands on
 constexpr double kRim = 1.1;                 // a bead's own radius, and what it may have spread meanwhile
-constexpr double kBead = 2;                  // hold: a film as thick as that is likely a bead
+constexpr double kBead = 1.5;                // hold: a film as thick as that is likely a bead
 constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr double kApart = 2.2;               // critical radii between beads that move in the same step
 constexpr double kLeastGrain = 0.8, kGrainPart = 0.5;
 constexpr double kHopeful = 0.3;             // of what runs: less about a place will not come together
 constexpr double kFastest = 1.5;             // bead_speed
 constexpr double kAtRest = 1.01;             // of the critical radius
-constexpr double kStops = 1.06;              // of the critical radius: a moving one comes to rest
+constexpr double kStops = 1.06;              // of the radius that a moving one needs: it comes to rest
+constexpr double kMoving = 0.65;             // of what holds a bead at rest: so much holds one that runs
+constexpr double kLying = 0.5;               // of bead_angle: a bead's that came to rest
+constexpr double kSummit = 0.3;              // radii: about the highest of a cap
+constexpr double kFull = 0.8;                // of the height of a cap of its volume: one that runs is as high
 constexpr double kThinnest = 0.5;            // of the trail: what stays behind the slowest bead
-constexpr double kTail = 3;                  // radii that a bead at rest is drawn out upwards
+constexpr double kTail = 5;                  // radii that a bead at rest is drawn out upwards
 
 double critical_radius(double angle, double steepness) {
     return 2 * kCapillaryLength * std::sqrt(angle / (kPi * std::max(steepness, kLeastSteepness)));
@@ -146,10 +150,11 @@ class Drips::Run {
         for (const Seen& other : seen_)
             if (glm::distance(other.at, bead.at) < kApart * start_radius) return;
         const double grain = 1 + kGrainPart * (seed.grain - 1), radius = critical(bead, grain);
-        const double runs = amount_of(kAtRest * radius, p_.bead_angle), starts = kStart * runs;
+        const double starts = kStart * amount_of(kAtRest * radius, p_.bead_angle);
         d_.gather(bead.place, bead.at, kCatchment * reach);
         const Ground ground = ground_of(bead, reach);
         const auto [inside, round] = amounts(bead, ground, reach);
+        const double least = is_running(bead, ground, inside) ? std::sqrt(kMoving) : kAtRest, runs = amount_of(least * radius, p_.bead_angle);
         if (inside < runs && inside + round < starts) return;
         seen_.push_back({bead.at, reach});
         bead.amount = 0;
@@ -168,6 +173,8 @@ class Drips::Run {
     double critical(const Bead& bead, double grain) const {
         return critical_radius(p_.bead_angle, steepness(bead.place)) * std::sqrt(grain);
     }
+    /// Of what runs; `critical` of what is at rest.
+    double critical_moving(const Bead& bead, double grain) const { return std::sqrt(kMoving) * critical(bead, grain); }
     float liquid(const atlas::TexelRef& ref) const {
         const Plane* w = canvas_.liquid(ref.slot, Liquid::film);
         return w ? (*w)[ref.texel] : 0;
@@ -218,7 +225,7 @@ class Drips::Run {
     Trail trail_of(const Bead& bead, double radius) const {
         const Vec3 down = downhill(bead.place);
         // Fast drops are pointed behind.
-        const double steep = glm::length(down), critical = critical_radius(p_.bead_angle, steep);
+        const double steep = glm::length(down), critical = std::sqrt(kMoving) * critical_radius(p_.bead_angle, steep);
         const double ratio = radius / critical, pace = std::clamp(ratio * ratio - 1, 0.0, kFastest);
         return {bead.at, down / steep, std::min(radius, std::sqrt(radius * critical)),
                 p_.trail * std::clamp(std::cbrt(pace * pace), kThinnest, 1.0)};
@@ -270,6 +277,15 @@ class Drips::Run {
             else round += std::max(0.0, w - p_.hold) * n.area;
         }
         return {inside, round};
+    }
+    /// Whether what lies there was laid down as a cap, which one at rest is not any more. `gather` has been there.
+    bool is_running(const Bead& bead, const Ground& ground, double amount) const {
+        const double radius = radius_of(amount, p_.bead_angle), cap = 0.5 * p_.bead_angle * radius / kFilmUnit;
+        double sum = 0, area = 0;
+        for (const Near& n : d_.disc_)
+            if (n.distance < kSummit * radius)
+                sum += (static_cast<double>(liquid(n.ref)) - rest(bead, ground, n)) * n.area, area += n.area;
+        return sum > kFull * cap * (1 - 0.5 * kSummit * kSummit) * area;
     }
     /// All of the one and `part` of the other, where it is less than `thick`, go into the bead.
     void draw_in(Bead& bead, const Ground& ground, double radius, double part, double thick) {
@@ -351,7 +367,7 @@ class Drips::Run {
         const double least_step = 0.5 * d_.map_.texel_size;
         while (seconds > 0) {
             const Vec3 down = downhill(bead.place);
-            const double steep = glm::length(down), ratio = radius / critical(bead, grain);
+            const double steep = glm::length(down), ratio = radius / critical_moving(bead, grain);
             if (steep < kLeastSteepness) return false;
             if (ratio < kStops) return true;
             const double speed = p_.bead_speed * std::min(ratio * ratio - 1, kFastest);
@@ -366,18 +382,14 @@ class Drips::Run {
             leave_trail(bead, radius);
             radius = radius_of(bead.amount, p_.bead_angle);
         }
-        return radius < kStops * critical(bead, grain);
+        return radius < kStops * critical_moving(bead, grain);
     }
 
     /// As a cap whose middle is the bead's; what rounding leaves over goes to the texel there. At rest it is blunt in
     /// front, where it meets dry surface, and drawn out behind, where its own trail holds it at a lower angle.
     void lay_down(Bead& bead, bool rests) {
         const double radius = radius_of(bead.amount, p_.bead_angle), square = radius * radius;
-        if (rests) {
-            d_.gather(bead.place, bead.at, kTail * radius);
-            hang(bead, radius);
-            return;
-        }
+        if (rests) return hang(bead);
         d_.gather(bead.place, bead.at, radius);
         // Texels lie unevenly at seams: without the tilt a bead would creep to one side, step by step.
         Vec3 tilt{0};
@@ -393,7 +405,9 @@ class Drips::Run {
         }
         spread(bead, sum, height);
     }
-    void hang(Bead& bead, double radius) {
+    void hang(Bead& bead) {
+        const double radius = radius_of(bead.amount, kLying * p_.bead_angle);
+        d_.gather(bead.place, bead.at, kTail * radius);
         const Vec3 down = glm::normalize(downhill(bead.place));
         const auto height = [&](const Near& n) {
             const Vec3 d = n.at - bead.at;

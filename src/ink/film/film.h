@@ -31,9 +31,9 @@ struct FilmParams {
     double levelling = 1e-8;         ///< L, m²/s per film unit above `hold`: puddles draw together
     double ridge = 0.4;              ///< film units that stay on the ridges of dry paint
     double bead_angle = 0.15;        ///< radians: contact angle of a bead that runs down
-    double bead_speed = 8e-3;        ///< m/s of a bead of √2 times the critical radius
+    double bead_speed = 8e-3;        ///< m/s of a bead of √2 times the radius at which it stops
     double drain = 2;                ///< 1/s: part of the liquid above `hold` near a bead that it draws in
-    double trail = 0.8;              ///< film units that a bead leaves behind
+    double trail = 0.9;              ///< film units that a bead leaves behind
     double shortest_step = 0.01;     ///< seconds; where stability asked for shorter steps, the
                                      ///< fastest flows are held back instead
 };
