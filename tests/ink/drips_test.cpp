@@ -215,6 +215,21 @@ TEST(Drips, ABeadDriesBluntInFrontAndRunsOutIntoItsTrail) {
     }
 }
 
+// A bead at rest is drawn out into the trail that it came down on, and no further: nothing flows uphill. 0.6 mm: the
+// blot's soft edge of 0.15 mm, and three texels over which the cap of a bead that hardly moved rounds it.
+TEST(Drips, NothingGetsAboveWhereItWasLaidDown) {
+    for (const auto& [thickness, radius] : {std::pair{6.0, 0.75e-3}, {7.0, 0.75e-3}, {8.0, 0.75e-3}, {9.0, 0.75e-3}, {8.0, 1.25e-3}}) {
+        Wall w;
+        w.blot(thickness, radius);
+        w.film.advance(w.canvas, 15, porcelain());
+        double top = -1;
+        w.each([&](std::uint32_t slot, int t, const Vec3& p) {
+            if (w.ink(slot, t) > 0.002) top = std::max(top, p.z);
+        });
+        EXPECT_LT(top, 12e-3 + radius + 0.6e-3) << thickness << ", down to " << w.lowest();
+    }
+}
+
 TEST(Drips, BeadsStopAtTape) {
     for (const bool cut : {false, true}) {
         Wall w(0, cut);

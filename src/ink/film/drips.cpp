@@ -414,12 +414,17 @@ class Drips::Run {
             const double along = glm::dot(d, down), across = std::max(0.0, glm::dot(d, d) - along * along);
             const double behind = std::max(0.0, -along) / radius, front = std::max(0.0, along) / radius;
             const double cap = std::max(0.0, 1 - across / (radius * radius) - front * front - behind * behind / (kTail * kTail));
-            // A cap before its middle; behind, it runs out flat into the trail.
-            return (cap * (1 - std::min(behind, 1.0)) + cap * cap * std::min(behind, 1.0)) * n.area;
+            // A cap before its middle; behind, it runs out flat into the trail, where there is one.
+            const double trail = std::clamp(static_cast<double>(liquid(n.ref)) / (kThinnest * p_.trail), 0.0, 1.0);
+            const double wet = std::lerp(1.0, trail, std::clamp(2 * behind - 1, 0.0, 1.0));
+            return wet * std::lerp(cap, cap * cap, std::min(behind, 1.0)) * n.area;
         };
+        // Before any of it is given: what lies there counts.
+        std::vector<double>& part = d_.part_;
+        part.clear();
         double sum = 0;
-        for (const Near& n : d_.disc_) sum += height(n);
-        spread(bead, sum, height);
+        for (const Near& n : d_.disc_) sum += part.emplace_back(height(n));
+        spread(bead, sum, [&](const Near& n) { return part[static_cast<std::size_t>(&n - d_.disc_.data())]; });
     }
     /// In parts of `height`, which sum to `sum`.
     template <class Fn>

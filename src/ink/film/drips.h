@@ -19,7 +19,7 @@ namespace tuft::ink::wet {
 /// bead_speed ((R / R_k)² − 1) (Le Grand, Daerr, Limat 2005: linear in the weight beyond the critical one), 1.5
 /// bead_speed at most, takes up what lies thicker than `hold` on its way, with its pigments, draws in what is above
 /// `hold` within 2 R, and leaves a trail of half width √(R R_k), rounded across, where it passed over
-/// less. It stops when the trail has used it up, and lies then at half its angle, drawn out upwards, so that it dries
+/// less. It stops when the trail has used it up, and lies then at half its angle, drawn out up its trail, so that it dries
 /// as a soft bulb that fades into its trail. A film that is no bead yet starts one where 1.3 times what the surface
 /// holds lies above `hold` within 2 R.
 /// Nothing is kept between steps: what lies on the texels says where beads are, and their height which of them run.
@@ -65,6 +65,7 @@ class Drips {
     std::vector<std::array<std::uint64_t, atlas::kTileTexels / 64>> seen_;
     std::vector<std::uint32_t> seen_slots_;
     std::vector<Near> disc_;                                            ///< of the last `gather`
+    std::vector<double> part_;                                           ///< of a bead for each of those
 };
 
 }  // namespace tuft::ink::wet
