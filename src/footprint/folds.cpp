@@ -26,7 +26,7 @@ Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
 class Seating {
   public:
     Seating(const Surface& surface, Seats& seats) : surface_(surface), seats_(seats) {
-        seats.clear(surface.pieces.n_pieces());
+        seats.clear();
     }
 
     void look(std::uint32_t t) {
@@ -99,18 +99,17 @@ struct Folds {
 
 }  // namespace
 
-void Seats::clear(std::size_t n) {
-    if (seats_.size() != n || epoch_ == kNone) {
-        seats_.assign(n, {});
-        epoch_ = 0;
-    }
-    ++epoch_;
+void Seats::clear() {
+    numbers_.clear();
+    seats_.clear();
 }
 
 void Seats::sit(std::uint32_t piece, std::uint32_t triangle, double off2) {
-    Seat& seat = seats_[piece];
-    if (seat.epoch == epoch_ && !(off2 < seat.off2)) return;
-    seat = {epoch_, triangle, off2};
+    const auto [seat, is_new] = numbers_.number(piece);
+    if (is_new)
+        seats_.push_back({triangle, off2});
+    else if (off2 < seats_[seat].off2)
+        seats_[seat] = {triangle, off2};
 }
 
 void place_folds(const Surface& surface, std::uint32_t triangle, const Frame& from,

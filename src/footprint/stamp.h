@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "atlas/texels/piece_graph.h"
+#include "core/sparse_numbering.h"
 #include "footprint/footprint.h"
 #include "footprint/picture.h"
 #include "mesh/shortest_ways.h"
@@ -102,21 +103,21 @@ struct SweepScratch {
 /// The triangles in which centres of pieces lie, of those looked at since the last clearing.
 class Seats {
   public:
-    /// Forgets all; `n` pieces.
-    void clear(std::size_t n);
+    void clear();
     /// kNone: in none that was looked at.
     std::uint32_t of(std::uint32_t piece) const {
-        return seats_[piece].epoch == epoch_ ? seats_[piece].triangle : kNone;
+        const std::uint32_t seat = numbers_.find(piece);
+        return seat == kNone ? kNone : seats_[seat].triangle;
     }
     /// The centre of `piece` lies in `triangle`, or nearly: so far off, squared. The nearest one counts.
     void sit(std::uint32_t piece, std::uint32_t triangle, double off2);
 
   private:
     struct Seat {
-        std::uint32_t epoch = 0, triangle = kNone;
-        double off2 = 0;  ///< m²
+        std::uint32_t triangle;
+        double off2;  ///< m²
     };
-    std::uint32_t epoch_ = 0;
+    SparseNumbering numbers_;
     std::vector<Seat> seats_;
 };
 

@@ -47,14 +47,8 @@ double nearest_on(const Vec2& s, double from, double to) {
 }  // namespace
 
 void ShortestWays::begin(const TriangleMesh& mesh, double radius) {
-    const auto fit = [&](Numbers& numbers, std::size_t n) {
-        if (numbers.epoch.size() == n && epoch_ != kNone) return;
-        numbers.epoch.assign(n, 0);
-        numbers.number.assign(n, 0);
-    };
-    fit(face_numbers_, mesh.n_triangles());
-    fit(vertex_numbers_, mesh.n_vertices());
-    epoch_ = epoch_ == kNone ? 1 : epoch_ + 1;
+    face_numbers_.clear();
+    vertex_numbers_.clear();
     mesh_ = &mesh;
     radius_ = radius;
     faces_.clear();
@@ -74,18 +68,14 @@ void ShortestWays::enqueue(double distance, std::uint32_t index, bool vertex) {
 }
 
 std::uint32_t ShortestWays::vertex_of(std::uint32_t vertex) {
-    if (vertex_numbers_.epoch[vertex] != epoch_) {
-        vertex_numbers_.epoch[vertex] = epoch_;
-        vertex_numbers_.number[vertex] = static_cast<std::uint32_t>(vertices_.size());
-        vertices_.emplace_back();
-    }
-    return vertex_numbers_.number[vertex];
+    const auto [number, is_new] = vertex_numbers_.number(vertex);
+    if (is_new) vertices_.emplace_back();
+    return number;
 }
 
 std::uint32_t ShortestWays::face_of(std::uint32_t triangle) {
-    if (face_numbers_.epoch[triangle] == epoch_) return face_numbers_.number[triangle];
-    face_numbers_.epoch[triangle] = epoch_;
-    const auto number = face_numbers_.number[triangle] = static_cast<std::uint32_t>(faces_.size());
+    const auto [number, is_new] = face_numbers_.number(triangle);
+    if (!is_new) return number;
     Face face;
     face.triangle = triangle;
     for (int k = 0; k < 3; ++k) {
@@ -353,9 +343,8 @@ bool ShortestWays::spread(const TriangleMesh& mesh, std::uint32_t triangle, cons
 
 ShortestWays::Way ShortestWays::to(std::uint32_t triangle, const Vec3& p) const {
     Way way;
-    if (triangle >= face_numbers_.epoch.size() || face_numbers_.epoch[triangle] != epoch_)
-        return way;
-    const std::uint32_t number = face_numbers_.number[triangle];
+    const std::uint32_t number = face_numbers_.find(triangle);
+    if (number == kNone) return way;
     const Face& face = faces_[number];
     const Vec3 a = mesh_->position(triangle, 0),
                x = glm::normalize(mesh_->position(triangle, 1) - a);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/sparse_numbering.h"
 #include "mesh/triangle_mesh.h"
 
 /// Exact shortest ways over the triangles from one point, as far as a radius: windows of straight
@@ -91,11 +92,6 @@ class ShortestWays {
         int corner;
     };
 
-    /// Numbers of what is within reach, by the mesh's.
-    struct Numbers {
-        std::vector<std::uint32_t> epoch, number;
-    };
-
     void begin(const TriangleMesh& mesh, double radius);
     std::uint32_t face_of(std::uint32_t triangle);
     std::uint32_t vertex_of(std::uint32_t vertex);
@@ -111,11 +107,10 @@ class ShortestWays {
     std::vector<Corner>& fan(std::vector<Corner>& corners, Corner at, bool counter_clockwise);
 
     const TriangleMesh* mesh_ = nullptr;
-    std::uint32_t epoch_ = 0;
     double radius_ = 0;
     std::uint32_t start_ = kNone;  ///< the origin's face
     Vec2 origin_{0};               ///< in the frame of its edge 0
-    Numbers face_numbers_, vertex_numbers_;
+    SparseNumbering face_numbers_, vertex_numbers_;  ///< of what is within reach, by the mesh's
     std::vector<Face> faces_;
     std::vector<Vertex> vertices_;
     std::vector<Window> windows_;

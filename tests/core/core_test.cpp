@@ -4,13 +4,16 @@
 #include <cmath>
 #include <fstream>
 #include <numeric>
+#include <random>
 #include <set>
+#include <unordered_map>
 
 #include "core/error.h"
 #include "core/files.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/sparse_numbering.h"
 #include "core/types.h"
 #include "core/units.h"
 
@@ -133,4 +136,25 @@ TEST_F(Files, MissingEmptyAndFolderAreErrors) {
 }
 
 }  // namespace
+// Against the standard library's map, through growth, clearing and keys that are all ones.
+TEST(SparseNumbering, NumbersKeysInTheOrderInWhichTheyCome) {
+    SparseNumbering numbering;
+    std::mt19937 random(7);
+    for (int round = 0; round < 5; ++round) {
+        numbering.clear();
+        std::unordered_map<std::uint32_t, std::uint32_t> expected;
+        for (int i = 0; i < 5000; ++i) {
+            const std::uint32_t key = i % 97 == 0 ? kNone - random() % 3 : random() % 4000;
+            const auto [at, is_new] = expected.try_emplace(
+                key, static_cast<std::uint32_t>(expected.size()));
+            EXPECT_EQ(numbering.number(key), std::pair(at->second, is_new));
+        }
+        EXPECT_EQ(numbering.size(), expected.size());
+        for (std::uint32_t key = 0; key < 4000; ++key) {
+            const auto at = expected.find(key);
+            EXPECT_EQ(numbering.find(key), at == expected.end() ? kNone : at->second);
+        }
+    }
+}
+
 }  // namespace tuft
