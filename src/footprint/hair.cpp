@@ -20,8 +20,10 @@ constexpr double kRollingPart = 0.2, kBreakingPart = 0.2;  // of the wetness at 
 constexpr double kThinning = 0.02;     // wetness over which a thread of ink tapers before it breaks
 constexpr double kAside = 0.35;        // sine of the angle from the tuft's way, or the hand's course, at which hair that lands or leaves is swept aside
 constexpr double kLessLanding = 0.75;  // of what it may measure across its motion, that it lacks while it lands or leaves
-constexpr double kCurve = 0.08;        // sine from the course up to which a tuft that bends round a curve goes along itself
-constexpr double kSwept = 0.8;         // wetness that it needs more then
+constexpr double kTapers =
+    0.08;  // sine up to which it is not: hair draws together as a stroke runs out
+constexpr double kTrails = 0.25;       // sine from the course by which hair that goes along itself
+                                       // trails behind the hand round a curve
 constexpr double kMark = 45e-6;        // m, half width of what a bristle leaves by itself: hair is 70–135 µm thick
 constexpr double kSkirt = 0.7, kFullSkirt = 0.9;  // wetness from which ink stands out beyond the outermost hair, and as far as it bridges
 constexpr double kBridge = 0.5;        // spacings that ink bridges from one bristle to the next at half wetness
@@ -185,8 +187,10 @@ Lying touching(const brush::Bundles& bundles, const brush::Bristle& b, double we
 
 /// How much what the hand presses or lifts sweeps the hair at x aside, 0–1: off the way of the tuft, or with it off the course.
 double swept_aside(const Across& across, double x, const HairInk& ink) {
-    const double off_course = std::max(ink.swings, across.off_way(x, ink.course)) - kCurve;
-    return ink.lands * smooth_step(std::max(across.off_way(x, ink.way), off_course) / kAside);
+    const double course = std::max(ink.swings, across.off_way(x, ink.course));
+    const double off_course = std::max(std::min(course, across.off_itself(x)), course - kTrails);
+    const double off = std::max(across.off_way(x, ink.way), off_course);
+    return ink.lands * smooth_step((off - kTapers) / (kAside - kTapers));
 }
 
 /// Bristles side by side into bands, in a section of half width `a` metres.
@@ -202,7 +206,8 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
         const double aside = ink.lands > 0 ? swept_aside(laid.across, lower[i].x, ink) : 0;
-        const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel), breaks = own + kSwept * aside * (1 - own);
+        const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel),
+                     breaks = own + aside * (1 - own);
         const double active = std::clamp((wet - std::min(breaks, 1 - kThinning)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;
         const double bridge = wet >= 1 ? 8 * a : active * std::max(kMark, kBridge * spacing * wet / (1 - wet));

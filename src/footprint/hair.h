@@ -38,7 +38,7 @@ struct HairInk {
     Vec2 way{0};                  ///< unit, where the tuft is drawn, in the stamp's (u, v); zero: it stands
     std::span<const Trail> before = {};  ///< of the stamp before, in this one's frame: each hair's own way; none: all go `way`
     double lands = 0;             ///< 0–1: how much of the hand's motion is pressing or lifting
-    Vec2 course{0};               ///< where the hand goes over the surface, any length, in the stamp's (u, v); zero: nowhere
+    Vec2 course{0};               ///< where the hand goes, but for what it goes by pressing and lifting, any length, in (u, v); zero: nowhere
     double swings = 0;            ///< 0–1: sine of the angle between the way of the tuft over its last millimetre and `course`
 };
 
@@ -70,10 +70,12 @@ struct HairMarks {
 /// Hair that a press spreads, that closes again in a lifted tuft, or swings round with one that leans, is swept off the
 /// hand's course. Dry hair draws no line by that: while the hand presses or lifts a thread needs
 ///
-///     0.8 lands S(max(sin ψ, sin φ − 0.08) / 0.35)
+///     lands S((max(sin ψ, min(sin φ, sin χ), sin φ − 0.25) − 0.08) / 0.27)
 ///
 /// of what its need lacks to 1 more wetness, ψ the angle between the hair's way and the tuft's, φ that of the hair's way or
-/// of the tuft's over its last millimetre, the larger one, to the course, S the smooth step; and it touches with no more than measures
+/// of the tuft's over its last millimetre, the larger one, to the course, χ that of the hair's way to itself, S the smooth step.
+/// Hair that trails behind the hand round a curve goes off the course, but along itself, and draws together where the stroke
+/// runs out: both go on to its end. While the hand presses or lifts hair touches with no more than measures
 ///
 ///     max(1, (1 − 0.75 lands) wet / (2 (1 − wet)²))
 ///

@@ -59,6 +59,7 @@ Across::Across(const Trail& trail, std::size_t begin, std::size_t end,
     const Trail* was = same_hair(trail, before);
     for (std::size_t i = begin; i + 1 < end; ++i) {
         const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
+        length_ += glm::length(run);
         if (!was) {
             const double across = std::abs(run.x * way.y - run.y * way.x);
             for (double& m : measure_) m += across;

@@ -30,11 +30,14 @@ class Across {
     /// Sine of the angle between the way of that hair, on the mean of what lies down of it, and
     /// `way`; 0 without either.
     double off_way(double x, const Vec2& way) const;
+    /// Mean sine of the angle between that hair and its own way, 0 along itself to 1 across.
+    double off_itself(double x) const { return length_ > 0 ? at(x) / length_ : 0; }
 
   private:
     static constexpr std::size_t kPlaces = 17;
     std::array<double, kPlaces> measure_{};
     std::array<Vec2, kPlaces> went_{};
+    double length_ = 0;  // metres of hair
 };
 
 }  // namespace tuft::footprint

@@ -240,21 +240,28 @@ TEST(Hair, SweptAsideByAPressDrawsNoLine) {
     // The tuft goes along itself while it is pressed: hair that follows leaves what it leaves in a drag, hair that spreads
     // by 20 degrees and more leaves next to nothing, and a full tuft closes all the same.
     const Pressed& p = pressed();
-    const auto area = [&](double wetness, double lands, const std::function<void(Cut&)>& was, double swings = 0) {
+    const auto area = [&](double wetness, double lands, const std::function<void(Cut&)>& was,
+                          double swings = 0, const Vec2& way = {1, 0}) {
         const std::vector<double> wet(p.tuft.bundles.place.size(), wetness);
         std::vector<Trail> before = p.trails;
         for (Trail& trail : before)
             for (Cut& cut : trail.cuts) was(cut);
-        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, {1, 0}, before, lands, {1, 0}, swings}, kFlat, 0, kCell).footprint);
+        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1,
+                                  {wet, 0, way, before, lands, {1, 0}, swings}, kFlat, 0, kCell)
+                           .footprint);
     };
     const auto follows = [](Cut& c) { c.centre.x -= 3e-5; };
     const auto aside = [](Cut& c) { c.centre.x -= 3e-5, c.centre.y -= 2e-5; };
     EXPECT_NEAR(area(0.5, 1, follows), area(0.5, 0, follows), 0.02 * area(0.5, 0, follows));
     EXPECT_LT(area(0.5, 1, aside), 0.1 * area(0.5, 0, aside));
     EXPECT_EQ(area(1, 1, aside), area(1, 0, aside));
-    // Nor does any hair of a tuft that swings round as a whole, whatever way it goes just now.
-    EXPECT_LT(area(0.5, 1, follows, 0.5), 0.1 * area(0.5, 0, follows));
-    EXPECT_EQ(area(0.5, 0, follows, 0.5), area(0.5, 0, follows));
+    // Nor does any hair of a tuft that swings round as a whole, whatever way it goes just now,
+    const Vec2 with_it = glm::normalize(Vec2{3, 2});
+    EXPECT_LT(area(0.5, 1, aside, 0, with_it), 0.1 * area(0.5, 0, aside, 0, with_it));
+    EXPECT_LT(area(0.5, 1, follows, 0.6), 0.1 * area(0.5, 0, follows));
+    EXPECT_EQ(area(0.5, 0, follows, 0.6), area(0.5, 0, follows));
+    // but one that trails behind the hand round a curve, along itself, goes on.
+    EXPECT_NEAR(area(0.5, 1, follows, 0.3), area(0.5, 0, follows), 0.02 * area(0.5, 0, follows));
 }
 
 TEST(Hair, CarriedTrailsLieWhereTheyLay) {

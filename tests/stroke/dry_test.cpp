@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/parallel.h"
 #include "sheet.h"
@@ -383,6 +384,48 @@ TEST(DryBrush, ALiftedTuftLeavesWithItsTip) {
             // place of its own track ended as a comb 3.2-3.8 mm wide, in rows of dots.
             EXPECT_LT(breadth_at_end(inked(painting), 1e-3), 1.1e-3) << seed << " in " << hand.lift << " s";
         }
+}
+
+/// Metres of the longest stretch of x between the stroke's ends in which there is no ink at any y.
+double longest_tear(const std::vector<std::vector<bool>>& rows) {
+    std::size_t last = 0, longest = 0;
+    for (std::size_t x = 0; x < kSize; ++x)
+        if (std::any_of(rows.begin(), rows.end(),
+                        [&](const std::vector<bool>& row) { return row[x]; })) {
+            if (last > 0) longest = std::max(longest, x - last - 1);
+            last = x;
+        }
+    return static_cast<double>(longest) * kSide / kSize;
+}
+
+TEST(DryBrush, AStrokeThatIsLiftedOnceEndsOnce) {
+    // Drawn round a bend and lifted while the hand goes on, the tuft trails behind it at an angle
+    // to its course, and its hair draws together. Where that passed for hair swept aside the stroke
+    // broke off and its tip left a dash of its own.
+    const Model model = sheet();
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        Stroke s = drag(seed, 0.25, 1000);
+        s.trace.brush = "goat-medium";
+        const double length = brush::load_preset(s.trace.brush).length;
+        const double end = static_cast<double>(s.trace.samples.size() - 1);
+        for (std::size_t i = 0; i < s.trace.samples.size(); ++i) {
+            TraceSample& p = s.trace.samples[i];
+            const double u = static_cast<double>(i) / end, turned = 1.7 * (u - 0.5);
+            p.time = 0.2 * u;
+            p.position = {28e-3 * std::sin(turned), 28e-3 * (1 - std::cos(turned)),
+                          length - 6.5e-3 * std::min({1.0, u / 0.15, (1.02 - u) / 0.14})};
+        }
+        Stroke wiped = wipe(0.84, seed);
+        wiped.trace.brush = s.trace.brush;
+        s.settings.dip = "carry";
+        s.settings.spacing = 1;
+        Painting painting(model);
+        painting.paint(wiped);
+        painting.paint(s);
+        // Hair that passed for swept aside tore two strokes of the six over 5 mm; their streaks
+        // overlap by far more than 1 mm.
+        EXPECT_LT(longest_tear(inked(painting)), 1e-3) << seed;
+    }
 }
 
 /// Of the edges of the ink between two places of the stroke, the part that does not run along it: the share of the

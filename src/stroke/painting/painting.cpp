@@ -282,10 +282,16 @@ void Painting::draw_poses() {
         h.slid += slid;
         if (slid > 0) h.heading = drawn / slid;
         const double along = glm::length(shift);
-        h.course = h.was_touching ? std::exp(-along / kCourse) * h.course + shift.x * contact.frame.t + shift.y * contact.frame.b : Vec3{0};
         h.went = h.was_touching ? std::exp(-slid / kSwing) * h.went + drawn.x * contact.frame.t + drawn.y * contact.frame.b : Vec3{0};
         const double up = std::abs(glm::dot(way, contact.frame.n));
         const double plunges = up > 0 ? smooth_step((up / (up + along) - kSlants) / (kPlunges - kSlants)) : 0;
+        // Pressed or lifted, a tuft that is held to a line moves to take in or give back its lead:
+        // that is no course.
+        const double goes = 1 - plunges * std::min(1.0, glm::length(h.course) / kCourse);
+        h.course = h.was_touching
+                       ? std::exp(-goes * along / kCourse) * h.course +
+                             goes * (shift.x * contact.frame.t + shift.y * contact.frame.b)
+                       : Vec3{0};
         h.lands = std::max(plunges, h.was_touching ? std::exp(-along / kComesToLie) * h.lands : 0);
         if (h.by_hair) h.pay(h.instalment);
         Stamp stamp = h.make_stamp(contact, dt);

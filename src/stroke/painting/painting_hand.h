@@ -40,7 +40,8 @@ struct Painting::Hand {
     std::vector<double> soaked;    // wetness of each bundle where it touched last
     double slid = 0;               // metres that hair went over the surface since it was touched
     Vec2 heading{0};               // unit, of the hair's last motion over it; zero before the first
-    Vec3 course{0};                // of the hand over the surface, world: the sum of its last millimetres
+    Vec3 course{0};  // of the hand over the surface, world: the sum of its last millimetres, but
+                     // what it goes by pressing or lifting
     Vec3 went{0};                  // of the hair that touches, likewise over a shorter way
     double lands = 0;              // 0–1: how much of the hand's last motion was pressing or lifting
     footprint::HairTracks tracks;  // of the hair that lies there
