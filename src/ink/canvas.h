@@ -102,6 +102,11 @@ class Canvas {
     /// old one; either may be null.
     void swap_liquid(std::uint32_t slot, Liquid where, std::unique_ptr<Plane>& plane);
     void swap_open(std::uint32_t slot, int pigment, std::unique_ptr<Plane>& plane);
+    /// Says that planes of a slot are about to be put in place: its table is asked for from memory.
+    void expect(std::uint32_t slot) const {
+        if (const char* tile = reinterpret_cast<const char*>(slots_[slot].get()))
+            __builtin_prefetch(tile, 1), __builtin_prefetch(tile + 64, 1);
+    }
     /// Whether any slot has a plane of liquid.
     bool wet() const { return n_liquid_ > 0; }
     /// Slots with a plane of liquid, ascending.

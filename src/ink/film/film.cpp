@@ -40,7 +40,7 @@ struct Carried {
 /// Memory that will be needed soon. Planes lie here and there, and the processor waits long for each line
 /// that it does not expect, but it can wait for a dozen at once: some between one loop and the next.
 struct Ahead {
-    std::array<const char*, 512> lines;
+    std::array<const char*, 1024> lines;
     std::size_t n = 0, at = 0;
 
     void clear() { n = at = 0; }
@@ -54,12 +54,16 @@ struct Ahead {
     }
 };
 
+/// Planes that nobody reads any more, the last ones still in the cache; of each kind by itself, so that those of a tile
+/// stay side by side in memory, on few pages.
+using Spare = std::array<std::vector<PlanePtr>, 2 + kMaxPigments>;
+
 /// What a thread works with.
 struct Worker {
     Work work;
     Ahead ahead;
     std::vector<Carried> carried;
-    std::vector<PlanePtr> spare;  ///< planes that nobody reads any more, the last ones still in the cache
+    Spare spare;
 };
 
 /// Copies a plane with a border of one texel from the tiles around; absent planes are zeros, and
@@ -275,6 +279,7 @@ struct WetFilm::State : TileList {
         const Active& tile = list[index];
         const Geometry& g = *geometry[tile.slot];
         const Beyond* other = tile.others.data();
+        work.sloping = true;
         for (std::size_t i = 0; i < tile.taps.size();) {
             const std::uint8_t texel = tile.taps[i].texel;
             const int k = field_of(texel), column = texel % kSide, row = texel / kSide;
@@ -331,8 +336,8 @@ struct WetFilm::State : TileList {
         tile.pigments = 0;
         tile.idle = !any_w && !any_s && worker.carried.empty();
         if (tile.idle) return;
-        give(tile.w, worker);
-        give(tile.s, worker);
+        give(tile.w, worker.spare[0]);
+        give(tile.s, worker.spare[1]);
         std::array<std::uint8_t, kTexels> closing;
         ahead.fetch(kLines);
         tile.outcome = local_step(tile.w->data(), tile.s->data(), work, g, step, seed, closing);
@@ -358,25 +363,34 @@ struct WetFilm::State : TileList {
         if (!any) return;
         worker.ahead.fetch(kLines);
         const bool over = !worker.carried.empty();
-        if (over) work.dp.fill(0);
         for (const Carried& c : worker.carried) {
             const int k = field_of(c.texel);
             const float there = at(sources[c.other].open[p], c.other_texel);
             work.dp[c.texel] += (c.in * there - c.out * work.p[k]) * g.inverse[c.texel];
         }
-        give(tile.p[p], worker);
+        give(tile.p[p], worker.spare[2 + p]);
         pigment_step(tile.p[p]->data(), work, g, over, seed);
+        for (const Carried& c : worker.carried) work.dp[c.texel] = 0;
         worker.ahead.fetch(kLines);
         tile.pigments |= 1u << p;
     }
 
-    static void give(PlanePtr& plane, Worker& worker) {
-        if (worker.spare.empty()) {
+    static void give(PlanePtr& plane, std::vector<PlanePtr>& spare) {
+        if (spare.empty()) {
             plane = std::make_unique<Plane>();
         } else {
-            plane = std::move(worker.spare.back());
-            worker.spare.pop_back();
+            plane = std::move(spare.back());
+            spare.pop_back();
         }
+    }
+
+    /// What `look_ahead` reads.
+    void look_far_ahead(std::size_t index) const {
+        const auto fetch = [](const auto& what) {
+            for (std::size_t i = 0; i < sizeof what; i += 64) __builtin_prefetch(reinterpret_cast<const char*>(&what) + i, 0, 2);
+        };
+        fetch(list[index]);
+        fetch(sources[index]);
     }
 
     /// Lists the memory of a tile that this thread comes to soon: nobody takes its planes away before.
@@ -391,6 +405,11 @@ struct WetFilm::State : TileList {
         planes_of(static_cast<std::uint32_t>(index), 0, sizeof(Plane));
         for (const int above : {0, 1, 2}) planes_of(tile.around[above], sizeof(Plane) - 64, sizeof(Plane));
         for (const int below : {6, 7, 8}) planes_of(tile.around[below], 0, 64);
+        for (const Beyond& other : tile.others)
+            for (unsigned lines = other.lines; lines && other.place != kNone; lines &= lines - 1) {
+                const std::size_t line = 64 * static_cast<std::size_t>(std::countr_zero(lines));
+                planes_of(other.place, line, line + 64);
+            }
         ahead.add(tile.geometry, 0, offsetof(Geometry, grain));
         ahead.add(tile.diagonals, 0, sizeof(Geometry::Diagonals));
     }
@@ -404,7 +423,7 @@ struct WetFilm::State : TileList {
     }
 
     /// Puts into the canvas what a step made of a tile, when nobody needs what was there any more.
-    void commit(Canvas& canvas, std::size_t index, float stain, std::vector<PlanePtr>& spare) {
+    void commit(Canvas& canvas, std::size_t index, float stain, Spare& spare) {
         Active& tile = list[index];
         if (tile.idle) return;
         Sources& from = sources[index];
@@ -418,7 +437,7 @@ struct WetFilm::State : TileList {
                 PlanePtr none;
                 canvas.swap_liquid(tile.slot, where, none);
             }
-            if (plane) spare.push_back(std::move(plane));
+            if (plane) spare[static_cast<std::size_t>(where)].push_back(std::move(plane));
         };
         put_liquid(Liquid::film, tile.w, tile.outcome.most_w);
         put_liquid(Liquid::pores, tile.s, tile.outcome.most_s);
@@ -428,7 +447,7 @@ struct WetFilm::State : TileList {
                 from.open[p] = tile.p[p].get();
                 canvas.swap_open(tile.slot, p, tile.p[p]);
             }
-            if (tile.p[p]) spare.push_back(std::move(tile.p[p]));
+            if (tile.p[p]) spare[2 + p].push_back(std::move(tile.p[p]));
         }
         if (!tile.outcome.closing) return;
         close_films(canvas, tile.slot, *tile.closing, stain);
@@ -453,6 +472,10 @@ struct WetFilm::State : TileList {
                 // The tile after the next: the next one's side is read already with this one.
                 if (i + 2 < end) look_ahead(order[i + 2], worker->ahead);
                 else worker->ahead.clear();
+                if (i + 4 < end) look_far_ahead(order[i + 4]);
+                each_read(order[i], [&](std::uint32_t read) {
+                    if (readers[read].load(std::memory_order_relaxed) == 1) canvas.expect(list[read].slot);
+                });
                 compute(order[i], pigments, rates, report.steps, *worker);
                 each_read(order[i], [&](std::uint32_t read) {
                     if (last_reader(readers[read], alone))

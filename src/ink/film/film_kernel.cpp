@@ -363,7 +363,8 @@ bool fluxes(Work& work, const Geometry& g, const Step& step) {
     const Least rims = least > 0 && least >= depth ? Least{} : look_for_rims(work, g, depth);
     (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
     if (rims.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
-    else work.rim_slope.fill(0);
+    else if (work.sloping) work.rim_slope.fill(0);
+    work.sloping = rims.thin;
     return rims.thin;
 }
 

@@ -56,14 +56,17 @@ void TileList::find_near() {
     near_start_.assign(1, 0);
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
         const std::size_t first = near_.size();
-        const auto add = [&](std::uint32_t other, bool linked) {
-            if (other != kNone && (near_.size() == first || near_.back().slot != other)) near_.push_back({other, kNone, linked});
+        const auto add = [&](std::uint32_t other, std::uint8_t texel, bool linked) {
+            if (other == kNone) return;
+            const auto row = static_cast<std::uint16_t>(1u << texel / kSide);
+            const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
+            const auto at = std::lower_bound(begin, near_.end(), other, [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+            if (at == near_.end() || at->slot != other) near_.insert(at, {other, kNone, linked, row});
+            else at->linked |= linked, at->lines |= row;
         };
-        for (const atlas::SeamLink& l : links_of(slot)) add(l.other_slot, true);
-        for (std::uint32_t i = seams.tap_start[slot]; i < seams.tap_start[slot + 1]; ++i) add(seams.taps[i].other_slot, false);
-        const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
-        std::sort(begin, near_.end(), [](const Beyond& a, const Beyond& b) { return a.slot != b.slot ? a.slot < b.slot : a.linked > b.linked; });
-        near_.erase(std::unique(begin, near_.end(), [](const Beyond& a, const Beyond& b) { return a.slot == b.slot; }), near_.end());
+        for (const atlas::SeamLink& l : links_of(slot)) add(l.other_slot, l.other_texel, true);
+        for (std::uint32_t i = seams.tap_start[slot]; i < seams.tap_start[slot + 1]; ++i)
+            add(seams.taps[i].other_slot, seams.taps[i].other_texel, false);
         near_start_.push_back(static_cast<std::uint32_t>(near_.size()));
     }
 }
@@ -210,7 +213,7 @@ void TileList::spread() {
     others_.clear();
     for (const Active& tile : list)
         for (std::uint32_t i = near_start_[tile.slot]; i < near_start_[tile.slot + 1]; ++i)
-            others_.push_back({near_[i].slot, place_[near_[i].slot], near_[i].linked});
+            others_.push_back({near_[i].slot, place_[near_[i].slot], near_[i].linked, near_[i].lines});
     std::size_t from = 0;
     for (Active& tile : list) {
         const std::size_t n = near_start_[tile.slot + 1] - near_start_[tile.slot];

@@ -30,6 +30,7 @@ struct Beyond {
     std::uint32_t slot = kNone;
     std::uint32_t place = kNone;            ///< in the list
     bool linked = false;                    ///< liquid goes there; else only slopes are taken from it
+    std::uint16_t lines = 0;                ///< bits: rows of texels there that this tile looks at
 };
 
 /// A tile in the list of a step.

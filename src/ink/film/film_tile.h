@@ -105,8 +105,9 @@ struct alignas(64) Work {
     Field carrying{};              ///< liquid in which pigments move, M
     Field p{};                     ///< one pigment
     Faces x, y, up, down;          ///< up: of diagonals k to k + 25, down: k + 1 to k + 24
-    std::array<float, kTexels> dw, ds, rim_slope;  ///< the last: of liquid no higher than `rim_depth`, a texel
-    std::array<float, kTexels> dp; ///< what seams bring of one pigment
+    std::array<float, kTexels> dw, ds{}, rim_slope{};  ///< the last: of liquid no higher than `rim_depth`, a texel
+    bool sloping = false;          ///< `rim_slope` is not 0
+    std::array<float, kTexels> dp{};  ///< what seams bring of one pigment; 0 between steps
 };
 
 /// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
