@@ -27,7 +27,8 @@ Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, dou
 
 /// Unit normal of triangle t, smooth as shading has it, at weight w between its corners k and l.
 Vec3 corner_normal(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, int l, double w) {
-    const Vec3 n = (1 - w) * Vec3(mesh.corner_normals[3 * t + k]) + w * Vec3(mesh.corner_normals[3 * t + l]);
+    const Vec3 n =
+        (1 - w) * Vec3(mesh.corner_normals[3 * t + k]) + w * Vec3(mesh.corner_normals[3 * t + l]);
     const double size = glm::length(n);
     return size > 1e-9 ? n / size : n;
 }
@@ -43,22 +44,28 @@ struct SharpEdge {
     double distance = 0;  // metres from where it was looked for
 };
 
-/// The edge of triangle t from its corner k on, where it is sharp and convex: the point of it nearest to q.
-std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, const Vec3& q) {
+/// The edge of triangle t from its corner k on, where it is sharp and convex: the point of it
+/// nearest to q.
+std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_t t, int k,
+                                    const Vec3& q) {
     const std::uint32_t other = mesh.neighbours[3 * t + k];
     if (other == kNone) return {};
     const int l = (k + 1) % 3;
     const auto& of = mesh.triangles[other];
     int a = -1, b = -1, far = -1;
     for (int i = 0; i < 3; ++i) {
-        if (of[i] == mesh.triangles[t][k]) a = i;
-        else if (of[i] == mesh.triangles[t][l]) b = i;
-        else far = i;
+        if (of[i] == mesh.triangles[t][k])
+            a = i;
+        else if (of[i] == mesh.triangles[t][l])
+            b = i;
+        else
+            far = i;
     }
     if (a < 0 || b < 0 || far < 0) return {};
     // Both faces share their normals on a smooth surface: nothing to compute.
     const auto& normal = mesh.corner_normals;
-    if (normal[3 * t + k] == normal[3 * other + a] && normal[3 * t + l] == normal[3 * other + b]) return {};
+    if (normal[3 * t + k] == normal[3 * other + a] && normal[3 * t + l] == normal[3 * other + b])
+        return {};
     const Vec3 from = mesh.position(t, k), way = mesh.position(t, l) - from;
     const double w = std::clamp(glm::dot(q - from, way) / glm::dot(way, way), 0.0, 1.0);
     const Vec3 own = corner_normal(mesh, t, k, l, w);
@@ -80,12 +87,18 @@ std::optional<SharpEdge> edge_near(const mesh::TriangleMesh& mesh, const mesh::S
     for (int i = 0; i < count; ++i) {
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t next = mesh.neighbours[3 * seen[i] + k];
-            if (next == kNone || std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count)
+            if (next == kNone ||
+                std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count)
                 continue;
-            const Vec3 from = mesh.position(seen[i], k), way = mesh.position(seen[i], (k + 1) % 3) - from;
-            const double w = std::clamp(glm::dot(q.position - from, way) / glm::dot(way, way), 0.0, 1.0);
-            const Vec3 off = from + w * way - q.position;
-            if (glm::dot(off, off) > kReach * kReach) continue;
+            const Vec3 from = mesh.position(seen[i], k),
+                       way = mesh.position(seen[i], (k + 1) % 3) - from;
+            const Vec3 to_q = q.position - from;
+            const double length2 = glm::dot(way, way),
+                         along = std::clamp(glm::dot(to_q, way), 0.0, length2);
+            // Squared distance from the edge, times its squared length.
+            if (length2 * glm::dot(to_q, to_q) + along * (along - 2 * glm::dot(to_q, way)) >
+                kReach * kReach * length2)
+                continue;
             if (const auto edge = sharp_edge(mesh, seen[i], k, q.position)) {
                 if (!best || edge->distance < best->distance) best = edge;
             } else if (count < kMost) {
@@ -97,7 +110,8 @@ std::optional<SharpEdge> edge_near(const mesh::TriangleMesh& mesh, const mesh::S
 }
 
 /// Whether the surface point q lies on an edge from whose other face `off` leads outwards.
-bool before_other_face(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q, double side, const Vec3& off) {
+bool before_other_face(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q, double side,
+                       const Vec3& off) {
     const double weight[3] = {1 - q.b1 - q.b2, q.b1, q.b2};
     for (int k = 0; k < 3; ++k) {
         const std::uint32_t other = mesh.neighbours[3 * q.triangle + k];

@@ -23,10 +23,9 @@ const std::array<Vec2, kDirections>& directions() {
     return table;
 }
 
-/// Corners of the shadow of the part of a section that lies below the surface, in order:
+/// Adds the corners of the shadow of the part of a section that lies below the surface, in order:
 /// first and last are its cut points Q±, unless all of it lies below.
-void shadow(const Cut& cut, std::vector<Vec2>& corners) {
-    corners.clear();
+void add_shadow(const Cut& cut, std::vector<Vec2>& corners) {
     const double p = cut.a * cut.e.z, q = cut.b * cut.m.z, height = std::sqrt(p * p + q * q);
     const double level =
         height > 0 ? std::clamp(-cut.z / height, -1.0, 1.0) : (cut.z <= 0 ? 1 : -1);
@@ -42,7 +41,8 @@ void shadow(const Cut& cut, std::vector<Vec2>& corners) {
     };
     // They are taken in order from Q+ on: from where those below the surface begin.
     int first = 0;
-    while (first < kDirections && !(below(first) && !below((first + kDirections - 1) % kDirections)))
+    while (first < kDirections &&
+           !(below(first) && !below((first + kDirections - 1) % kDirections)))
         ++first;
     if (first == kDirections)
         first = static_cast<int>(std::ceil(std::atan2(from.y, from.x) * kDirections / (2 * kPi))) +
@@ -144,38 +144,49 @@ Outline outline_of(const Trail& trail, int points) {
     points = std::max(points, 4);
     const Vec2 forward = forward_direction(cuts), left{-forward.y, forward.x};
     const Vec2 middle = cuts[n / 2].centre;
-    std::vector<std::vector<Vec2>> shadows(n);
+    std::vector<Vec2> corners;
+    std::vector<std::size_t> first{0};  // corner of each section, and the end
+    corners.reserve(n * (kDirections + 2));
+    first.reserve(n + 1);
+    for (const Cut& cut : cuts) {
+        add_shadow(cut, corners);
+        first.push_back(corners.size());
+    }
     Vec2 front{-1e9, 0}, rear{1e9, 0};
-    for (std::size_t k = 0; k < n; ++k) {
-        shadow(cuts[k], shadows[k]);
-        for (Vec2& q : shadows[k]) {
-            q = {glm::dot(q - middle, forward), glm::dot(q - middle, left)};
-            if (q.x > front.x) front = q;
-            if (q.x < rear.x) rear = q;
-        }
+    for (Vec2& q : corners) {
+        q = {glm::dot(q - middle, forward), glm::dot(q - middle, left)};
+        if (q.x > front.x) front = q;
+        if (q.x < rear.x) rear = q;
     }
     Envelope envelope(rear.x, front.x, points);
     const auto by_y = [](const Vec2& a, const Vec2& b) { return a.y < b.y; };
+    Vec2 low_before{0}, high_before{0};
     for (std::size_t k = 0; k < n; ++k) {
-        const auto& s = shadows[k];
-        for (std::size_t i = 0; i < s.size(); ++i) envelope.add(s[i], s[(i + 1) % s.size()]);
-        if (k == 0) continue;
+        const std::span<const Vec2> s(corners.data() + first[k], first[k + 1] - first[k]);
+        for (std::size_t i = 0; i + 1 < s.size(); ++i) envelope.add(s[i], s[i + 1]);
+        envelope.add(s.back(), s.front());
         const auto [low, high] = std::minmax_element(s.begin(), s.end(), by_y);
-        const auto& r = shadows[k - 1];
-        const auto [low_before, high_before] = std::minmax_element(r.begin(), r.end(), by_y);
-        envelope.add(*low_before, *low);
-        envelope.add(*high_before, *high);
+        if (k > 0) {
+            envelope.add(low_before, *low);
+            envelope.add(high_before, *high);
+        }
+        low_before = *low;
+        high_before = *high;
     }
     const auto to_stamp = [&](const Vec2& q) { return middle + q.x * forward + q.y * left; };
     Outline outline;
     outline.tip = to_stamp(front);
     outline.tail = to_stamp(rear);
+    outline.left.reserve(points);
+    outline.right.reserve(points);
     for (int j = points - 1; j >= 0; --j) {
         if (!envelope.covered(j)) continue;
         outline.left.push_back(to_stamp(envelope.top(j)));
         outline.right.push_back(to_stamp(envelope.bottom(j)));
     }
-    std::vector<Vec2> closed{outline.tip};
+    std::vector<Vec2> closed;
+    closed.reserve(2 * outline.left.size() + 2);
+    closed.push_back(outline.tip);
     closed.insert(closed.end(), outline.left.begin(), outline.left.end());
     closed.push_back(outline.tail);
     closed.insert(closed.end(), outline.right.rbegin(), outline.right.rend());

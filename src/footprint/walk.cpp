@@ -325,10 +325,11 @@ bool in_picture(const Reach& reach, const atlas::Piece& piece, const PlanScratch
 }
 
 void begin_walk(PlanScratch& scratch, std::size_t n_pieces) {
-    if (scratch.nodes.size() != n_pieces || scratch.epoch == kNone) {
-        scratch.nodes.assign(n_pieces, {});
+    if (scratch.epoch == kNone) {
+        scratch.nodes.clear();
         scratch.epoch = 0;
     }
+    if (scratch.nodes.size() < n_pieces) scratch.nodes.resize(n_pieces);
     ++scratch.epoch;
     scratch.heap.clear();
 }

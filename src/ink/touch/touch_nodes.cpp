@@ -84,10 +84,12 @@ NodeTouch node_touch(const Reservoir& tuft, const TouchGrid& grid, std::span<con
 bool is_mixed(const Reservoir& tuft) {
     const double all = tuft.remaining();
     if (!(all > 0)) return false;
-    for (int p = 0; p < kPlanes; ++p) {
-        const double part = tuft.pigment(p) / all;
-        for (const Content& c : tuft.content)
-            if (const double held = sum_of(c); std::abs(c[p] - part * held) > kAlike * held) return true;
+    Content part;
+    for (int p = 0; p < kPlanes; ++p) part[p] = tuft.pigment(p) / all;
+    for (const Content& c : tuft.content) {
+        const double held = sum_of(c);
+        for (int p = 0; p < kPlanes; ++p)
+            if (std::abs(c[p] - part[p] * held) > kAlike * held) return true;
     }
     return false;
 }

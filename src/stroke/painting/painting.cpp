@@ -40,7 +40,8 @@ Painting::Painting(const Model& model, const PaintingOptions& options)
     : model_(&model),
       options_(options),
       substrate_(ink::load_substrate(options.substrate)),
-      canvas_(model.texels.n_slots()) {}
+      canvas_(model.texels.n_slots()),
+      plan_rooms_(std::make_unique<PlanRooms>()) {}
 
 Painting::~Painting() = default;
 Painting::Painting(Painting&&) noexcept = default;
@@ -215,7 +216,7 @@ void Painting::begin_hand(Stroke stroke) {
     const bool masked = stroke.mask && stroke.layer != kPaletteLayer;
     const MaskTexels* mask = masked ? &this->mask(stroke.mask) : nullptr;
     hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, model, canvas, substrate,
-                                   spacing, texel);
+                                   *plan_rooms_, spacing, texel);
     hand_->stamper.keep_to(mask);
     hand_->mixed = !hand_->stroke.trace.erases && ink::is_mixed(hand_->reservoir);
     hand_->paste = paste;

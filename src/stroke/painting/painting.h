@@ -98,6 +98,7 @@ std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable ta
 /// `Error` for a mask that is not there.
 void keep_to_named_masks(std::vector<Stroke>& strokes, const MaskTable& table, const std::string& name = {});
 
+class PlanRooms;
 class Painting;
 
 /// Draws what the palette of a painting looks like: all of it, or only these slots anew.
@@ -303,6 +304,7 @@ class Painting {
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
     std::size_t known_pigments_ = 0;                  ///< by the entries of the journal
+    std::unique_ptr<PlanRooms> plan_rooms_;
     std::unique_ptr<Hand> hand_;
     std::unique_ptr<ink::WetFilm> film_;              ///< made when something is wet
     std::uint32_t film_mask_ = 0;                     ///< the mask that it keeps within

@@ -48,7 +48,7 @@ double footprint_area(const footprint::Footprint& f) {
 }
 
 Painting::Hand::Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& on, ink::Canvas& canvas,
-                     const ink::Substrate& ground, double step_, double texel)
+                     const ink::Substrate& ground, PlanRooms& rooms, double step_, double texel)
     : stroke(std::move(s)),
       model(&on),
       substrate(&ground),
@@ -57,7 +57,7 @@ Painting::Hand::Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model&
       reservoir(held.reservoir),
       dipped(std::move(held.dipped)),
       resampler({.step = step_, .lever = tuft.preset.length}),
-      stamper(on, canvas, stamp_options(stroke.settings), ground),
+      stamper(on, canvas, stamp_options(stroke.settings), ground, rooms),
       step(step_),
       cell(0.5 * texel) {
     contact_options.method = stroke.settings.contact == "vertices" ? contact::Method::vertices

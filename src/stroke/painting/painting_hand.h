@@ -68,7 +68,7 @@ struct Painting::Hand {
     Quat last_rotation{1, 0, 0, 0};
 
     Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model& on, ink::Canvas& canvas,
-         const ink::Substrate& ground, double step_, double texel);
+         const ink::Substrate& ground, PlanRooms& rooms, double step_, double texel);
 
     /// Lays down the stamps that were added, and takes their ink from the tuft: hair that is half dry shows every
     /// hundredth of its ink, and gives a batch's evenly over the next.

@@ -15,12 +15,28 @@ constexpr double kHeldByRidges = 0.35;  // of the film that is laid
 
 }  // namespace
 
+PlanRooms::Room::Room(PlanRooms& rooms) : rooms_(rooms) {
+    const std::lock_guard lock(rooms_.mutex_);
+    if (rooms_.free_.empty()) {
+        scratch_ = std::make_unique<footprint::PlanScratch>();
+        rooms_.free_.reserve(++rooms_.made_);  // giving it back never throws
+    } else {
+        scratch_ = std::move(rooms_.free_.back());
+        rooms_.free_.pop_back();
+    }
+}
+
+PlanRooms::Room::~Room() {
+    const std::lock_guard lock(rooms_.mutex_);
+    rooms_.free_.push_back(std::move(scratch_));
+}
+
 Stamper::Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options,
-                 const ink::Substrate& substrate)
+                 const ink::Substrate& substrate, PlanRooms& rooms)
     : model_(model),
       canvas_(canvas),
       options_(options),
-      scratch_(kBatch),
+      rooms_(rooms),
       jobs_(kBatch),
       grain_rms_(substrate.relief),
       grain_length_(substrate.relief_length) {
@@ -55,9 +71,10 @@ double Stamper::flush(const ProgressFn& going_on) {
     if (batch_.empty()) return 0;
     const footprint::Surface surface = model_.surface();
     parallel_for(batch_.size(), 2, [&](std::size_t begin, std::size_t end) {
+        PlanRooms::Room room(rooms_);
         for (std::size_t i = begin; i < end; ++i)
             jobs_[i] = footprint::plan_stamp(surface, batch_[i].footprint, motion_of(batch_[i]), options_of(batch_[i]),
-                                             scratch_[i], std::move(jobs_[i]));
+                                             room, std::move(jobs_[i]));
     });
 
     struct Job {
@@ -136,7 +153,8 @@ void Stamper::keep(std::uint32_t slot) {
 }
 
 ink::NodeAreas Stamper::expose(const Stamp& stamp) {
-    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, motion_of(stamp), options_of(stamp), scratch_[0],
+    PlanRooms::Room room(rooms_);
+    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, motion_of(stamp), options_of(stamp), room,
                                      std::move(jobs_[0]));
     const footprint::StampJobs& plan = jobs_[0];
     exposed_.clear();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <unordered_map>
 #include <vector>
 
@@ -30,6 +31,29 @@ struct Stamp {
     ink::TouchGrid grid;         ///< over the footprint, for ink that is not the same all over it
 };
 
+/// Memory to plan stamps with, as much as threads plan at a time; outlives a stroke.
+class PlanRooms {
+  public:
+    /// For one thread, until it is destroyed.
+    class Room {
+      public:
+        explicit Room(PlanRooms& rooms);
+        ~Room();
+        Room(const Room&) = delete;
+        Room& operator=(const Room&) = delete;
+        operator footprint::PlanScratch&() { return *scratch_; }
+
+      private:
+        PlanRooms& rooms_;
+        std::unique_ptr<footprint::PlanScratch> scratch_;
+    };
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<footprint::PlanScratch>> free_;
+    std::size_t made_ = 0;
+};
+
 /// Puts stamps onto the texels, a batch at a time: tiles in parallel, on each tile the
 /// stamps in their order, so the texels do not depend on the number of threads. Batches
 /// have a fixed length; ink given is known after each.
@@ -38,7 +62,7 @@ class Stamper {
     static constexpr std::size_t kBatch = 8;
 
     Stamper(const Model& model, ink::Canvas& canvas, const footprint::StampOptions& options,
-            const ink::Substrate& substrate);
+            const ink::Substrate& substrate, PlanRooms& rooms);
 
     /// Keeps to a mask from now on, which must outlive the stamper; null: to none.
     void keep_to(const MaskTexels* mask) { mask_ = mask; }
@@ -103,8 +127,8 @@ class Stamper {
     ink::Canvas& canvas_;
     footprint::StampOptions options_;
     std::vector<Stamp> batch_;
-    std::vector<footprint::PlanScratch> scratch_;  ///< one per place in the batch
-    std::vector<footprint::StampJobs> jobs_;       ///< likewise; their memory is used again
+    PlanRooms& rooms_;
+    std::vector<footprint::StampJobs> jobs_;       ///< one per place in the batch; their memory is used again
     bool piecewise_ = false;
     float grain_rms_ = 0, grain_length_ = 0;       ///< metres, of the substrate
     std::vector<std::unique_ptr<Grain>> grain_;    ///< by slot, made when a dry hair comes there
