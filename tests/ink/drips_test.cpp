@@ -230,6 +230,21 @@ TEST(Drips, NothingGetsAboveWhereItWasLaidDown) {
     }
 }
 
+// Dots of 0.77 to 0.88 of the critical radius, which hold at the weakest places (grain 0.8: 0.89 of it), as high as caps
+// of their volume that run. 0.3 mm: two texels.
+TEST(Drips, AThickDotOnDrySurfaceStaysWhereItsVolumeIsHeld) {
+    for (const double part : {0.77, 0.82, 0.88})
+        for (const double thickness : {7.0, 8.0, 9.0}) {
+            const double critical = 1.18e-3, volume = 0.25 * std::numbers::pi * 0.15 * std::pow(part * critical, 3);
+            const double radius = std::sqrt(volume / (std::numbers::pi * thickness * kFilmUnit));
+            Wall w;
+            w.blot(thickness, radius);
+            const double lowest = w.lowest();
+            w.film.advance(w.canvas, 10, porcelain());
+            EXPECT_NEAR(w.lowest(), lowest, 0.3e-3) << part << " of the critical radius, " << thickness << " thick";
+        }
+}
+
 TEST(Drips, BeadsStopAtTape) {
     for (const bool cut : {false, true}) {
         Wall w(0, cut);

@@ -29,6 +29,7 @@ constexpr double kMoving = 0.65;             // of what holds a bead at rest: so
 constexpr double kLying = 0.5;               // of bead_angle: a bead's that came to rest
 constexpr double kSummit = 0.3;              // radii: about the highest of a cap
 constexpr double kFull = 0.8;                // of the height of a cap of its volume: one that runs is as high
+constexpr double kTrack = 0.3;                // radii: of the trail next to the bead that left it, along and to each side
 constexpr double kThinnest = 0.5;            // of the trail: what stays behind the slowest bead
 constexpr double kTail = 5;                  // radii that a bead at rest is drawn out upwards
 
@@ -278,14 +279,32 @@ class Drips::Run {
         }
         return {inside, round};
     }
-    /// Whether what lies there was laid down as a cap, which one at rest is not any more. `gather` has been there.
+    /// Whether what lies there was laid down as a cap, which one at rest is not any more, and hangs on a trail: a dot that
+    /// was put on dry surface is held by the line all round it. `gather` has been there.
     bool is_running(const Bead& bead, const Ground& ground, double amount) const {
-        const double radius = radius_of(amount, p_.bead_angle), cap = 0.5 * p_.bead_angle * radius / kFilmUnit;
+        const double radius = radius_of(amount, p_.bead_angle);
+        return is_full(bead, ground, radius) && is_wet_behind(bead, radius);
+    }
+    bool is_full(const Bead& bead, const Ground& ground, double radius) const {
+        const double cap = 0.5 * p_.bead_angle * radius / kFilmUnit;
         double sum = 0, area = 0;
         for (const Near& n : d_.disc_)
             if (n.distance < kSummit * radius)
                 sum += (static_cast<double>(liquid(n.ref)) - rest(bead, ground, n)) * n.area, area += n.area;
         return sum > kFull * cap * (1 - 0.5 * kSummit * kSummit) * area;
+    }
+    bool is_wet_behind(const Bead& bead, double radius) const {
+        const Vec3 down = glm::normalize(downhill(bead.place));
+        const double from = kRim * radius, to = from + std::max(kTrack * radius, 1.5 * d_.map_.texel_size);
+        double wet = 0, area = 0;
+        for (const Near& n : d_.disc_) {
+            const Vec3 d = n.at - bead.at;
+            const double behind = -glm::dot(d, down), across = std::sqrt(std::max(0.0, glm::dot(d, d) - behind * behind));
+            if (behind < from || behind > to || across > kTrack * radius) continue;
+            wet += std::min(static_cast<double>(liquid(n.ref)), kThinnest * p_.trail) * n.area;
+            area += n.area;
+        }
+        return wet > 0.5 * kThinnest * p_.trail * area;
     }
     /// All of the one and `part` of the other, where it is less than `thick`, go into the bead.
     void draw_in(Bead& bead, const Ground& ground, double radius, double part, double thick) {

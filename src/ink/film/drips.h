@@ -14,15 +14,17 @@ namespace tuft::ink::wet {
 ///
 ///     R < R_c = 2 l √(θ / (π sin α)),   l² = σ / ρ g
 ///
-/// times the roughness of the place (`grain`). Contact lines that move hold less, here 0.65 of that (Gao et al. 2018,
-/// Nature Physics 14, 191), so that a bead once it runs is held where R < R_k = √0.65 R_c. It moves with
+/// times the roughness of the place (`grain`). Contact lines that move hold less (Gao et al. 2018, Nature Physics 14, 191:
+/// on every surface they tried), here 0.65 of that, a choice, so that a bead once it runs is held where R < R_k = √0.65 R_c.
+/// It moves with
 /// bead_speed ((R / R_k)² − 1) (Le Grand, Daerr, Limat 2005: linear in the weight beyond the critical one), 1.5
 /// bead_speed at most, takes up what lies thicker than `hold` on its way, with its pigments, draws in what is above
 /// `hold` within 2 R, and leaves a trail of half width √(R R_k), rounded across, where it passed over
 /// less. It stops when the trail has used it up, and lies then at half its angle, drawn out up its trail, so that it dries
 /// as a soft bulb that fades into its trail. A film that is no bead yet starts one where 1.3 times what the surface
 /// holds lies above `hold` within 2 R.
-/// Nothing is kept between steps: what lies on the texels says where beads are, and their height which of them run.
+/// Nothing is kept between steps: what lies on the texels says where beads are, and which of them run: those that are as
+/// high as caps and hang on liquid behind. What stands on dry surface is held by the line all round it.
 ///
 /// Discs are measured in space along the texels that hang together, over seams too, so that
 /// neither shape nor path depends on the texels' directions.
