@@ -153,8 +153,8 @@ void Stamper::keep(std::uint32_t slot) {
 }
 
 ink::NodeAreas Stamper::expose(const Stamp& stamp) {
-    PlanRooms::Room room(rooms_);
-    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, motion_of(stamp), options_of(stamp), room,
+    PlanRooms::Room planning(rooms_);
+    jobs_[0] = footprint::plan_stamp(model_.surface(), stamp.footprint, motion_of(stamp), options_of(stamp), planning,
                                      std::move(jobs_[0]));
     const footprint::StampJobs& plan = jobs_[0];
     exposed_.clear();
