@@ -15,7 +15,6 @@ namespace tuft::atlas {
 namespace {
 
 constexpr std::size_t kDear = 4096;     // triangles
-constexpr std::size_t kLong = 20000;    // triangles: chains are long there
 constexpr double kNearEnds = 1.0 / 32;  // of the border's length
 constexpr double kAsLong = 1.05;        // as another
 constexpr double kAtFirst = 1.1;        // beyond limits of form, before a chart is laid flat
@@ -210,7 +209,7 @@ class Merger {
         t.flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         ChartMesh& mesh = t.flat.mesh;
         if (!mesh.disk) return;
-        if (mesh.faces.size() > kLong) {  // a start from which few steps lead on
+        if (mesh.faces.size() > kLargeChart) {  // a start from which few steps lead on
             const bool grows = a.mesh.triangles.size() < b.mesh.triangles.size();  // b, by a
             const FlatChart &kept = grows ? b : a, &taken = grows ? a : b;
             t.flat.uv = carry_uvs(kept, taken, taken.mesh.triangles, mesh);

@@ -18,7 +18,6 @@ constexpr int kReaches = 2;
 constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
 constexpr double kLeastSaved = 0.02;  // of a seam's length, for which charts are laid anew
 constexpr int kIterations = 8;         // from where a chart lies, most of it well
-constexpr std::size_t kDear = 20000;    // triangles of a chart
 constexpr std::size_t kAround = 5;     // times the triangles taken over, laid anew
 constexpr std::size_t kLeastAround = 500;
 constexpr double kLeastValue = 0.05;  // saved, over the unit, for laying all of the mesh anew
@@ -241,13 +240,13 @@ class Mover {
         if (triangles.empty() || triangles.size() > options_.triangles) return false;
         flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         if (!flat.mesh.disk) return false;
-        const bool dear = flat.mesh.faces.size() > kDear;
-        flat.uv = dear ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh) : unfold_uvs(old, flat.mesh);
-        // Where that is dear, what only gave triangles away is left as it lies, no less flat than before.
-        if (!dear || !come.empty()) {
+        const bool large = flat.mesh.faces.size() > kLargeChart;
+        flat.uv = large ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh) : unfold_uvs(old, flat.mesh);
+        // A large chart that only gave triangles away is left as it lies, no less flat than before.
+        if (!large || !come.empty()) {
             ArapOptions trial = trial_arap(options_);
             trial.iterations = kIterations;
-            arap(flat.mesh, flat.uv, trial, dear ? around(flat.mesh, come) : std::vector<std::uint32_t>{});
+            arap(flat.mesh, flat.uv, trial, large ? around(flat.mesh, come) : std::vector<std::uint32_t>{});
         }
         scale_to_area(flat.mesh, flat.uv);
         const FlatCheck check = check_flat(flat.mesh, flat.uv, options_.gap);
