@@ -21,7 +21,10 @@ constexpr std::size_t kLines = 14;     // of memory asked for at once: as many a
 constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and drying
 // What may leave a texel in one step, of what it has: less than all of it together.
 constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
-constexpr double kSeamStiffness = 2;     // what links add to it; all that flows out of a texel stays below what it has
+// What links add to the stiffness k of a tile's own faces, 4 at least: of what a texel has less than kFlowPart (k + kSeamPart) /
+// (k + kSeamStiffness) leaves it, 0.92 at most.
+constexpr double kSeamStiffness = 2;
+static_assert(kFlowPart * (4 + kSeamPart) < 4 + kSeamStiffness);
 constexpr double kBeadStep = 0.05;     // seconds: a bead goes a texel or a few
 constexpr double kLeastMixing = 2e-10; // m²/s
 constexpr double kStirring = 0.02;     // film units: mixing over mobility
@@ -204,7 +207,8 @@ struct WetFilm::State : TileList {
         const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
         double stiffness = 4, most_w = 0, most_s = 0;
         for (const Active& tile : list) {
-            stiffness = std::max(stiffness, static_cast<double>(tile.stiffness) + (tile.links.empty() ? 0 : kSeamStiffness));
+            stiffness = std::max(stiffness, static_cast<double>(tile.stiffness));
+            if (!tile.links.empty()) stiffness = std::max(stiffness, std::max(4.0, static_cast<double>(tile.stiffness)) + kSeamStiffness);
             most_w = std::max(most_w, static_cast<double>(tile.outcome.most_w));
             most_s = std::max(most_s, static_cast<double>(tile.outcome.most_s));
         }
