@@ -307,6 +307,35 @@ Mat4 local_transform(const tinygltf::Node& node) {
     return m;
 }
 
+/// By which UVs the picture of a material lies: those of a set, moved.
+struct PictureUvs {
+    int set = 0;  ///< TEXCOORD_n
+    /// u and v, v down, to the picture's: these columns times (u, v, 1).
+    std::array<Vec2, 3> columns{Vec2(1, 0), Vec2(0, 1), Vec2(0, 0)};
+};
+
+/// KHR_texture_transform: scaled, turned counter-clockwise as the picture is seen (v up), then moved. The
+/// specification's GLSL reads the other way round; Khronos' sample viewer, three.js and Blender turn this way.
+PictureUvs picture_uvs(const tinygltf::Material& material) {
+    const tinygltf::TextureInfo& info = material.pbrMetallicRoughness.baseColorTexture;
+    PictureUvs out{.set = info.texCoord};
+    const auto moved = info.extensions.find("KHR_texture_transform");
+    if (moved == info.extensions.end() || !moved->second.IsObject()) return out;
+    const auto number = [](const tinygltf::Value& value, double other) {
+        return value.IsNumber() && std::isfinite(value.GetNumberAsDouble()) ? value.GetNumberAsDouble() : other;
+    };
+    const auto pair = [&](const char* name, double other) {
+        const tinygltf::Value& value = moved->second.Get(name);
+        const bool is_pair = value.IsArray() && value.ArrayLen() == 2;
+        return is_pair ? Vec2(number(value.Get(0), other), number(value.Get(1), other)) : Vec2(other);
+    };
+    const Vec2 offset = pair("offset", 0), scale = pair("scale", 1);
+    const double turn = number(moved->second.Get("rotation"), 0);
+    out.columns = {scale.x * Vec2(std::cos(turn), -std::sin(turn)), scale.y * Vec2(std::sin(turn), std::cos(turn)), offset};
+    if (const tinygltf::Value& set = moved->second.Get("texCoord"); set.IsInt()) out.set = set.GetNumberAsInt();
+    return out;
+}
+
 class Gatherer {
   public:
     Gatherer(Loaded loaded, std::string name)
@@ -396,11 +425,7 @@ class Gatherer {
         }
         const tinygltf::Texture* texture = element(model_.textures, pbr.baseColorTexture.index);
         if (!texture) return out;
-        if (pbr.baseColorTexture.texCoord != 0 || pbr.baseColorTexture.extensions.contains("KHR_texture_transform"))
-            soup_.warnings.push_back("the picture of material '" + material.name +
-                                     "' lies by a second set of UVs or is moved, which tuft does not read; its faces go without");
-        else
-            out.picture = picture(texture->source);
+        out.picture = picture(texture->source);
         return out;
     }
 
@@ -438,14 +463,7 @@ class Gatherer {
             return;
         }
         const Rows points = rows_of(model_, position->second, TINYGLTF_TYPE_VEC3, name_);
-        Rows uvs;
-        if (const auto uv = primitive.attributes.find("TEXCOORD_0");
-            uv != primitive.attributes.end()) {
-            uvs = rows_of(model_, uv->second, TINYGLTF_TYPE_VEC2, name_);
-            if (uvs.count != points.count)
-                throw Error(name_, "TEXCOORD_0 and POSITION differ in count");
-            any_uv_ = true;
-        }
+        const CornerUvs uvs = uvs_of(mesh, primitive, points.count);
         Rows indices;
         if (primitive.indices >= 0)
             indices = rows_of(model_, primitive.indices, TINYGLTF_TYPE_SCALAR, name_);
@@ -523,12 +541,38 @@ class Gatherer {
             }
     }
 
-    void add_corner(std::uint32_t base, std::uint32_t index, const Rows& uvs) {
+    struct CornerUvs {
+        Rows rows;
+        PictureUvs place;
+    };
+
+    /// Those by which its picture lies; where it has none, or not those, TEXCOORD_0.
+    CornerUvs uvs_of(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive, std::size_t n_points) {
+        CornerUvs out;
+        const tinygltf::Material* material = element(model_.materials, primitive.material);
+        if (material && material->pbrMetallicRoughness.baseColorTexture.index >= 0) out.place = picture_uvs(*material);
+        std::string name = "TEXCOORD_" + std::to_string(out.place.set);
+        auto found = primitive.attributes.find(name);
+        if (found == primitive.attributes.end() && out.place.set != 0) {
+            soup_.warnings.push_back("mesh '" + mesh.name + "' has no " + name + ", by which the picture of material '" +
+                                     material->name + "' lies; it lies by TEXCOORD_0 instead");
+            found = primitive.attributes.find(name = "TEXCOORD_0");
+        }
+        if (found == primitive.attributes.end()) return out;
+        out.rows = rows_of(model_, found->second, TINYGLTF_TYPE_VEC2, name_);
+        if (out.rows.count != n_points) throw Error(name_, name + " and POSITION differ in count");
+        any_uv_ = true;
+        return out;
+    }
+
+    void add_corner(std::uint32_t base, std::uint32_t index, const CornerUvs& uvs) {
         soup_.corners.push_back(base + index);
         Vec2f uv(0);
-        if (uvs.first)
-            uv = Vec2f(static_cast<float>(uvs.number(index, 0)),
-                       static_cast<float>(1 - uvs.number(index, 1)));
+        if (uvs.rows.first) {
+            const auto& [x, y, one] = uvs.place.columns;
+            const Vec2 at = uvs.rows.number(index, 0) * x + uvs.rows.number(index, 1) * y + one;
+            uv = Vec2f(static_cast<float>(at.x), static_cast<float>(1 - at.y));
+        }
         soup_.corner_uvs.push_back(uv);
     }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -124,10 +125,40 @@ TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
     ASSERT_EQ(soup.point_colours.size(), 3u);
     EXPECT_EQ(soup.point_colours[1], (std::array<std::uint8_t, 4>{255, 0, 0, 255}));
     EXPECT_EQ(soup.point_colours[2], (std::array<std::uint8_t, 4>{0, 255, 0, 255}));
-    j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
-    const mesh::PolygonSoup without = read(j);
-    EXPECT_FALSE(without.materials[0].picture);
-    EXPECT_EQ(without.warnings.size(), 1u);
+}
+
+// Set 1, scaled, turned a quarter counter-clockwise as seen (to the right becomes up) and moved; v points
+// down in the file, up in the soup.
+TEST(Gltf, APictureLiesByItsSetOfUvsMovedAsTheFileSays) {
+    const Image8 image{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
+    const std::vector<unsigned char> png = png_bytes(view_of(image));
+    json j = triangle();
+    j["images"] = {{{"uri", "data:image/png;base64," + base64({png.begin(), png.end()})}}};
+    j["textures"] = {{{"source", 0}}};
+    j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}}};
+    json& texture = j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+    json& primitive = j["meshes"][0]["primitives"][0];
+    primitive["material"] = 0;
+    const mesh::PolygonSoup fallen_back = read(j);
+    EXPECT_EQ(fallen_back.warnings.size(), 1u) << "there is no set 1";
+    EXPECT_TRUE(fallen_back.materials[0].picture);
+    EXPECT_EQ(fallen_back.corner_uvs, (std::vector<Vec2f>{{0, 1}, {1, 1}, {0, 0.75f}}));
+    j["accessors"].push_back({{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC2"}});
+    primitive["attributes"]["TEXCOORD_0"] = 3;
+    primitive["attributes"]["TEXCOORD_1"] = 1;
+    const mesh::PolygonSoup second = read(j);
+    EXPECT_TRUE(second.warnings.empty());
+    EXPECT_EQ(second.corner_uvs, fallen_back.corner_uvs);
+    texture["texCoord"] = 0;
+    texture["extensions"]["KHR_texture_transform"] = {
+        {"texCoord", 1}, {"scale", {2, 4}}, {"rotation", std::acos(-1) / 2}, {"offset", {0.5, 0.25}}};
+    const mesh::PolygonSoup moved = read(j);
+    const std::vector<Vec2f> expected{{0.5f, 0.75f}, {0.5f, 2.75f}, {1.5f, 0.75f}};
+    ASSERT_EQ(moved.corner_uvs.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_LT(glm::length(moved.corner_uvs[i] - expected[i]), 1e-6f) << i << ", by rounding";
+    texture["extensions"]["KHR_texture_transform"] = {{"scale", {"a", 4}}, {"rotation", {}}, {"offset", 7}, {"texCoord", -5}};
+    EXPECT_EQ(read(j).corner_uvs.size(), 3u);
 }
 
 // As in every GLB; tinygltf hands over what a buffer view says, wherever that lies.
