@@ -137,6 +137,8 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
             sample.position = scale * (sample.position - area.centre());
             sample.time *= scale;
         }
+        for (stroke::TapeEdge& edge : trace->tape)
+            for (Vec2* end : {&edge.from, &edge.to}) *end = scale * (*end - Vec2(area.centre()));
         trace->placement.origin = at->position;
         trace->placement.right = right;
         trace->placement.down = down;

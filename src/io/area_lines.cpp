@@ -13,12 +13,14 @@ namespace {
 using Line = std::vector<Vec2>;
 
 constexpr double kStem = 0.36, kCompact = 0.06;  // width of a line: of a stem, of the root of the area
-constexpr double kFirst = 0.475, kNext = 0.425;   // widths from the outline to the first line, and from one to the next
+constexpr double kFirst = 0.3,  kNext = 0.33;     // widths from the outline to the first line, and from one to the next
 constexpr double kChord = 0.1;                  // widths, of edges and between points
 constexpr double kSlack = 0.02;                 // widths that a point may lie nearer to an edge than its own
 constexpr double kJoin = 0.35;                  // widths between ends that are one
 constexpr double kBare = 1;                     // widths from the outline to the next line, where it counts as bare
 constexpr double kPoint = 0.4;                  // widths within which a line turns at a point
+constexpr double kPast = 0.5;                   // widths that it goes on past the corner, on the tape
+constexpr double kBetween = 1.75;               // and between others, where it begins thin
 constexpr double kSmall = 8;                    // widths: loops shorter than this get a dab in their middle, than half of it are one
 constexpr double kShort = 0.5, kFine = 4;        // widths: shorter pieces are none; of finer lines
 constexpr int kLevels = 4;
@@ -124,6 +126,57 @@ std::vector<std::vector<Edge>> border_of(std::span<const Line> rings, FillRule r
         border.push_back(std::move(edges));
     }
     return border;
+}
+
+constexpr double kTaped = 3;  // widths from a line within which the outline is taped
+
+/// The border in straight pieces as long as they are.
+std::vector<stroke::TapeEdge> tape_of(const std::vector<std::vector<Edge>>& border) {
+    std::vector<stroke::TapeEdge> tape;
+    for (const std::vector<Edge>& ring : border) {
+        bool goes_on = false;
+        Vec2 way{0}, inward{0};
+        for (const Edge& e : ring) {
+            if (!e.border()) {
+                goes_on = false;
+                continue;
+            }
+            const Vec2 along = glm::normalize(e.to - e.from);
+            const bool turned = cross(along, e.inward) < 0;
+            if (goes_on && glm::distance(along, way) + glm::distance(e.inward, inward) < 1e-9) {
+                (turned ? tape.back().from : tape.back().to) = e.to;
+            } else {
+                tape.push_back(turned ? stroke::TapeEdge{e.to, e.from} : stroke::TapeEdge{e.from, e.to});
+            }
+            goes_on = true;
+            way = along;
+            inward = e.inward;
+        }
+    }
+    return tape;
+}
+
+double distance_to(const stroke::TapeEdge& e, const Vec2& p) {
+    const Vec2 d = e.to - e.from;
+    const double length2 = glm::dot(d, d);
+    return glm::distance(p, e.from + (length2 > 0 ? std::clamp(glm::dot(p - e.from, d) / length2, 0.0, 1.0) : 0.0) * d);
+}
+
+/// Gives each line the tape beside it.
+void stick(const std::vector<stroke::TapeEdge>& tape, std::vector<AreaLine>& lines) {
+    for (AreaLine& line : lines) {
+        Vec2 low = line.line.front(), high = low;
+        for (const Vec2& p : line.line) low = glm::min(low, p), high = glm::max(high, p);
+        const double reach = kTaped * line.width;
+        low -= reach, high += reach;
+        for (const stroke::TapeEdge& e : tape) {
+            if (std::max(e.from.x, e.to.x) < low.x || std::max(e.from.y, e.to.y) < low.y || std::min(e.from.x, e.to.x) > high.x ||
+                std::min(e.from.y, e.to.y) > high.y)
+                continue;
+            if (std::any_of(line.line.begin(), line.line.end(), [&](const Vec2& p) { return distance_to(e, p) < reach; }))
+                line.tape.push_back(e);
+        }
+    }
 }
 
 /// What of the open edges' offsets by `d` lies that far from all edges, in runs.
@@ -242,7 +295,7 @@ std::vector<Part> parted(const Line& line, double reach) {
 
 /// From the end of a line at `d` from the outline, where it came to a point, into the corner of the area: to where the
 /// outline along it and the one on the point's other side meet, which is straight ahead on their bisector; a line
-/// `inside` others, or one that ends between others, a width. The length of a way into a corner, else 0.
+/// `inside` others, or one that ends between others, 7/4 of a width; past the corner on tape. The length of a way into a corner, else 0.
 double run_out(Line& line, const Line& other, double d, double width, bool inside,
                std::span<const Line> rings, FillRule rule) {
     const double reach = kPoint * width;
@@ -267,7 +320,7 @@ double run_out(Line& line, const Line& other, double d, double width, bool insid
     const bool corner = n < kSteps;  // else the line ends where the area is narrow, between others
     double in = most * n / kSteps, out = in + most / kSteps;
     for (int k = 0; corner && k < 10; ++k) (within(rings, rule, tip + way * (0.5 * (in + out))) ? in : out) = 0.5 * (in + out);
-    length = corner && !inside ? in : std::min(in, width);
+    length = corner && !inside ? in + kPast * width : std::min(in, kBetween * width);
     if (length > 0) line.push_back(tip + way * length);
     return corner && !inside ? length : 0;
 }
@@ -323,10 +376,12 @@ std::vector<AreaLine> area_lines(std::span<const Line> rings, FillRule rule) {
     std::size_t n_points = 0;
     for (const Line& ring : rings) n_points += ring.size();
     std::vector<AreaLine> lines;
+    std::vector<stroke::TapeEdge> tape;
     double w = width;
     for (int level = 0; level < kLevels; ++level, w *= 0.5) {
         if (e.perimeter / (kChord * w) + double(n_points) > double(kMostEdges)) break;
         std::vector<std::vector<Edge>> border = border_of(rings, rule, kChord * w);
+        if (level == 0) tape = tape_of(border);
         if (!cover(border, lines)) break;
         std::vector<std::vector<AreaLine>> shells;
         for (int k = 0; level == 0 || k < 3; ++k) {
@@ -360,6 +415,7 @@ std::vector<AreaLine> area_lines(std::span<const Line> rings, FillRule rule) {
         for (auto shell = shells.rbegin(); shell != shells.rend(); ++shell)
             for (AreaLine& line : *shell) lines.push_back(std::move(line));
     }
+    stick(tape, lines);
     return lines;
 }
 

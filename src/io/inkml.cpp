@@ -312,6 +312,7 @@ class Reader : InkmlText {
         d.trace.ink = state.marks.ink;
         d.trace.layer = state.marks.layer;
         d.trace.mask = state.marks.mask;
+        d.trace.tape = state.marks.tape;
         d.trace.erases = state.marks.erases;
         d.trace.on_palette = state.marks.on_palette;
         d.trace.seed = state.marks.seed;

@@ -47,6 +47,8 @@ struct InkmlOptions {
 ///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
 ///     tuft:label    any text             tuft:laying  wrap | project
 ///     tuft:mask     name of a mask that the project has
+///     tuft:tape     edges that no ink of a trace gets over: X Y X Y each, metres, what may be painted to the right of
+///                   their way where Y points down
 ///     tuft:layer    name of a layer      tuft:tool    brush | eraser
 ///     tuft:on       model | palette      tuft:settings  stroke::to_json of a journal's settings
 ///     tuft:clock    kept: T is not rebased

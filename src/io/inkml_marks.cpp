@@ -131,6 +131,23 @@ stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::Ac
     return extent;
 }
 
+/// Four numbers an edge, metres.
+std::vector<stroke::TapeEdge> tape_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+    std::vector<double> numbers;
+    while (!text.empty()) {
+        const std::size_t begin = text.find_first_not_of(", \t\r\n"), end = std::min(text.find_first_of(", \t\r\n", begin), text.size());
+        if (begin == std::string_view::npos) break;
+        const auto x = to_number(text.substr(begin, end - begin));
+        if (!x || numbers.size() >= 4 * stroke::kMostTape) file.fail(node, "tuft:tape is not a list of edges, four numbers each");
+        numbers.push_back(*x);
+        text.remove_prefix(end);
+    }
+    if (numbers.size() % 4 != 0) file.fail(node, "tuft:tape has an edge without four numbers");
+    std::vector<stroke::TapeEdge> tape;
+    for (std::size_t i = 0; i < numbers.size(); i += 4) tape.push_back({{numbers[i], numbers[i + 1]}, {numbers[i + 2], numbers[i + 3]}});
+    return tape;
+}
+
 }  // namespace
 
 long InkmlText::line_at(std::ptrdiff_t offset) const {
@@ -210,6 +227,8 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
             marks.settings = settings_of(file, node, text);
         else if (type == "mask")
             marks.mask = name_of(file, node, text, "mask");
+        else if (type == "tape")
+            marks.tape = tape_of(file, node, text);
         else if (type == "layer")
             marks.layer = name_of(file, node, text, "layer");
         else if (type == "origin") {

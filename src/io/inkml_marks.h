@@ -43,6 +43,7 @@ struct InkmlMarks {
     stroke::Placement placement;
     bool placed = false;
     std::string brush, ink, label, layer, mask;
+    std::vector<stroke::TapeEdge> tape;
     std::uint64_t seed = 0;
     std::string settings;
     bool erases = false, on_palette = false, keeps_clock = false;

@@ -165,6 +165,12 @@ void add_trace(std::string& out, const Trace& trace, Kind kind, const Style& sty
                            part("depth", care.extent.depth), part("amount", care.extent.amount), part("side", care.extent.side, 0),
                            care.seconds > 0 ? fmt::format("{}", care.seconds) : escaped(care.ink));
     }
+    if (!trace.tape.empty()) {
+        std::string tape;
+        for (const stroke::TapeEdge& e : trace.tape)
+            tape += fmt::format("{}{} {} {} {}", tape.empty() ? "" : ", ", e.from.x, e.from.y, e.to.x, e.to.y);
+        add_annotation(out, "      ", "tape", tape);
+    }
     if (trace.seed) add_annotation(out, "      ", "seed", std::to_string(trace.seed));
     const double start = trace.samples.empty() ? 0 : trace.samples.front().time;
     if (style.exact && (start != 0 || std::signbit(start))) add_annotation(out, "      ", "clock", "kept");

@@ -20,7 +20,9 @@
 /// its atlas, the presets used, the journal and a picture of the texels.
 namespace tuft::io {
 
-inline constexpr int kProjectFormat = 6;  ///< highest format version this program reads: colours of the model
+inline constexpr int kProjectFormat = 7;  ///< highest format version this program reads
+inline constexpr int kTapedFormat = 7;    ///< of projects with strokes that keep to tape
+inline constexpr int kColoursFormat = 6;  ///< of projects with colours of the model
 inline constexpr int kDrapedFormat = 5;   ///< of projects with draped strokes
 inline constexpr int kPaletteFormat = 4;  ///< of projects with a palette
 inline constexpr int kLayersFormat = 3;   ///< of projects with layers, masks or fills

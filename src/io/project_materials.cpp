@@ -52,7 +52,7 @@ void store_materials(SQLite::Database& db, const mesh::TriangleMesh& mesh) {
     const std::string text = nlohmann::json{{"materials", table}, {"pictures", names}}.dump(
         -1, ' ', false, nlohmann::json::error_handler_t::replace);
     put_array(db, "mesh", "materials", std::vector<char>(text.begin(), text.end()), kBytes);
-    raise_format(db, kProjectFormat);
+    raise_format(db, kColoursFormat);
 }
 
 void load_materials(SQLite::Database& db, const std::filesystem::path& path,

@@ -87,6 +87,7 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
             raise_format(db, kLayersFormat);
         if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash) raise_format(db, kPaletteFormat);
         if (t.flat && t.placement.laying == stroke::Laying::drape) raise_format(db, kDrapedFormat);
+        if (!t.tape.empty()) raise_format(db, kTapedFormat);
     }
 }
 

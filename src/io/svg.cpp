@@ -29,6 +29,7 @@ struct Drawn {
     Line line;
     double width = 0;           // of its stroke; 0: it has none
     double head = 0, tail = 0;  // lengths over which it runs out into a point
+    std::vector<stroke::TapeEdge> tape = {};
 };
 
 // What elements hand down to those within them.
@@ -134,8 +135,8 @@ class Drawing {
         for (std::size_t i = before; i < lines_.size(); ++i) rings.push_back(lines_[i].line);
         std::vector<Drawn> area;
         for (AreaLine& line : area_lines(rings, style.rule)) {
-            n_points_ += line.line.size();
-            area.push_back({std::move(line.line), line.width, line.head, line.tail});
+            n_points_ += line.line.size() + line.tape.size();
+            area.push_back({std::move(line.line), line.width, line.head, line.tail, std::move(line.tape)});
         }
         if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
         if (area.empty()) return;
@@ -450,6 +451,8 @@ class Drawing {
     std::map<std::string, pugi::xml_node> by_id_;
 };
 
+constexpr double kFuller = 1.3;  // than a corner is wide: a tuft that runs into one, on tape
+
 // Where a line has a width, pressures say which part of it is drawn.
 void give_width(stroke::Trace& trace, const Drawn& drawn, double full) {
     trace.line_width = drawn.width;
@@ -458,7 +461,7 @@ void give_width(stroke::Trace& trace, const Drawn& drawn, double full) {
     for (std::size_t i = 1; i < drawn.line.size(); ++i) whole += glm::distance(drawn.line[i - 1], drawn.line[i]);
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         if (i > 0) along += glm::distance(trace.samples[i - 1].position, trace.samples[i].position);
-        const double in = drawn.head > 0 ? std::min(1.0, along / drawn.head) : 1, out = drawn.tail > 0 ? std::min(1.0, (whole - along) / drawn.tail) : 1;
+        const double in = drawn.head > 0 ? std::min(1.0, kFuller * along / drawn.head) : 1, out = drawn.tail > 0 ? std::min(1.0, kFuller * (whole - along) / drawn.tail) : 1;
         trace.samples[i].pressure = full * std::clamp(std::min(in, out), 0.0, 1.0);
     }
 }
@@ -488,7 +491,10 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     }
     ink << "</ink>";
     std::vector<stroke::Trace> traces = parse_inkml(ink.str(), source, options.ink);
-    for (std::size_t i = 0; i < traces.size(); ++i) give_width(traces[i], drawing.lines().at(i), options.ink.flat_pressure);
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+        give_width(traces[i], drawing.lines().at(i), options.ink.flat_pressure);
+        traces[i].tape = drawing.lines().at(i).tape;
+    }
     return traces;
 }
 

@@ -482,5 +482,20 @@ TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
     }
 }
 
+TEST(Inkml, TapeIsReadAsItIsWritten) {
+    stroke::Trace trace;
+    for (int i = 0; i < 3; ++i) trace.samples.push_back({.time = 0.1 * i, .position = {0.01 * i, 0, 0}, .pressure = 0.5});
+    trace.tape = {{{1.0 / 3, -0.1}, {2e-7, 0.5}}, {{0, 0}, {0.1, 0.2}}};
+    const std::string text = inkml_text({&trace, 1}, "");
+    EXPECT_EQ(parse_inkml(text, "tape").at(0).tape, trace.tape) << "to the bit";
+    const auto with = [&](const std::string& tape) {
+        std::string other = text;
+        const std::size_t from = other.find('>', other.find("tuft:tape")) + 1;
+        return other.replace(from, other.find('<', from) - from, tape);
+    };
+    EXPECT_TRUE(parse_inkml(with(""), "tape").at(0).tape.empty());
+    for (const char* bad : {"1 2 3", "1 2 3 four", "1 2 3 nan"}) EXPECT_THROW(parse_inkml(with(bad), "tape"), Error) << bad;
+}
+
 }  // namespace
 }  // namespace tuft::io

@@ -165,7 +165,7 @@ TEST(Materials, AProjectKeepsThemAndMakesTheSameGroundAgain) {
     ASSERT_FALSE(model.ground.empty());
     Project::create(folder / "m.tuft", contents(model));
     const Project project = Project::open(folder / "m.tuft");
-    EXPECT_EQ(project.format(), kProjectFormat) << "older programs do not know them";
+    EXPECT_EQ(project.format(), kColoursFormat) << "older programs do not know them";
     ProjectModel stored = project.model();
     fs::remove(folder / "p.png");
     ASSERT_EQ(stored.mesh.materials.size(), 2u);
@@ -183,7 +183,7 @@ TEST(Materials, AModelWithoutColoursKeepsAnOlderFormat) {
     const stroke::Model model = model_of(read_model(folder / "m.obj"), 64);
     EXPECT_TRUE(model.ground.empty());
     const Project project = Project::create(folder / "m.tuft", contents(model));
-    EXPECT_LT(project.format(), kProjectFormat);
+    EXPECT_LT(project.format(), kColoursFormat);
 }
 
 }  // namespace

@@ -73,6 +73,7 @@ std::vector<stroke::Trace> placed_traces(const Writing& w, const stroke::Placeme
             s.time *= std::max(0.2, w.scale);  // the same pace for larger letters
             if (!trace.pressed && !(w.own_width && trace.line_width > 0)) s.pressure = std::min(1.0, s.pressure * pressure);
         }
+        for (stroke::TapeEdge& edge : trace.tape) edge = {w.scale * edge.from, w.scale * edge.to};
         trace.line_width = w.own_width && !trace.pressed ? w.scale * trace.line_width : 0;
     }
     return traces;

@@ -92,6 +92,8 @@ void overlap(Trace& trace, double more) {
 }  // namespace
 
 void add_extent(Box& box, const Trace& trace) {
+    for (const TapeEdge& edge : trace.tape) box.add(Vec3(edge.from, 0)), box.add(Vec3(edge.to, 0));
+    if (!trace.tape.empty()) return;
     const Vec3 beside = 0.5 * trace.line_width * Vec3(1, 1, 0);
     for (const TraceSample& sample : trace.samples) box.add(sample.position - beside), box.add(sample.position + beside);
 }

@@ -50,7 +50,7 @@ class WidthTables {
 /// what brushes have.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
-/// Adds what the ink of a line takes up to a box: its samples, with half of its width beside them where it has one;
+/// Adds what the ink of a line takes up to a box: its tape, or its samples, with half of its width beside them where it has one;
 /// metres, in its own frame.
 void add_extent(Box& box, const Trace& trace);
 

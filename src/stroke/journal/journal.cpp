@@ -59,6 +59,16 @@ bool among(const std::string& word, std::initializer_list<const char*> words) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+std::vector<TapeEdge> tape_of(const nlohmann::json& j) {
+    const auto is_number = [](const nlohmann::json& x) { return x.is_number() && std::isfinite(x.get<double>()); };
+    if (!j.is_array() || j.size() % 4 != 0 || j.size() > 4 * kMostTape || !std::all_of(j.begin(), j.end(), is_number))
+        throw Error("the tape of a journal's entry cannot be read");
+    std::vector<TapeEdge> tape;
+    for (std::size_t i = 0; i < j.size(); i += 4)
+        tape.push_back({{j[i].get<double>(), j[i + 1].get<double>()}, {j[i + 2].get<double>(), j[i + 3].get<double>()}});
+    return tape;
+}
+
 }  // namespace
 
 void check_settings(const Settings& s) {
@@ -92,6 +102,11 @@ std::string entry_json(const Stroke& entry) {
     if (entry.mask != 0) j["mask"] = entry.mask;
     if (entry.action == Action::fill) j["fill"] = json_of(entry.fill);
     if (entry.trace.erases) j["tool"] = "eraser";
+    if (!entry.trace.tape.empty()) {
+        nlohmann::json& tape = j["tape"] = nlohmann::json::array();
+        for (const TapeEdge& e : entry.trace.tape)
+            for (const double x : {e.from.x, e.from.y, e.to.x, e.to.y}) tape.push_back(x);
+    }
     if (entry.extent != Extent{}) {
         j["depth"] = entry.extent.depth;
         j["amount"] = entry.extent.amount;
@@ -122,6 +137,8 @@ void read_entry_json(const std::string& json, Stroke& entry) {
         if (*tool != "eraser" && *tool != "brush") throw Error("the tool of a stroke is brush or eraser, not " + tool->dump().substr(0, 40));
         entry.trace.erases = *tool == "eraser";
     }
+    entry.trace.tape.clear();
+    if (const auto tape = j.find("tape"); tape != j.end()) entry.trace.tape = tape_of(*tape);
     const auto action = j.find("action");
     if (action == j.end()) return;
     if (!action->is_string()) throw Error("the action of a journal's entry cannot be read");

@@ -81,6 +81,15 @@ struct Care {
 std::string care_text(const Care& care);
 Care care_of_text(const std::string& text);
 
+/// Part of a line of tape stuck on the surface, in the frame of a flat trace, metres. What may be painted lies to the
+/// side of `inward`, (from.y − to.y, to.x − from.x).
+struct TapeEdge {
+    Vec2 from{0}, to{0};
+
+    bool operator==(const TapeEdge&) const = default;
+};
+inline constexpr std::size_t kMostTape = 100'000;  ///< edges of one stroke
+
 /// One stroke from touch to lift.
 struct Trace {
     bool flat = true;                    ///< flat pen data with a placement, or poses in space
@@ -96,6 +105,7 @@ struct Trace {
     std::string label;                   ///< free text for people: a character, a stroke's name
     bool pressed = true;                 ///< false: pressures were made up, the device gave none
     double line_width = 0;               ///< metres, as a drawing has it; 0: it says nothing
+    std::vector<TapeEdge> tape;          ///< flat: the hair lays no ink over it, wet ink creeps under; none: it may go anywhere
     std::vector<Care> before;            ///< what a file wants done with the brush first
     std::string settings;                ///< as a file wants them, see `to_json` in journal.h; empty: as
                                          ///< the command line says

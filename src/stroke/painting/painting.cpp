@@ -300,12 +300,17 @@ void Painting::draw_poses() {
             h.was_touching = false;
             continue;
         }
+        const double area = footprint_area(stamp.footprint);
+        if (!h.tape.empty() && !(area > 0)) {  // on the tape
+            h.was_touching = true;
+            h.last_position = pose.position;
+            continue;
+        }
         ++h.report.stamps;
         // The hand's way, not the frame's: the patch also grows and shrinks. Hair that lies by itself may swing round.
         stamp.motion.shift = glm::mix(shift, drawn, static_cast<double>(stamp.apart));
         h.was_touching = true;
         h.last_position = pose.position;
-        const double area = footprint_area(stamp.footprint);
         const ink::StampContact touch{
             .moment_factor = h.stress(contact),
             .width = h.closed_area > 0 ? area / std::sqrt(h.closed_area) : std::sqrt(area),

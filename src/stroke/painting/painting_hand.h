@@ -6,6 +6,7 @@
 #include "stroke/hand/resample.h"
 #include "stroke/painting/painting.h"
 #include "stroke/painting/stamper.h"
+#include "stroke/painting/tape.h"
 #include "stroke/painting/wet_hand.h"
 
 /// The stroke in work; included by sources of this room only.
@@ -45,6 +46,7 @@ struct Painting::Hand {
     Vec3 went{0};                  // of the hair that touches, likewise over a shorter way
     double lands = 0;              // 0–1: how much of the hand's last motion was pressing or lifting
     footprint::HairTracks tracks;  // of the hair that lies there
+    std::vector<LaidTape> tape;    // that it keeps within
     std::vector<footprint::Trail> lay;  // of the last stamp by hair, in the frame `lay_frame`
     Frame lay_frame;
     ink::Touch touched;            // by the last stamp

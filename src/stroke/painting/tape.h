@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "footprint/footprint.h"
+#include "mesh/surface_query.h"
+#include "stroke/journal/trace.h"
+
+/// Tape on the surface: a stroke goes over its edges, ink does not.
+namespace tuft::stroke {
+
+/// A straight piece of tape on the model; metres, model frame.
+struct LaidTape {
+    Vec3 from{0}, to{0};
+    Vec3 inward{0};  ///< unit, along the surface: towards what may be painted
+};
+
+/// Lays the tape of a flat trace as its samples are laid (`lay`), in pieces of 1 mm at most. Pieces
+/// past the surface's edge are left out. Empty for traces in space.
+std::vector<LaidTape> lay_tape(const mesh::SurfaceQuery& query, const Trace& trace);
+
+/// Metres from a place to the nearest edge, positive where one may paint; +∞ without edges. Where
+/// two edges are equally near, which is off their common end, the one that the place is further
+/// beside says on which side it lies: sharp corners, in and out.
+double inside_tape(std::span<const TapeEdge> tape, const Vec2& place);
+
+/// Takes off a footprint's coverage what lies beyond the tape: of a cell with its centre at a
+/// distance d inside the part 1/2 + d / cell stays, kept to [0, 1]; where no tape crosses the
+/// footprint, all of it or nothing. The tape is seen along the frame's normal; what lies further
+/// from the frame's plane than the footprint is wide belongs to another side of the model. About 30
+/// µs where tape crosses it.
+void cut_off(footprint::Footprint& footprint, std::span<const LaidTape> tape);
+
+}  // namespace tuft::stroke
