@@ -89,12 +89,18 @@ Vec3 point_of(const Section& s, const Vec2& place) {
 
 void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, const Vec3& colour) {
     constexpr int kRound = 16;
+    constexpr double kUnder =
+        0.88;  // of the section: no rim where the outermost hair happens to lie further in
     std::vector<Vec2> before, now;
     for (std::size_t i = 0; i < strand.sections.size(); ++i) {
+        // Like its hair a branch goes straight from its last section to the trunk's first.
+        if (i < strand.trunk && i + kBetween + 1 > strand.trunk) continue;
         const Section& s = strand.sections[i];
         const Vec2 centre = view(s.centre);
-        const Vec2 e = s.a * view.scale * Vec2{glm::dot(s.e, view.right), -glm::dot(s.e, view.up)};
-        const Vec2 m = s.b * view.scale * Vec2{glm::dot(s.m, view.right), -glm::dot(s.m, view.up)};
+        const Vec2 e =
+            kUnder * s.a * view.scale * Vec2{glm::dot(s.e, view.right), -glm::dot(s.e, view.up)};
+        const Vec2 m =
+            kUnder * s.b * view.scale * Vec2{glm::dot(s.m, view.right), -glm::dot(s.m, view.up)};
         std::vector<Vec2> round;
         for (int k = 0; k < kRound; ++k) {
             const double w = 2 * std::numbers::pi * k / kRound;
