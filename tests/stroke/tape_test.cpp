@@ -111,5 +111,17 @@ TEST(Tape, IsKeptInTheJournal) {
         EXPECT_THROW(read_entry_json(bad, back), Error) << bad;
 }
 
+// As a hostile file may have it: pieces go by the whole, not by each edge.
+TEST(Tape, TapeOfAnyLengthIsLaidInFewPieces) {
+    const Model model = sheet();
+    Trace trace{.placement = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    for (const double length : {0.02, 1e5, 1e150, 1e308}) {
+        trace.tape.assign(500, {{-0.01, 0}, {length - 0.01, 0}});
+        EXPECT_LE(lay_tape(*model.query, trace).size(), 100'000u + 500u) << length;
+    }
+    trace.tape.assign(1, {{-0.01, 0}, {0.01, 0}});
+    EXPECT_GE(lay_tape(*model.query, trace).size(), 20u) << "1 mm each";
+}
+
 }  // namespace
 }  // namespace tuft::stroke

@@ -10,7 +10,8 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kPiece = 1e-3;  // metres
+constexpr double kPiece = 1e-3;      // metres
+constexpr double kMostPieces = 1e5;  // beyond, pieces are longer
 constexpr int kBlock = 8;        // cells that are looked at together
 constexpr double kSame = 1e-9;   // parts of a distance by which equal ones differ
 
@@ -33,10 +34,13 @@ std::vector<LaidTape> lay_tape(const mesh::SurfaceQuery& query, const Trace& tra
     if (!trace.flat || trace.tape.empty()) return laid;
     Trace ends{.placement = trace.placement};
     std::vector<Vec2> ways;
+    double whole = 0;
+    for (const TapeEdge& e : trace.tape) whole += glm::distance(e.from, e.to);
+    const double piece = std::max(kPiece, whole / kMostPieces);
     for (const TapeEdge& e : trace.tape) {
         const double length = glm::distance(e.from, e.to);
-        if (!(length > 0)) continue;
-        const auto n = static_cast<int>(std::ceil(std::min(length / kPiece, 1e4)));
+        if (!(length > 0) || !std::isfinite(whole)) continue;
+        const auto n = static_cast<int>(std::ceil(length / piece));
         for (int i = 0; i <= n; ++i) {
             ends.samples.push_back(
                 {.position = Vec3(glm::mix(e.from, e.to, static_cast<double>(i) / n), 0)});
@@ -88,7 +92,7 @@ void cut_off(footprint::Footprint& f, std::span<const LaidTape> tape) {
     for (const LaidTape& piece : tape) {
         const Vec3 a = f.frame.to_local(piece.from), b = f.frame.to_local(piece.to);
         if (std::max(std::abs(a.z), std::abs(b.z)) > 2 * reach) continue;
-        if (std::min(glm::length(Vec2(a)), glm::length(Vec2(b))) > 3 * reach + kPiece) continue;
+        if (std::min(glm::length(Vec2(a)), glm::length(Vec2(b))) > 3 * reach + glm::length(Vec2(b - a))) continue;
         const Vec2 inward(glm::dot(piece.inward, f.frame.t), glm::dot(piece.inward, f.frame.b));
         const TapeEdge e{Vec2(a), Vec2(b)};
         const Vec2 way = e.to - e.from;

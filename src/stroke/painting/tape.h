@@ -16,8 +16,8 @@ struct LaidTape {
     Vec3 inward{0};  ///< unit, along the surface: towards what may be painted
 };
 
-/// Lays the tape of a flat trace as its samples are laid (`lay`), in pieces of 1 mm at most. Pieces
-/// past the surface's edge are left out. Empty for traces in space.
+/// Lays the tape of a flat trace as its samples are laid (`lay`), in pieces of 1 mm, of more
+/// where that would be over 100,000. Pieces past the surface's edge are left out. Empty for traces in space.
 std::vector<LaidTape> lay_tape(const mesh::SurfaceQuery& query, const Trace& trace);
 
 /// Metres from a place to the nearest edge, positive where one may paint; +∞ without edges. Where
