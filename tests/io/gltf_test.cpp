@@ -106,12 +106,19 @@ TEST(Gltf, StripsAndFansBecomeTriangles) {
     EXPECT_NE(fault(j).find("no triangles"), std::string::npos);
 }
 
-TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
-    const Image8 image{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
-    const std::vector<unsigned char> png = png_bytes(view_of(image));
+const Image8 kRedOverGreen{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
+
+/// The triangle and a picture in texture 0.
+json pictured_triangle() {
+    const std::vector<unsigned char> png = png_bytes(view_of(kRedOverGreen));
     json j = triangle();
     j["images"] = {{{"uri", "data:image/png;base64," + base64({png.begin(), png.end()})}}};
     j["textures"] = {{{"source", 0}}};
+    return j;
+}
+
+TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
+    json j = pictured_triangle();
     j["materials"] = {{{"name", "m"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.5, 0.25, 1}}, {"baseColorTexture", {{"index", 0}}}}}}};
     j["meshes"][0]["primitives"][0]["material"] = 0;
     j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 0;  // the positions serve
@@ -119,7 +126,7 @@ TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
     ASSERT_EQ(soup.materials.size(), 1u);
     EXPECT_EQ(soup.group_names, std::vector<std::string>{"m"});
     ASSERT_TRUE(soup.materials[0].picture);
-    EXPECT_EQ(soup.materials[0].picture->rgb, image.pixels);
+    EXPECT_EQ(soup.materials[0].picture->rgb, kRedOverGreen.pixels);
     EXPECT_TRUE(soup.materials[0].tinted);
     EXPECT_NEAR(soup.materials[0].colour.g, 0.7354, 1e-3) << "sRGB of the linear factor 0.5";
     ASSERT_EQ(soup.point_colours.size(), 3u);
@@ -130,11 +137,7 @@ TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
 // Set 1, scaled, turned a quarter counter-clockwise as seen (to the right becomes up) and moved; v points
 // down in the file, up in the soup.
 TEST(Gltf, APictureLiesByItsSetOfUvsMovedAsTheFileSays) {
-    const Image8 image{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
-    const std::vector<unsigned char> png = png_bytes(view_of(image));
-    json j = triangle();
-    j["images"] = {{{"uri", "data:image/png;base64," + base64({png.begin(), png.end()})}}};
-    j["textures"] = {{{"source", 0}}};
+    json j = pictured_triangle();
     j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}}};
     json& texture = j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
     json& primitive = j["meshes"][0]["primitives"][0];
