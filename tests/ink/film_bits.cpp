@@ -81,10 +81,24 @@ int main() {
         gather(work.z, z_at);
         work.on_relief = round % 3 == 2;
         fluxes(work, g, step);
-        liquid_changes(work, g, step);
-        const SeamFlux seam = seam_flux(0.7f, 0.6f, {w[0][5], w[1][9]}, {s[0][5], s[1][9]}, {0.9f, 1.1f}, {0.3f, 0.8f}, step);
-        work.dw[5] -= seam.w;
-        work.dp.fill(seam.a * p[0][5] + seam.b * p[1][9]);
+        std::array<SeamLanes, 2> seams;
+        for (std::size_t lane = 0; lane < 2 * kSide; ++lane) {
+            SeamLanes& l = seams[lane / kSide];
+            const auto x = lane % kSide;
+            l.weight[x] = 0.7f, l.apart[x] = 0.05f * static_cast<float>(lane);
+            for (std::size_t end = 0; end < 2; ++end) {
+                l.w[end][x] = w[end][4 * lane], l.s[end][x] = s[end][4 * lane], l.z[end][x] = z[end][4 * lane];
+                l.grain[end][x] = end ? 1.1f : 0.9f;
+            }
+        }
+        seam_fluxes(seams, step);
+        for (const SeamLanes& l : seams) {
+            for (const auto* lane : {&l.through_w, &l.through_s, &l.a, &l.b}) add(*lane);
+            for (std::size_t x = 0; x < kSide; ++x) {
+                work.dw[x] -= l.through_w[x];
+                work.dp[x] -= l.a[x] * p[0][4 * x] + l.b[x] * p[1][4 * x];
+            }
+        }
         std::array<float, kTexels> pigment;
         pigment_step(pigment.data(), work, g, round & 16, round);
         std::array<std::uint8_t, kTexels> closing{};

@@ -17,7 +17,7 @@ namespace {
 
 using namespace wet;
 
-constexpr std::size_t kLines = 14;     // of memory asked for at once: as many as the processor waits for
+constexpr int kLines = 14;     // of memory asked for at once: as many as the processor waits for
 constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and drying
 // What may leave a texel in one step, of what it has: less than all of it together.
 constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
@@ -33,27 +33,53 @@ constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as u
 constexpr float kFilmsPerMicrometre = 0.1f;
 constexpr double kRimLength = 1e-3;    // metres: what the rim of a wet spot adds to its area, as for drying
 
-/// What goes over a link for pigments: dp = −out p(texel) + in p(other).
-struct Carried {
-    std::uint8_t texel, other_texel;
-    std::uint32_t other;  ///< place in the list
-    float out, in;
+/// What goes over a tile's links.
+struct Crossing {
+    std::vector<SeamLanes> lanes;
+    std::vector<std::uint8_t> texels;  ///< [size] where links start
+    std::vector<float> beyond;         ///< [pigment][links] amounts at their other ends
+    std::size_t links = 0, size = 0;   ///< of the tile, and those with liquid at either end
+    std::uint32_t pigments = 0;        ///< bits: those that have planes there
+
+    void clear(std::size_t n, int n_pigments) {
+        links = n;
+        size = 0;
+        pigments = 0;
+        lanes.assign((n + kSide - 1) / kSide, {});
+        texels.resize(n);
+        beyond.resize(n * static_cast<std::size_t>(n_pigments));
+    }
+    void add(const atlas::SeamLink& link, const std::array<float, 2>& w, const std::array<float, 2>& s) {
+        SeamLanes& l = lanes[size / kSide];
+        const std::size_t lane = size % kSide;
+        l.weight[lane] = link.weight;
+        l.apart[lane] = static_cast<float>(link.apart) / 64;
+        for (int end = 0; end < 2; ++end) l.w[end][lane] = w[end], l.s[end][lane] = s[end];
+        texels[size++] = link.texel;
+    }
 };
 
 /// Memory that will be needed soon. Planes lie here and there, and the processor waits long for each line
 /// that it does not expect, but it can wait for a dozen at once: some between one loop and the next.
 struct Ahead {
-    std::array<const char*, 1024> lines;
-    std::size_t n = 0, at = 0;
+    struct Piece {
+        const char *at, *end;
+    };
+    std::array<Piece, 256> pieces;
+    std::size_t n = 0, next = 0;
 
-    void clear() { n = at = 0; }
+    void clear() { n = next = 0; }
     void add(const void* from, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; from && i < end && n < lines.size(); i += 64)
-            lines[n++] = static_cast<const char*>(from) + i;
+        const char* at = static_cast<const char*>(from);
+        if (from && n < pieces.size()) pieces[n++] = {at + begin, at + end};
     }
-    void fetch(std::size_t count) {
-        // Into the second cache: the first is full of what is being worked on.
-        for (const std::size_t end = std::min(n, at + count); at < end; ++at) __builtin_prefetch(lines[at], 0, 2);
+    void fetch(int lines) {
+        for (; lines > 0 && next < n; ++next) {
+            Piece& piece = pieces[next];
+            // Into the second cache: the first is full of what is being worked on.
+            for (; piece.at < piece.end && lines > 0; piece.at += 64, --lines) __builtin_prefetch(piece.at, 0, 2);
+            if (piece.at < piece.end) return;
+        }
     }
 };
 
@@ -65,7 +91,7 @@ using Spare = std::array<std::vector<PlanePtr>, 2 + kMaxPigments>;
 struct Worker {
     Work work;
     Ahead ahead;
-    std::vector<Carried> carried;
+    Crossing crossing;
     Spare spare;
 };
 
@@ -243,39 +269,44 @@ struct WetFilm::State : TileList {
     }
 
     /// Fluxes over the seams of a tile: added to dw, ds; what pigments need is kept.
-    void seam_fluxes(std::size_t index, const Step& step, bool thin, Work& work, std::vector<Carried>& carried) const {
+    void cross_seams(std::size_t index, int pigments, const Step& step, bool thin, Work& work, Crossing& crossing) const {
         const Active& tile = list[index];
-        const Geometry& g = *geometry[tile.slot];
-        carried.clear();
-        const Sources& mine = sources[index];
-        std::uint32_t slot = kNone, other = kNone;
-        for (const atlas::SeamLink& l : tile.links) {
-            if (slot != l.other_slot) {
-                slot = l.other_slot;
-                other = other_of(tile, slot)->place;
-            }
-            const std::array<float, 2> here{at(mine.liquid[0], l.texel), at(mine.liquid[1], l.texel)};
-            std::array<float, 2> there{};
-            if (other != kNone)
-                there = {at(sources[other].liquid[0], l.other_texel), at(sources[other].liquid[1], l.other_texel)};
+        crossing.clear(tile.links.size(), pigments);
+        for (std::size_t i = 0; i < tile.links.size(); ++i) {
+            const atlas::SeamLink& l = tile.links[i];
+            const std::uint32_t other = tile.others[tile.link_others[i]].place;
+            const std::array<float, 2> here = liquid_at(index, l.texel), there = liquid_at(other, l.other_texel);
             const float t = here[0] + here[1], u = there[0] + there[1];
             thin = thin || u < step.rim_depth;
             if (!(t + u > 0) || other == kNone) continue;
-            // One order for both sides, so that both have the same numbers.
-            const bool first = tile.slot != l.other_slot ? tile.slot < l.other_slot : l.texel < l.other_texel;
-            const bool both = t > 0 && u > 0;  // then what pins rims has no say, and lies in memory far away
-            const float g0 = both ? 0 : g.grain[field_of(l.texel)];
-            const float g1 = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
-            const float apart = static_cast<float>(l.apart) / 64;
-            const float z0 = at(mine.relief, l.texel), z1 = at(sources[other].relief, l.other_texel);
-            const SeamFlux f = first ? seam_flux(l.weight, apart, {here[0], there[0]}, {here[1], there[1]}, {g0, g1}, {z0, z1}, step)
-                                     : seam_flux(l.weight, apart, {there[0], here[0]}, {there[1], here[1]}, {g1, g0}, {z1, z0}, step);
-            const float sign = first ? -1.0f : 1.0f, inverse = g.inverse[l.texel];
-            work.dw[l.texel] += sign * f.w * inverse;
-            work.ds[l.texel] += sign * f.s * inverse;
-            carried.push_back({l.texel, l.other_texel, other, first ? f.a : -f.b, first ? -f.b : f.a});
+            for (int p = 0; p < pigments; ++p)
+                crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] = at(sources[other].open[p], l.other_texel);
+            for (int p = 0; p < pigments; ++p) crossing.pigments |= static_cast<std::uint32_t>(sources[other].open[p] != nullptr) << p;
+            SeamLanes& lanes = crossing.lanes[crossing.size / kSide];
+            const std::size_t lane = crossing.size % kSide;
+            if (!(t > 0 && u > 0)) {  // else what pins rims has no say, and lies in memory far away
+                lanes.grain[0][lane] = geometry[tile.slot]->grain[field_of(l.texel)];
+                lanes.grain[1][lane] = geometry[l.other_slot]->grain[field_of(l.other_texel)];
+            }
+            if (any_relief) {
+                lanes.z[0][lane] = at(sources[index].relief, l.texel);
+                lanes.z[1][lane] = at(sources[other].relief, l.other_texel);
+            }
+            crossing.add(l, {here[0], there[0]}, {here[1], there[1]});
+        }
+        wet::seam_fluxes(std::span(crossing.lanes).first((crossing.size + kSide - 1) / kSide), step);
+        for (std::size_t i = 0; i < crossing.size; ++i) {
+            const SeamLanes& l = crossing.lanes[i / kSide];
+            work.dw[crossing.texels[i]] -= l.through_w[i % kSide];
+            work.ds[crossing.texels[i]] -= l.through_s[i % kSide];
         }
         if (step.rim > 0 && thin) slopes_over_seams(index, step, work);
+    }
+
+    /// On a texel of a tile in the list, or of none.
+    std::array<float, 2> liquid_at(std::uint32_t index, int texel) const {
+        if (index == kNone) return {};
+        return {at(sources[index].liquid[0], texel), at(sources[index].liquid[1], texel)};
     }
 
     /// `rim_slope` of the texels whose neighbours lie over a seam.
@@ -327,9 +358,8 @@ struct WetFilm::State : TileList {
         ahead.fetch(kLines);
         const bool thin = fluxes(work, g, step);
         ahead.fetch(2 * kLines);
-        liquid_changes(work, g, step);
+        cross_seams(index, pigments, step, thin, work, worker.crossing);
         ahead.fetch(kLines);
-        seam_fluxes(index, step, thin, work, worker.carried);
         // From what is there and nothing else: the same whenever this journal is painted.
         const std::uint64_t seed =
             hash_bits(hash_bits(tile.slot, number),
@@ -338,7 +368,7 @@ struct WetFilm::State : TileList {
         const bool seam_was = tile.seam_wet;
         tile.outcome = {};
         tile.pigments = 0;
-        tile.idle = !any_w && !any_s && worker.carried.empty();
+        tile.idle = !any_w && !any_s && worker.crossing.size == 0;
         if (tile.idle) return;
         give(tile.w, worker.spare[0]);
         give(tile.s, worker.spare[1]);
@@ -363,18 +393,19 @@ struct WetFilm::State : TileList {
         const Geometry& g = *geometry[tile.slot];
         bool any = load(work.p, sources, tile.around, [p](const Sources& a) { return a.open[p]; });
         if (!any) work.p.fill(0);
-        for (const Carried& c : worker.carried) any = any || sources[c.other].open[p];
+        const Crossing& crossing = worker.crossing;
+        any = any || (crossing.pigments >> p & 1);
         if (!any) return;
         worker.ahead.fetch(kLines);
-        const bool over = !worker.carried.empty();
-        for (const Carried& c : worker.carried) {
-            const int k = field_of(c.texel);
-            const float there = at(sources[c.other].open[p], c.other_texel);
-            work.dp[c.texel] += (c.in * there - c.out * work.p[k]) * g.inverse[c.texel];
+        const float* beyond = crossing.beyond.data() + static_cast<std::size_t>(p) * crossing.links;
+        for (std::size_t i = 0; i < crossing.size; ++i) {
+            const SeamLanes& l = crossing.lanes[i / kSide];
+            const int texel = crossing.texels[i];
+            work.dp[texel] -= l.a[i % kSide] * work.p[field_of(texel)] + l.b[i % kSide] * beyond[i];
         }
         give(tile.p[p], worker.spare[2 + p]);
-        pigment_step(tile.p[p]->data(), work, g, over, seed);
-        for (const Carried& c : worker.carried) work.dp[c.texel] = 0;
+        pigment_step(tile.p[p]->data(), work, g, crossing.size > 0, seed);
+        for (std::size_t i = 0; i < crossing.size; ++i) work.dp[crossing.texels[i]] = 0;
         worker.ahead.fetch(kLines);
         tile.pigments |= 1u << p;
     }
@@ -407,8 +438,7 @@ struct WetFilm::State : TileList {
         };
         const Active& tile = list[index];
         planes_of(static_cast<std::uint32_t>(index), 0, sizeof(Plane));
-        for (const int above : {0, 1, 2}) planes_of(tile.around[above], sizeof(Plane) - 64, sizeof(Plane));
-        for (const int below : {6, 7, 8}) planes_of(tile.around[below], 0, 64);
+        planes_of(tile.around[7], 0, 64);  // what lies above was read with the row before, and is at hand
         for (const Beyond& other : tile.others)
             for (unsigned lines = other.lines; lines && other.place != kNone; lines &= lines - 1) {
                 const std::size_t line = 64 * static_cast<std::size_t>(std::countr_zero(lines));

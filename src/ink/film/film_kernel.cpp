@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "core/random.h"
 #include "ink/film/film_tile.h"
@@ -81,50 +82,77 @@ TUFT_INLINE Carriers carriers(float g, float flux, const End& e0, const End& e1,
     return {positive(flux) + exchange, smaller(flux, 0) - exchange};
 }
 
-/// Sixteen faces.
+/// Faces' conductances as `Geometry` holds them: of sides, of diagonals that rise and that fall.
+struct Straight {
+    static TUFT_INLINE float unpack(std::uint16_t g) { return static_cast<float>(g) * kConductanceUnit; }
+};
+struct Rising {
+    static TUFT_INLINE float unpack(std::int16_t g) { return positive(static_cast<float>(g) * kDiagonalUnit); }
+};
+struct Falling {
+    static TUFT_INLINE float unpack(std::int16_t g) { return positive(-(static_cast<float>(g) * kDiagonalUnit)); }
+};
+
+/// A face: what flows, and in `a`, `b` what it carries.
 template <class Law>
-TUFT_INLINE void faces(Faces& f, int k, const float* g, const Ends& from, const Ends& to, const Step& p) {
-    float *w = &f.w[k], *s = &f.s[k], *a = &f.a[k], *b = &f.b[k];
+TUFT_INLINE void face(float g, const End& e0, const End& e1, float& w, float& s, float& a, float& b, const Step& p) {
+    const float fw = Law::film_flux(g, e0, e1, p);
+    float flux = fw;
+    if constexpr (Law::pores) {
+        const float fs = Law::pore_flux(g, e0, e1, p);
+        s = fs;
+        flux = fw + p.passing * fs;
+    }
+    const Carriers c = carriers(g, flux, e0, e1, p);
+    w = fw;
+    a = c.a * e0.rate;
+    b = c.b * e1.rate;
+}
+
+/// Sixteen faces from texel k to k + `on`; what flows into o.through.
+template <class Law, class Kind, class Packed>
+TUFT_INLINE void faces(Work& o, Faces& f, int k, int at, const Packed* g, const Ends& from, const Ends& to, const Step& p) {
+    float *w = &o.through[0][at], *s = &o.through[1][at], *a = &f.a[k], *b = &f.b[k];
+#pragma GCC ivdep
+    for (int x = 0; x < kLanes; ++x) face<Law>(Kind::unpack(g[x]), from.at(x), to.at(x), w[x], s[x], a[x], b[x], p);
+}
+
+/// All faces' upper sides of a row, and what comes into its texels through their four sides.
+template <class Law, bool kFirst>
+TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below_w, float* below_s, const Step& p) {
+    const int k = field_at(0, row);
+    const Ends from = ends(o, g, k), to = ends(o, g, k + kRow);
+    const std::uint16_t* conductance = &g.gy[(row + 1) * kSide];
+    const float *x_w = &o.through[0][k], *x_s = &o.through[1][k];
+    float *a = &o.y.a[k], *b = &o.y.b[k];
+    float *dw = o.dw.data() + row * kSide, *ds = o.ds.data() + row * kSide;
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
-        const End e0 = from.at(x), e1 = to.at(x);
-        const float fw = Law::film_flux(g[x], e0, e1, p);
-        float flux = fw;
+        float w = 0, s = 0;
+        face<Law>(Straight::unpack(conductance[x]), from.at(x), to.at(x), w, s, a[x], b[x], p);
+        if constexpr (!kFirst) dw[x] = (x_w[x - 1] - x_w[x]) + (below_w[x] - w);
+        below_w[x] = w;
         if constexpr (Law::pores) {
-            const float fs = Law::pore_flux(g[x], e0, e1, p);
-            s[x] = fs;
-            flux = fw + p.passing * fs;
+            if constexpr (!kFirst) ds[x] = (x_s[x - 1] - x_s[x]) + (below_s[x] - s);
+            below_s[x] = s;
         }
-        const Carriers c = carriers(g[x], flux, e0, e1, p);
-        w[x] = fw;
-        a[x] = c.a * e0.rate;
-        b[x] = c.b * e1.rate;
     }
 }
 
-/// What faces need of the sixteen texels from k on.
-TUFT_INLINE void levels(Work& o, int k, const Step& p) {
-    const float *w = &o.w[k], *s = &o.s[k], passing = passing_of(p);
-    float *total = &o.total[k], *rate = &o.rate[k], *above = &o.above[k], *free = &o.free[k], *carrying = &o.carrying[k];
+/// What comes through the faces of one kind of diagonal: into texel k from k + `from`, out of it at k + `to`.
+template <class Law, class Kind>
+TUFT_INLINE void diagonals(Work& o, Faces& f, const Geometry& g, int first, int second, const Step& p) {
+    for (int k = 0; k < kSquares; k += kLanes)
+        faces<Law, Kind>(o, f, k, k, &(*g.gd)[static_cast<std::size_t>(k)], ends(o, g, k + first), ends(o, g, k + second), p);
+    for (int row = 0; row < kSide; ++row) {
+        const int k = field_at(0, row);
+        const float *w = &o.through[0][k], *s = &o.through[1][k];
+        float *dw = o.dw.data() + row * kSide, *ds = o.ds.data() + row * kSide;
 #pragma GCC ivdep
-    for (int x = 0; x < kLanes; ++x) {
-        const float t = w[x] + s[x];
-        total[x] = t;
-        rate[x] = rate_of(t, p.grip);
-        above[x] = positive(w[x] - p.threshold);
-        free[x] = positive(w[x] - p.hold);
-        carrying[x] = w[x] + passing * s[x];
-    }
-}
-
-TUFT_INLINE void unpack(Work& o, const Geometry& g) {
-    for (std::size_t i = 0; i < o.gx.size(); ++i) o.gx[i] = static_cast<float>(g.gx[i]) * kConductanceUnit;
-    for (std::size_t i = 0; i < o.gy.size(); ++i) o.gy[i] = static_cast<float>(g.gy[i]) * kConductanceUnit;
-    if (!g.gd) return;
-    for (std::size_t i = 0; i < o.gup.size(); ++i) {
-        const float d = static_cast<float>((*g.gd)[i]) * kDiagonalUnit;
-        o.gup[i] = positive(d);
-        o.gdown[i] = positive(-d);
+        for (int x = 0; x < kLanes; ++x) dw[x] += w[x - second] - w[x - first];
+        if constexpr (!Law::pores) continue;
+#pragma GCC ivdep
+        for (int x = 0; x < kLanes; ++x) ds[x] += s[x - second] - s[x - first];
     }
 }
 
@@ -132,15 +160,13 @@ TUFT_INLINE void unpack(Work& o, const Geometry& g) {
 template <class Law>
 TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
     const Step p = step;  // where nothing that is written could change it
-    unpack(o, g);
-    for (int k = 0; k < kField; k += kLanes) levels(o, k, p);
-    for (int k = 0; k < kSide * kRow; k += kLanes) faces<Law>(o.x, kRow + k, &o.gx[k], ends(o, g, kRow + k), ends(o, g, kRow + k + 1), p);
-    for (int row = -1; row < kSide; ++row) {
-        const int k = field_at(0, row);
-        faces<Law>(o.y, k, &o.gy[(row + 1) * kSide], ends(o, g, k), ends(o, g, k + kRow), p);
-    }
-    for (int k = 0; g.ups && k < kSquares; k += kLanes) faces<Law>(o.up, k, &o.gup[k], ends(o, g, k), ends(o, g, k + kRow + 1), p);
-    for (int k = 0; g.downs && k < kSquares; k += kLanes) faces<Law>(o.down, k, &o.gdown[k], ends(o, g, k + 1), ends(o, g, k + kRow), p);
+    for (int k = 0; k < kSide * kRow; k += kLanes)
+        faces<Law, Straight>(o, o.x, kRow + k, kRow + k, &g.gx[static_cast<std::size_t>(k)], ends(o, g, kRow + k), ends(o, g, kRow + k + 1), p);
+    alignas(64) float below_w[kLanes], below_s[kLanes] = {};
+    row_of_faces<Law, true>(o, -1, g, below_w, below_s, p);
+    for (int row = 0; row < kSide; ++row) row_of_faces<Law, false>(o, row, g, below_w, below_s, p);
+    if (g.ups) diagonals<Law, Rising>(o, o.up, g, 0, kRow + 1, p);
+    if (g.downs) diagonals<Law, Falling>(o, o.down, g, 1, kRow, p);
 }
 TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) {
     if (p.pores > 0) all_faces<Law<true, false, false>>(o, g, p);
@@ -155,29 +181,43 @@ TUFT_CLONES void faces_on_relief(Work& o, const Geometry& g, const Step& p) {
     else all_faces<Law<false, true, true>>(o, g, p);
 }
 
+/// What faces need of all texels and those round them; returns the least liquid.
+TUFT_CLONES float levels(Work& o, const Step& step) {
+    const Step p = step;
+    const float passing = passing_of(p);
+    alignas(64) float least[kLanes];
+    for (float& l : least) l = o.w[0] + o.s[0];
+    constexpr int kAll = kRow * kRow / kLanes * kLanes;
+    for (int k = 0; k < kField; k += kLanes) {
+        const float *w = &o.w[k], *s = &o.s[k];
+        float *total = &o.total[k], *rate = &o.rate[k], *above = &o.above[k], *free = &o.free[k], *carrying = &o.carrying[k];
+#pragma GCC ivdep
+        for (int x = 0; x < kLanes; ++x) {
+            const float t = w[x] + s[x];
+            total[x] = t;
+            rate[x] = rate_of(t, p.grip);
+            above[x] = positive(w[x] - p.threshold);
+            free[x] = positive(w[x] - p.hold);
+            carrying[x] = w[x] + passing * s[x];
+            if (k < kAll) least[x] = smaller(least[x], t);
+        }
+    }
+    float all = least[0];
+    for (const float l : least) all = smaller(all, l);
+    for (int k = kAll; k < kRow * kRow; ++k) all = smaller(all, o.total[k]);
+    return all;
+}
+
 struct Least {
     bool dry, thin;  ///< a texel of a chart has no liquid, less than is over a rim
 };
-/// Of all texels and those round them.
-TUFT_CLONES float least_total(const Work& o) {
-    const float *w = o.w.data(), *s = o.s.data();
-    alignas(64) float least[kLanes];
-    const auto total = [w, s](int column, int row) __attribute__((always_inline)) { return w[field_at(column, row)] + s[field_at(column, row)]; };
-    for (int x = 0; x < kLanes; ++x) least[x] = total(x, -1);
-    for (int row = 0; row <= kSide; ++row)
-        for (int x = 0; x < kLanes; ++x) least[x] = smaller(least[x], total(x, row));
-    float all = least[0];
-    for (const float l : least) all = smaller(all, l);
-    for (int row = -1; row <= kSide; ++row) all = smaller(all, smaller(total(-1, row), total(kSide, row)));
-    return all;
-}
 TUFT_CLONES Least look_for_rims(const Work& o, const Geometry& g, float depth) {
     std::uint32_t dry = 0, thin = 0;
     for (int row = -1; row <= kSide; ++row) {
         std::uint32_t none = 0, little = 0;
         const int k = field_at(-1, row);
         for (int x = 0; x < kSide + 2; ++x) {
-            const float total = o.w[k + x] + o.s[k + x];
+            const float total = o.total[k + x];
             none |= static_cast<std::uint32_t>(!(total > 0)) << x;
             little |= static_cast<std::uint32_t>(total < depth) << x;
         }
@@ -185,35 +225,6 @@ TUFT_CLONES Least look_for_rims(const Work& o, const Geometry& g, float depth) {
         thin |= g.valid[static_cast<std::size_t>(row + 1)] & little;
     }
     return {dry != 0, thin != 0};
-}
-
-/// Into texel k by the four sides, and by the diagonals.
-TUFT_INLINE float into(const float* x, const float* y, int k) {
-    return (x[k - 1] - x[k]) + (y[k - kRow] - y[k]);
-}
-TUFT_INLINE float into_up(const float* up, int k) { return up[k - kRow - 1] - up[k]; }
-TUFT_INLINE float into_down(const float* down, int k) { return down[k - kRow] - down[k - 1]; }
-
-template <bool kUp, bool kDown>
-TUFT_INLINE void diverge(float* __restrict d, const float* __restrict x, const float* __restrict y,
-                         const float* __restrict up, const float* __restrict down, const float* __restrict inverse) {
-    for (int row = 0; row < kSide; ++row)
-        for (int c = 0; c < kSide; ++c) {
-            const int k = field_at(c, row);
-            float sum = into(x, y, k);
-            if constexpr (kUp && kDown) sum += into_up(up, k) + into_down(down, k);
-            else if constexpr (kUp) sum += into_up(up, k);
-            else if constexpr (kDown) sum += into_down(down, k);
-            d[row * kSide + c] = sum * inverse[row * kSide + c];
-        }
-}
-TUFT_CLONES void divergence(float* d, const Work& o, Field Faces::*f, const Geometry& g) {
-    const float *x = (o.x.*f).data(), *y = (o.y.*f).data(), *up = (o.up.*f).data(), *down = (o.down.*f).data();
-    const float* inverse = g.inverse.data();
-    if (g.ups && g.downs) diverge<true, true>(d, x, y, up, down, inverse);
-    else if (g.ups) diverge<true, false>(d, x, y, up, down, inverse);
-    else if (g.downs) diverge<false, true>(d, x, y, up, down, inverse);
-    else diverge<false, false>(d, x, y, up, down, inverse);
 }
 
 /// Slope, over a texel, of what stands over the rim: Σ of the sides that go down, both ways squared.
@@ -238,19 +249,23 @@ TUFT_INLINE float sum_of(float a, float d, float noise) {
     return positive(a + (d + noise * scale));
 }
 
-/// A texel's new liquid, soaking and drying; `air`: what went into the air; `closed`: 1 for texels
-/// that had liquid and have none. Returns in `most` the greatest w, s and closed.
-TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restrict air,
-                        float* __restrict closed, float* __restrict most, const Work& o,
-                        const float* __restrict noise, const Step& step) {
+struct Settled {
+    float most_w = 0, most_s = 0, least = 0, closed = 0;  ///< the last: > 0 where a texel had liquid and has none
+    double air = 0;  ///< what went into the air, film units · mean area
+};
+/// Texels' new liquid, soaking and drying. Beside charts there is no air; 0 / 0 there, thrown away or not, is no number,
+/// which this file's options forbid (AVX2 then lost other lanes).
+TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work& o, const float* __restrict inverse,
+                           const float* __restrict noise, const Step& step) {
     const float soak = step.soak, pores = step.pores, per_pores = pores > 0 ? 1 / pores : 0;
     const float evaporation = step.evaporation, rim = step.rim;
-    alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, any[kLanes] = {};
+    alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, closed[kLanes] = {}, air[kLanes] = {}, least[kLanes];
+    for (float& l : least) l = std::numeric_limits<float>::max();
     for (int row = 0; row < kSide; ++row) {
 #pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
             const int i = row * kSide + x, k = field_at(x, row);
-            float w1 = sum_of(o.w[k], o.dw[i], noise[i]), s1 = sum_of(o.s[k], o.ds[i], noise[i]);
+            float w1 = sum_of(o.w[k], o.dw[i] * inverse[i], noise[i]), s1 = sum_of(o.s[k], o.ds[i] * inverse[i], noise[i]);
             const float room = positive(pores - s1);
             float in = w1 * soak * (room * per_pores);
             // In units of the last place of the larger one, so that both sums are exact.
@@ -267,29 +282,23 @@ TUFT_CLONES void settle(float* __restrict w, float* __restrict s, float* __restr
             s1 -= from_s;
             w[i] = w1;
             s[i] = s1;
-            air[i] = from_w + from_s;
-            closed[i] = o.total[k] > 0 && !(w1 + s1 > 0) ? 1.0f : 0.0f;
+            air[x] += (from_w + from_s) / larger(inverse[i], kLeast);
+            const float total = w1 + s1;
+            closed[x] = larger(closed[x], o.total[k] > 0 && !(total > 0) ? 1.0f : 0.0f);
+            least[x] = smaller(least[x], total);
             most_w[x] = larger(most_w[x], w1);
             most_s[x] = larger(most_s[x], s1);
-            any[x] = larger(any[x], closed[i]);
         }
     }
+    Settled out{.least = least[0]};
     for (int lane = 0; lane < kLanes; ++lane) {
-        most[0] = larger(most[0], most_w[lane]);
-        most[1] = larger(most[1], most_s[lane]);
-        most[2] = larger(most[2], any[lane]);
+        out.most_w = larger(out.most_w, most_w[lane]);
+        out.most_s = larger(out.most_s, most_s[lane]);
+        out.closed = larger(out.closed, closed[lane]);
+        out.least = smaller(out.least, least[lane]);
+        out.air += static_cast<double>(air[lane]);
     }
-}
-
-/// Σ air times area: in float over a column, whose sixteen numbers are alike. Beside charts there is no air; 0 / 0 there,
-/// thrown away or not, is no number, which this file's options forbid (AVX2 then lost other lanes).
-TUFT_CLONES double integral(const float* __restrict air, const float* __restrict inverse) {
-    alignas(64) float sums[kLanes] = {};
-    for (int t = 0; t < kTexels; t += kLanes)
-        for (int lane = 0; lane < kLanes; ++lane) sums[lane] += air[t + lane] / larger(inverse[t + lane], kLeast);
-    double sum = 0;
-    for (const float g : sums) sum += static_cast<double>(g);
-    return sum;
+    return out;
 }
 
 TUFT_INLINE float carried(const Faces& f, const float* p, int k, int from, int to) {
@@ -297,6 +306,7 @@ TUFT_INLINE float carried(const Faces& f, const float* p, int k, int from, int t
 }
 
 /// Each flux is computed from the same numbers for both its texels, upwards once: the row above takes it from `below`.
+/// (Written down and read again one to the side, they would be twice as slow.)
 template <bool kUp, bool kDown, bool kSeams>
 TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse, const float* __restrict noise) {
     const float* p = o.p.data();
@@ -312,13 +322,10 @@ TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __rest
             const float above = carried(o.y, p, k, k, k + kRow);
             float d = (carried(o.x, p, k - 1, k - 1, k) - carried(o.x, p, k, k, k + 1)) + (below[x] - above);
             below[x] = above;
-            float askew = 0;
-            if constexpr (kUp) askew = carried(o.up, p, k - kRow - 1, k - kRow - 1, k) - carried(o.up, p, k, k, k + kRow + 1);
-            if constexpr (kDown) askew += carried(o.down, p, k - kRow, k - kRow + 1, k) - carried(o.down, p, k - 1, k, k + kRow - 1);
-            if constexpr (kUp || kDown) d += askew;
-            d *= inverse[i];
+            if constexpr (kUp) d += carried(o.up, p, k - kRow - 1, k - kRow - 1, k) - carried(o.up, p, k, k, k + kRow + 1);
+            if constexpr (kDown) d += carried(o.down, p, k - kRow, k - kRow + 1, k) - carried(o.down, p, k - 1, k, k + kRow - 1);
             if constexpr (kSeams) d += o.dp[i];
-            out[i] = sum_of(p[k], d, noise[i]);
+            out[i] = sum_of(p[k], d * inverse[i], noise[i]);
         }
     }
 }
@@ -332,6 +339,33 @@ TUFT_INLINE void carry_all(float* __restrict out, const Work& o, const Geometry&
 }
 TUFT_CLONES void carry_inside(float* out, const Work& o, const Geometry& g, const float* noise) { carry_all<false>(out, o, g, noise); }
 TUFT_CLONES void carry_over_seams(float* out, const Work& o, const Geometry& g, const float* noise) { carry_all<true>(out, o, g, noise); }
+
+template <bool kPores, bool kRelief>
+TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
+    using Here = Law<kPores, true, kRelief>;
+    const Step p = step;
+#pragma GCC ivdep
+    for (int x = 0; x < kLanes; ++x) {
+        const End e0 = end_of(l.w[0][x], l.s[0][x], l.grain[0][x], l.z[0][x], p), e1 = end_of(l.w[1][x], l.s[1][x], l.grain[1][x], l.z[1][x], p);
+        const float g = l.weight[x], w = Here::film_flux(g, e0, e1, p);
+        float s = 0;
+        if constexpr (kPores) s = Here::pore_flux(g, e0, e1, p);
+        const float flux = w + p.passing * s;
+        const Carriers c = carriers(g, flux, e0, e1, p);
+        // Nearer cells' middles lie farther apart than their texels, by whose distance their amounts differ: they mix more,
+        // by no more than what could flow.
+        const float near = smaller(larger(1 / larger(l.apart[x] * l.apart[x], kLeast), 1), kMostNear) - 1;
+        const float more = 0.5f * smaller(near * std::abs(flux), p.limit * g * smaller(e0.t, e1.t));
+        l.through_w[x] = w;
+        l.through_s[x] = s;
+        l.a[x] = (c.a + more) * e0.rate;
+        l.b[x] = (c.b - more) * e1.rate;
+    }
+}
+TUFT_CLONES void sixteen_seams(SeamLanes& l, const Step& p) {
+    if (p.pores > 0) seam_faces<true, true>(l, p);
+    else seam_faces<false, true>(l, p);
+}
 
 TUFT_CLONES void gather_rows(float* __restrict to, const float* above, const float* __restrict here,
                              const float* below) {
@@ -359,19 +393,14 @@ void gather(Field& field, const std::array<const float*, 9>& planes) {
 }
 
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
-    const float depth = step.rim > 0 ? step.rim_depth : 0, least = least_total(work);
+    const float depth = step.rim > 0 ? step.rim_depth : 0, least = levels(work, step);
     const Least rims = least > 0 && least >= depth ? Least{} : look_for_rims(work, g, depth);
     (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
+    if (!(step.pores > 0)) work.ds.fill(0);
     if (rims.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
     else if (work.sloping) work.rim_slope.fill(0);
     work.sloping = rims.thin;
     return rims.thin;
-}
-
-void liquid_changes(Work& work, const Geometry& g, const Step& step) {
-    divergence(work.dw.data(), work, &Faces::w, g);
-    if (step.pores > 0) divergence(work.ds.data(), work, &Faces::s, g);
-    else work.ds.fill(0);
 }
 
 void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std::uint64_t seed) {
@@ -380,23 +409,21 @@ void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std
 
 Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
                    std::uint64_t seed, std::array<std::uint8_t, kTexels>& closing) {
-    Outcome out;
-    alignas(64) std::array<float, kTexels> air, closed;
-    std::array<float, 3> most{};
-    settle(w, s, air.data(), closed.data(), most.data(), work, dither(seed), step);
-    if (step.evaporation > 0 || step.rim > 0) out.evaporated = integral(air.data(), g.inverse.data());
-    out.most_w = most[0];
-    out.most_s = most[1];
-    out.closing = most[2] > 0;
+    const Settled settled = settle(w, s, work, g.inverse.data(), dither(seed), step);
+    Outcome out{.most_w = settled.most_w, .most_s = settled.most_s, .closing = settled.closed > 0, .evaporated = settled.air};
+    if (settled.least > 0) {
+        out.sides = 15;
+        return out;
+    }
+    const auto wet = [w, s](int i) { return w[i] + s[i] > 0; };
     if (out.closing)
-        for (int t = 0; t < kTexels; ++t) closing[t] = closed[t] > 0;
+        for (int i = 0; i < kTexels; ++i) closing[i] = work.total[field_of(i)] > 0 && !wet(i);
     bool first = false, last = false, left = false, right = false;
     for (int i = 0; i < kSide; ++i) {
-        const int end = kTexels - kSide;
-        first |= w[i] + s[i] > 0;
-        last |= w[end + i] + s[end + i] > 0;
-        left |= w[i * kSide] + s[i * kSide] > 0;
-        right |= w[i * kSide + kSide - 1] + s[i * kSide + kSide - 1] > 0;
+        first |= wet(i);
+        last |= wet(kTexels - kSide + i);
+        left |= wet(i * kSide);
+        right |= wet(i * kSide + kSide - 1);
     }
     out.sides = static_cast<std::uint8_t>(first | last << 1 | left << 2 | right << 3);
     return out;
@@ -425,22 +452,8 @@ const float* dither(std::uint64_t seed) {
     return &table[hash_bits(seed, 1) % kOffsets & ~std::uint64_t{1}];
 }
 
-SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, const std::array<float, 2>& s,
-                   const std::array<float, 2>& grain, const std::array<float, 2>& z, const Step& step) {
-    const End e0 = end_of(w[0], s[0], grain[0], z[0], step), e1 = end_of(w[1], s[1], grain[1], z[1], step);
-    SeamFlux out;
-    out.w = Law<true, true, true>::film_flux(weight, e0, e1, step);
-    if (step.pores > 0) out.s = Law<true, true, true>::pore_flux(weight, e0, e1, step);
-    Carriers c = carriers(weight, out.w + step.passing * out.s, e0, e1, step);
-    // Nearer cells' middles lie farther apart than their texels, by whose distance their amounts differ: they mix more,
-    // by no more than what could flow.
-    const float near = smaller(larger(1 / larger(apart * apart, kLeast), 1), kMostNear) - 1;
-    const float more = 0.5f * smaller(near * std::abs(out.w + step.passing * out.s), step.limit * weight * smaller(e0.t, e1.t));
-    c.a += more;
-    c.b -= more;
-    out.a = c.a * e0.rate;
-    out.b = c.b * e1.rate;
-    return out;
+void seam_fluxes(std::span<SeamLanes> lanes, const Step& step) {
+    for (SeamLanes& l : lanes) sixteen_seams(l, step);
 }
 
 }  // namespace tuft::ink::wet

@@ -67,6 +67,11 @@ void TileList::find_near() {
         for (const atlas::SeamLink& l : links_of(slot)) add(l.other_slot, l.other_texel, true);
         for (std::uint32_t i = seams.tap_start[slot]; i < seams.tap_start[slot + 1]; ++i)
             add(seams.taps[i].other_slot, seams.taps[i].other_texel, false);
+        const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
+        for (const atlas::SeamLink& l : links_of(slot)) {
+            const auto at = std::lower_bound(begin, near_.end(), l.other_slot, [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+            link_near_.push_back(static_cast<std::uint16_t>(at - begin));
+        }
         near_start_.push_back(static_cast<std::uint32_t>(near_.size()));
     }
 }
@@ -195,6 +200,7 @@ void TileList::spread() {
         if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
         next[i].slot = wanted[i];
         next[i].links = links_of(wanted[i]);
+        next[i].link_others = std::span<const std::uint16_t>(link_near_).subspan(seams.start[wanted[i]], next[i].links.size());
         next[i].taps = std::span(seams.taps).subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
         place_[wanted[i]] = static_cast<std::uint32_t>(i);
         mark_[wanted[i]] = 0;

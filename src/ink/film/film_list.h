@@ -43,6 +43,7 @@ struct Active {
     std::uint32_t pigments = 0;             ///< bits: those computed
     std::span<const Beyond> others;         ///< ascending slots
     std::span<const atlas::SeamLink> links;
+    std::span<const std::uint16_t> link_others;  ///< of the links: places in `others`
     std::span<const atlas::SeamTap> taps;
     Outcome outcome;
     float stiffness = 0;
@@ -104,6 +105,7 @@ struct TileList {
     Ground ground_;
     std::vector<std::uint32_t> near_start_;  ///< [n_slots + 1]
     std::vector<Beyond> near_;          ///< over seams, by slot; places unknown
+    std::vector<std::uint16_t> link_near_;   ///< of the links: which of the slot's `near_`
     std::vector<Beyond> others_;        ///< of the list
     std::vector<std::uint8_t> wanted_;  ///< of the list: scratch
     std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "atlas/texels/seam_links.h"
 #include "ink/film/film.h"
@@ -86,17 +87,13 @@ struct Step {
     float ridge = 0;       ///< film units that stay on relief
 };
 
-/// Through faces: fluxes of w and s, film units · mean area, and the carriers of pigments,
-/// flux = a p(one end) + b p(other end).
+/// Through faces, the carriers of pigments: flux = a p(one end) + b p(other end).
 struct alignas(64) Faces {
-    Field w, s, a, b;
+    Field a, b;
 };
 
-/// The fields of a tile in work.
+/// The fields of a tile in work: as few as can be, so that they stay in the first cache.
 struct alignas(64) Work {
-    alignas(64) std::array<float, kSide * kRow> gx;  ///< conductances as in `Geometry`
-    alignas(64) std::array<float, kTexels + kSide> gy;
-    alignas(64) std::array<float, kSquares> gup, gdown;
     Field w{}, s{}, total{};       ///< liquid
     Field z{};                     ///< relief, film units; counts where `on_relief`
     bool on_relief = false;
@@ -104,18 +101,19 @@ struct alignas(64) Work {
     Field above{}, free{};         ///< liquid above threshold, above hold
     Field carrying{};              ///< liquid in which pigments move, M
     Field p{};                     ///< one pigment
-    Faces x, y, up, down;          ///< up: of diagonals k to k + 25, down: k + 1 to k + 24
-    std::array<float, kTexels> dw, ds{}, rim_slope{};  ///< the last: of liquid no higher than `rim_depth`, a texel
+    Faces x, y, up, down;          ///< up: of diagonals k to k + 19, down: k + 1 to k + 18
+    std::array<Field, 2> through{};  ///< scratch: what goes through faces of one kind
+    alignas(64) std::array<float, kTexels> dw, ds{};  ///< film units · mean area that come through faces and seams
+    alignas(64) std::array<float, kTexels> rim_slope{};  ///< of liquid no higher than `rim_depth`, a texel
     bool sloping = false;          ///< `rim_slope` is not 0
-    std::array<float, kTexels> dp{};  ///< what seams bring of one pigment; 0 between steps
+    alignas(64) std::array<float, kTexels> dp{};  ///< what seams bring of one pigment; 0 between steps
 };
 
 /// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
 void gather(Field& field, const std::array<const float*, 9>& planes);
-/// What follows from w and s, and what goes through the faces. Whether less than rim_depth stands on some texel.
+/// What follows from w and s, what goes through the faces, and dw and ds from that. Whether less than rim_depth stands
+/// on some texel.
 bool fluxes(Work& work, const Geometry& g, const Step& step);
-/// dw and ds of the texels from the fluxes.
-void liquid_changes(Work& work, const Geometry& g, const Step& step);
 
 /// What a texel's liquid became.
 struct Outcome {
@@ -135,16 +133,19 @@ Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, cons
                    std::uint64_t seed, std::array<std::uint8_t, kTexels>& closing);
 /// The largest of [256], at least 0.
 float greatest(const float* plane);
-/// p [256] = work.p + what the faces bring, and dp if `seams`; never below 0.
+/// p [256] = work.p + what the faces bring, and dp if `seams`, over the area; never below 0.
 void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std::uint64_t seed);
 
-/// The same expressions for two texels that face each other over a seam.
-struct SeamFlux {
-    float w = 0, s = 0;  ///< from the first to the second
-    float a = 0, b = 0;  ///< pigment: a p1 + b p2
+/// Sixteen pairs of texels that face each other over a seam, and what goes from the first to the second by the same
+/// expressions: turned round, the same with another sign to the bit.
+struct alignas(64) SeamLanes {
+    using Lane = std::array<float, kSide>;
+    Lane weight{};
+    Lane apart{};                                    ///< their distance, texels. What comes from upstream smears as over a whole texel
+    std::array<Lane, 2> w{}, s{}, grain{}, z{};      ///< liquid, pin of the place, relief
+    Lane through_w, through_s;
+    Lane a, b;                                       ///< pigment: a p1 + b p2
 };
-/// `apart`: their distance, texels. What comes from upstream smears as over a whole texel. z: relief.
-SeamFlux seam_flux(float weight, float apart, const std::array<float, 2>& w, const std::array<float, 2>& s,
-                   const std::array<float, 2>& grain, const std::array<float, 2>& z, const Step& step);
+void seam_fluxes(std::span<SeamLanes> lanes, const Step& step);
 
 }  // namespace tuft::ink::wet
