@@ -99,6 +99,41 @@ TEST(Tape, InkStaysWithinAndFillsWhatItFilled) {
     }
 }
 
+// By squares of cells and runs of pieces comes out what every cell by every piece does.
+TEST(Tape, EachCellIsCutByThePieceNearestToIt) {
+    const Model model = sheet();
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> place(-8e-3, 8e-3), radius(2e-3, 6e-3);
+    for (int i = 0; i < 40; ++i) {
+        Trace trace{.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}};
+        std::vector<Vec2> ring = star(radius(random));
+        if (i % 2)  // a jagged disk of 2000 pieces
+            for (ring.clear(); ring.size() < 2000;) {
+                const double a = 2 * std::numbers::pi * static_cast<double>(ring.size()) / 2000;
+                ring.push_back((ring.size() % 2 ? 5e-3 : 5.05e-3) * Vec2(std::cos(a), std::sin(a)));
+            }
+        trace.tape = tape_round(ring);
+        footprint::Footprint f;
+        f.cell = 1e-4;
+        f.width = 61;
+        f.height = 47;
+        f.frame = make_frame({place(random), place(random), 0}, {0, 0, 1});
+        f.lo = -0.5 * f.cell * Vec2(f.width, f.height);
+        f.radius = glm::length(f.lo);
+        f.coverage.assign(static_cast<std::size_t>(f.width) * static_cast<std::size_t>(f.height), 200);
+        const footprint::Footprint whole = f;
+        LaidTape(*model.query, trace).cut_off(f);
+        for (int y = 0; y < f.height; ++y)
+            for (int x = 0; x < f.width; ++x) {
+                const Vec2 at = f.lo + f.cell * Vec2(x + 0.5, y + 0.5);
+                const Vec3 p = f.frame.origin + at.x * f.frame.t + at.y * f.frame.b;
+                const double stays = std::clamp(0.5 + inside_tape(trace.tape, {p.x, -p.y}) / f.cell, 0.0, 1.0);
+                // Laying the tape rounds; a count is 1 / 200 of a cell.
+                EXPECT_NEAR(f.coverage[static_cast<std::size_t>(y * f.width + x)], 200 * stays, 1.01) << x << ' ' << y;
+            }
+    }
+}
+
 TEST(Tape, IsKeptInTheJournal) {
     Stroke s = over_a_star({}, 1.0 / 3), back;
     read_entry_json(entry_json(s), back);
@@ -117,10 +152,10 @@ TEST(Tape, TapeOfAnyLengthIsLaidInFewPieces) {
     Trace trace{.placement = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     for (const double length : {0.02, 1e5, 1e150, 1e308}) {
         trace.tape.assign(500, {{-0.01, 0}, {length - 0.01, 0}});
-        EXPECT_LE(lay_tape(*model.query, trace).size(), 100'000u + 500u) << length;
+        EXPECT_LE(LaidTape(*model.query, trace).pieces().size(), 100'000u + 500u) << length;
     }
     trace.tape.assign(1, {{-0.01, 0}, {0.01, 0}});
-    EXPECT_GE(lay_tape(*model.query, trace).size(), 20u) << "1 mm each";
+    EXPECT_GE(LaidTape(*model.query, trace).pieces().size(), 20u) << "1 mm each";
 }
 
 }  // namespace

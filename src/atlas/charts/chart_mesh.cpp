@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/segment.h"
+
 namespace tuft::atlas {
 namespace {
 
@@ -143,13 +145,6 @@ FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv, double ga
 
 namespace {
 
-double point_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const Vec2 d = b - a;
-    const double l = glm::dot(d, d);
-    const double t = l > 0 ? std::clamp(glm::dot(p - a, d) / l, 0.0, 1.0) : 0;
-    return glm::length(p - a - t * d);
-}
-
 /// Edges of a closed polygon by the square cells within `reach` of them.
 struct EdgeGrid {
     std::vector<std::uint32_t> start, items;
@@ -231,8 +226,8 @@ bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap
         // The chart lies left of its border: only what is near on the right is too near.
         if (height(a, b - a, 0.5 * (c + d)) > 0 || height(c, d - c, 0.5 * (a + b)) > 0)
             return false;
-        if (std::min(std::min(point_segment(a, c, d), point_segment(b, c, d)),
-                     std::min(point_segment(c, a, b), point_segment(d, a, b))) >= gap)
+        if (std::min(std::min(segment_distance(c, d, a), segment_distance(c, d, b)),
+                     std::min(segment_distance(a, b, c), segment_distance(a, b, d))) >= gap)
             return false;
         const Vec3 middle_i = chart.position[loop[i]] + chart.position[loop[(i + 1) % n]];
         const Vec3 middle_j = chart.position[loop[j]] + chart.position[loop[(j + 1) % n]];

@@ -7,6 +7,7 @@
 
 #include "atlas/charts/half_edges.h"
 #include "atlas/pack/raster.h"
+#include "core/segment.h"
 
 namespace tuft::atlas {
 namespace {
@@ -16,20 +17,13 @@ struct Segment {
     std::uint32_t chart;
 };
 
-double point_distance(const Vec2& p, const Segment& s) {
-    const Vec2 d = s.b - s.a;
-    const double l = glm::dot(d, d);
-    const double t = l > 0 ? std::clamp(glm::dot(p - s.a, d) / l, 0.0, 1.0) : 0;
-    return glm::length(p - s.a - t * d);
-}
-
-double segment_distance(const Segment& s, const Segment& t) {
+double distance(const Segment& s, const Segment& t) {
     const auto side = [](const Segment& g, const Vec2& p) {
         return (g.b.x - g.a.x) * (p.y - g.a.y) - (g.b.y - g.a.y) * (p.x - g.a.x);
     };
     if (side(s, t.a) * side(s, t.b) < 0 && side(t, s.a) * side(t, s.b) < 0) return 0;
-    return std::min(std::min(point_distance(s.a, t), point_distance(s.b, t)),
-                    std::min(point_distance(t.a, s), point_distance(t.b, s)));
+    return std::min(std::min(segment_distance(t.a, t.b, s.a), segment_distance(t.a, t.b, s.b)),
+                    std::min(segment_distance(s.a, s.b, t.a), segment_distance(s.a, s.b, t.b)));
 }
 
 /// Segments by the square cells they pass, in compressed rows.
@@ -154,7 +148,7 @@ int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corn
             grid.for_cells(segments[i], reach, [&](std::size_t c) {
                 for (const std::uint32_t j : grid.at(c))
                     if (j > i && segments[j].chart != segments[i].chart)
-                        nearest = std::min(nearest, segment_distance(segments[i], segments[j]));
+                        nearest = std::min(nearest, distance(segments[i], segments[j]));
             });
         // Rounding to floats moves a border by at most 2⁻²⁴ of the page.
         if (nearest <= reach) return static_cast<int>(nearest + 1e-6 * size);

@@ -6,6 +6,7 @@
 #include "atlas/pack/raster.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/segment.h"
 #include "stroke/painting/mask.h"
 
 /// Masks on texels.
@@ -108,10 +109,7 @@ double inside_by(const std::vector<Vec2>& polygon, const Vec2& p) {
     double nearest2 = HUGE_VAL;
     bool inside = false;
     for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-        const Vec2 a = polygon[j], b = polygon[i], way = b - a, d = p - a;
-        const double length2 = glm::dot(way, way);
-        const double u = length2 > 0 ? std::clamp(glm::dot(d, way) / length2, 0.0, 1.0) : 0.0;
-        const Vec2 off = d - u * way;
+        const Vec2 &a = polygon[j], &b = polygon[i], off = (p - a) - nearest_part(a, b, p) * (b - a);
         nearest2 = std::min(nearest2, glm::dot(off, off));
         if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
     }

@@ -60,7 +60,7 @@ Painting::Hand::Hand(Stroke s, BrushInHand held, const ink::Ink& i, const Model&
       stamper(on, canvas, stamp_options(stroke.settings), ground, rooms),
       step(step_),
       cell(0.5 * texel) {
-    tape = lay_tape(*on.query, stroke.trace);
+    tape = LaidTape(*on.query, stroke.trace);
     contact_options.method = stroke.settings.contact == "vertices" ? contact::Method::vertices
                                                                    : contact::Method::exact;
     report.nearest = std::numeric_limits<double>::infinity();
@@ -221,7 +221,7 @@ Stamp Painting::Hand::make_stamp(const contact::Result& contact, double dt) {
         stamp.grain_film = kGrainFilm * 2 * mean / (dry * dry) - kRests * static_cast<double>(substrate->relief) * dry;
         closed_area = marks.closed_area;
     }
-    if (!tape.empty()) cut_off(stamp.footprint, tape);
+    tape.cut_off(stamp.footprint);
     lay = std::move(lying);
     lay_frame = contact.frame;
     if (wet || mixed || paste) place_nodes(stamp, trails, outlines);

@@ -46,7 +46,7 @@ struct Painting::Hand {
     Vec3 went{0};                  // of the hair that touches, likewise over a shorter way
     double lands = 0;              // 0–1: how much of the hand's last motion was pressing or lifting
     footprint::HairTracks tracks;  // of the hair that lies there
-    std::vector<LaidTape> tape;    // that it keeps within
+    LaidTape tape;                 // that it keeps within
     std::vector<footprint::Trail> lay;  // of the last stamp by hair, in the frame `lay_frame`
     Frame lay_frame;
     ink::Touch touched;            // by the last stamp

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "core/segment.h"
 #include "stroke/hand/placement.h"
 
 namespace tuft::stroke {
@@ -12,26 +12,106 @@ namespace {
 
 constexpr double kPiece = 1e-3;      // metres
 constexpr double kMostPieces = 1e5;  // beyond, pieces are longer
-constexpr int kBlock = 8;        // cells that are looked at together
-constexpr double kSame = 1e-9;   // parts of a distance by which equal ones differ
+constexpr std::uint32_t kRun = 32;   // pieces that are looked at together
+constexpr int kBlock = 8;            // cells
+constexpr double kSame = 1e-9;       // parts of a distance by which equal ones differ
 
-/// Distance of a place to an edge, and how far it lies beside the edge's line, inwards.
-struct Beside {
-    double distance, side;
-};
-Beside beside(const TapeEdge& e, const Vec2& place) {
+/// How far a place lies beside the line of an edge, inwards.
+double beside(const TapeEdge& e, const Vec2& place) {
     const Vec2 way = e.to - e.from, d = place - e.from;
-    const double length2 = glm::dot(way, way);
-    const double u = length2 > 0 ? std::clamp(glm::dot(d, way) / length2, 0.0, 1.0) : 0.0;
-    return {glm::length(d - u * way),
-            length2 > 0 ? (way.x * d.y - way.y * d.x) / std::sqrt(length2) : 0.0};
+    const double length = glm::length(way);
+    return length > 0 ? (way.x * d.y - way.y * d.x) / length : 0;
 }
+
+/// The nearest of some edges. Of two as near, which is off their common end, the one that the place
+/// is further beside.
+struct Nearest {
+    double distance = std::numeric_limits<double>::infinity(), side = 0;
+
+    void meet(double to, double by) {
+        const bool nearer = to < distance * (1 - kSame);
+        if (nearer || (to <= distance * (1 + kSame) && std::abs(by) > std::abs(side)))
+            distance = to, side = by;
+    }
+    double inside() const { return side < 0 ? -distance : distance; }
+};
+
+/// Cuts a footprint's coverage along edges: boxes of cells by quarters, each with the edges that
+/// may be the nearest to one of its cells.
+class Cut {
+  public:
+    Cut(footprint::Footprint& f, std::span<const TapeEdge> edges)
+        : f_(f), edges_(edges), near_(edges.size()) {
+        for (std::uint32_t i = 0; i < edges.size(); ++i) near_[i] = i;
+    }
+    void all() { box(0, 0, f_.width, f_.height, 0); }
+
+  private:
+    /// By the edges in `near_` from `first` on.
+    void box(int x0, int y0, int x1, int y1, std::size_t first) {
+        if (x0 >= x1 || y0 >= y1) return;
+        const Vec2 middle = f_.lo + f_.cell * 0.5 * Vec2(x0 + x1, y0 + y1);
+        const double corner = 0.5 * f_.cell * glm::length(Vec2(x1 - x0, y1 - y0));
+        const std::size_t end = near_.size();
+        Nearest nearest;
+        distances_.resize(end);
+        for (std::size_t i = first; i < end; ++i) {
+            const TapeEdge& e = edges_[near_[i]];
+            distances_[i] = segment_distance(e.from, e.to, middle);
+            nearest.meet(distances_[i], beside(e, middle));
+        }
+        if (nearest.distance > corner + f_.cell) {
+            if (nearest.side < 0)
+                for (int y = y0; y < y1; ++y)
+                    std::fill_n(&coverage(x0, y), x1 - x0, std::uint8_t{0});
+            return;
+        }
+        const double most = (nearest.distance + 2 * corner) * (1 + 1e-6);
+        for (std::size_t i = first; i < end; ++i)
+            if (distances_[i] <= most) near_.push_back(near_[i]);
+        if (std::max(x1 - x0, y1 - y0) <= kBlock) {
+            cells(x0, y0, x1, y1, end);
+        } else {
+            const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
+            box(x0, y0, x, y, end);
+            box(x, y0, x1, y, end);
+            box(x0, y, x, y1, end);
+            box(x, y, x1, y1, end);
+        }
+        near_.resize(end);
+    }
+
+    void cells(int x0, int y0, int x1, int y1, std::size_t first) {
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) {
+                std::uint8_t& c = coverage(x, y);
+                if (c == 0) continue;
+                const Vec2 place = f_.lo + f_.cell * Vec2(x + 0.5, y + 0.5);
+                Nearest nearest;
+                for (std::size_t i = first; i < near_.size(); ++i) {
+                    const TapeEdge& e = edges_[near_[i]];
+                    nearest.meet(segment_distance(e.from, e.to, place), beside(e, place));
+                }
+                c = static_cast<std::uint8_t>(
+                    std::lround(std::clamp(0.5 + nearest.inside() / f_.cell, 0.0, 1.0) * c));
+            }
+    }
+
+    std::uint8_t& coverage(int x, int y) {
+        return f_.coverage[static_cast<std::size_t>(y) * static_cast<std::size_t>(f_.width) +
+                           static_cast<std::size_t>(x)];
+    }
+
+    footprint::Footprint& f_;
+    std::span<const TapeEdge> edges_;
+    std::vector<std::uint32_t> near_;  // of the boxes that are being cut, one after the other
+    std::vector<double> distances_;    // of those of the innermost
+};
 
 }  // namespace
 
-std::vector<LaidTape> lay_tape(const mesh::SurfaceQuery& query, const Trace& trace) {
-    std::vector<LaidTape> laid;
-    if (!trace.flat || trace.tape.empty()) return laid;
+LaidTape::LaidTape(const mesh::SurfaceQuery& query, const Trace& trace) {
+    if (!trace.flat || trace.tape.empty()) return;
     Trace ends{.placement = trace.placement};
     std::vector<Vec2> ways;
     double whole = 0;
@@ -47,80 +127,75 @@ std::vector<LaidTape> lay_tape(const mesh::SurfaceQuery& query, const Trace& tra
             ways.push_back(i < n ? (e.to - e.from) / length : Vec2(0));
         }
     }
-    if (ends.samples.empty()) return laid;
+    if (ends.samples.empty()) return;
     const LaidTrace on = lay(query, ends);
     for (std::size_t i = 0; i + 1 < on.samples.size(); ++i) {
         const LaidSample &a = on.samples[i], &b = on.samples[i + 1];
         if (ways[i] == Vec2(0) || !a.on_surface || !b.on_surface) continue;
-        laid.push_back({a.position, b.position, ways[i].x * a.down - ways[i].y * a.right});
+        pieces_.push_back({a.position, b.position, ways[i].x * a.down - ways[i].y * a.right});
     }
-    return laid;
+    gather();
+}
+
+void LaidTape::gather() {
+    const auto n = static_cast<std::uint32_t>(pieces_.size());
+    for (std::uint32_t begin = 0; begin < n; begin += kRun) {
+        Run run{begin, std::min(begin + kRun, n), Vec3(0), 0};
+        for (std::uint32_t i = begin; i < run.end; ++i)
+            run.centre += 0.5 * (pieces_[i].from + pieces_[i].to);
+        run.centre /= static_cast<double>(run.end - begin);
+        for (std::uint32_t i = begin; i < run.end; ++i)
+            run.radius = std::max({run.radius, glm::distance(run.centre, pieces_[i].from),
+                                   glm::distance(run.centre, pieces_[i].to)});
+        runs_.push_back(run);
+    }
 }
 
 double inside_tape(std::span<const TapeEdge> tape, const Vec2& place) {
-    Beside nearest{std::numeric_limits<double>::infinity(), 1};
-    for (const TapeEdge& e : tape) {
-        const Beside b = beside(e, place);
-        const bool nearer = b.distance < nearest.distance * (1 - kSame);
-        if (nearer || (b.distance <= nearest.distance * (1 + kSame) &&
-                       std::abs(b.side) > std::abs(nearest.side)))
-            nearest = b;
-    }
-    return nearest.side < 0 ? -nearest.distance : nearest.distance;
+    Nearest nearest;
+    for (const TapeEdge& e : tape)
+        nearest.meet(segment_distance(e.from, e.to, place), beside(e, place));
+    return nearest.inside();
 }
 
-void cut_off(footprint::Footprint& f, std::span<const LaidTape> tape) {
-    if (f.empty()) return;
+/// The pieces that come near to a footprint, in its plane.
+std::vector<TapeEdge> LaidTape::seen_from(const footprint::Footprint& f, double reach) const {
+    std::vector<TapeEdge> seen;
+    for (const Run& run : runs_) {
+        if (glm::distance(run.centre, f.frame.origin) - run.radius > 4 * reach) continue;
+        for (std::uint32_t i = run.begin; i < run.end; ++i) {
+            const LaidPiece& piece = pieces_[i];
+            const Vec3 a = f.frame.to_local(piece.from), b = f.frame.to_local(piece.to);
+            if (std::max(std::abs(a.z), std::abs(b.z)) > 2 * reach) continue;
+            // What is nearest to any cell is no further than three times the reach.
+            if (segment_distance(Vec2(a), Vec2(b), Vec2(0)) > 3 * reach) continue;
+            const Vec2 inward(glm::dot(piece.inward, f.frame.t), glm::dot(piece.inward, f.frame.b));
+            const TapeEdge e{Vec2(a), Vec2(b)};
+            seen.push_back(beside(e, e.from + inward) < 0 ? TapeEdge{e.to, e.from} : e);
+        }
+    }
+    return seen;
+}
+
+void LaidTape::cut_off(footprint::Footprint& f) const {
+    if (f.empty() || empty()) return;
     // Of the place nearest to the origin: by it lies what has no tape across it.
-    double distance = std::numeric_limits<double>::infinity(), side = 0;
-    for (const LaidTape& piece : tape) {
-        const Vec3 way = piece.to - piece.from, d = f.frame.origin - piece.from;
-        const double u = std::clamp(glm::dot(d, way) / glm::dot(way, way), 0.0, 1.0),
-                     to = glm::length(d - u * way);
-        const double by = glm::dot(d, piece.inward);
-        const bool nearer = to < distance * (1 - kSame);
-        if (nearer || (to <= distance * (1 + kSame) && std::abs(by) > std::abs(side)))
-            distance = to, side = by;
+    Nearest nearest;
+    const Vec3& origin = f.frame.origin;
+    for (const Run& run : runs_) {
+        if (glm::distance(run.centre, origin) - run.radius > nearest.distance * (1 + kSame))
+            continue;
+        for (std::uint32_t i = run.begin; i < run.end; ++i)
+            nearest.meet(segment_distance(pieces_[i].from, pieces_[i].to, origin),
+                         glm::dot(origin - pieces_[i].from, pieces_[i].inward));
     }
     const double reach = f.radius + 2 * f.cell;
-    if (distance > reach) {
-        if (side < 0) std::fill(f.coverage.begin(), f.coverage.end(), std::uint8_t{0});
+    if (nearest.distance > reach) {
+        if (nearest.side < 0) std::fill(f.coverage.begin(), f.coverage.end(), std::uint8_t{0});
         return;
     }
-    // What is nearest to any cell is no further than three times that.
-    std::vector<TapeEdge> near;
-    for (const LaidTape& piece : tape) {
-        const Vec3 a = f.frame.to_local(piece.from), b = f.frame.to_local(piece.to);
-        if (std::max(std::abs(a.z), std::abs(b.z)) > 2 * reach) continue;
-        if (std::min(glm::length(Vec2(a)), glm::length(Vec2(b))) > 3 * reach + glm::length(Vec2(b - a))) continue;
-        const Vec2 inward(glm::dot(piece.inward, f.frame.t), glm::dot(piece.inward, f.frame.b));
-        const TapeEdge e{Vec2(a), Vec2(b)};
-        const Vec2 way = e.to - e.from;
-        near.push_back(way.x * inward.y - way.y * inward.x < 0 ? TapeEdge{e.to, e.from} : e);
-    }
-    const double corner = 0.5 * std::numbers::sqrt2 * kBlock * f.cell;
-    for (int y = 0; y < f.height; y += kBlock)
-        for (int x = 0; x < f.width; x += kBlock) {
-            const int to_x = std::min(x + kBlock, f.width), to_y = std::min(y + kBlock, f.height);
-            const double d =
-                inside_tape(near, f.lo + f.cell * Vec2(x + 0.5 * kBlock, y + 0.5 * kBlock));
-            if (d > corner + f.cell) continue;
-            for (int j = y; j < to_y; ++j)
-                for (int i = x; i < to_x; ++i) {
-                    std::uint8_t& c =
-                        f.coverage[static_cast<std::size_t>(j) * static_cast<std::size_t>(f.width) +
-                                   static_cast<std::size_t>(i)];
-                    if (c == 0) continue;
-                    const double stays =
-                        d < -corner - f.cell
-                            ? 0
-                            : std::clamp(
-                                  0.5 + inside_tape(near, f.lo + f.cell * Vec2(i + 0.5, j + 0.5)) /
-                                            f.cell,
-                                  0.0, 1.0);
-                    c = static_cast<std::uint8_t>(std::lround(stays * c));
-                }
-        }
+    const std::vector<TapeEdge> seen = seen_from(f, reach);
+    Cut(f, seen).all();
 }
 
 }  // namespace tuft::stroke
