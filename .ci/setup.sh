@@ -4,7 +4,7 @@
 packages_build=(build-essential cmake ninja-build pkg-config git ccache
   libopenmesh-dev libcgal-dev libeigen3-dev libembree-dev libtbb-dev libglm-dev
   libopenimageio-dev openimageio-tools libtinygltf-dev libsqlite3-dev libsqlitecpp-dev
-  libzstd-dev libxxhash-dev libpugixml-dev libtomlplusplus-dev libcli11-dev libfmt-dev
+  libzstd-dev libxxhash-dev libpugixml-dev libpolyclipping-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev libstb-dev libbenchmark-dev
   libglfw3-dev libxrandr-dev libxi-dev libimgui-dev libepoxy-dev libgl-dev libegl-dev libspnav-dev)
 packages_test=(libgtest-dev libgmock-dev xvfb xauth xdotool libgl1-mesa-dri libegl1

@@ -6,26 +6,28 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/segment.h"
+
 namespace tuft::io {
 
 namespace {
 
 using Line = std::vector<Vec2>;
 
-constexpr double kStem = 0.36, kCompact = 0.06;  // width of a line: of a stem, of the root of the area
-constexpr double kFirst = 0.3,  kNext = 0.33;     // widths from the outline to the first line, and from one to the next
-constexpr double kChord = 0.1;                  // widths, of edges and between points
-constexpr double kSlack = 0.02;                 // widths that a point may lie nearer to an edge than its own
-constexpr double kJoin = 0.35;                  // widths between ends that are one
-constexpr double kBare = 1;                     // widths from the outline to the next line, where it counts as bare
-constexpr double kPoint = 0.4;                  // widths within which a line turns at a point
-constexpr double kPast = 0.5;                   // widths that it goes on past the corner, on the tape
-constexpr double kBetween = 1.75;               // and between others, where it begins thin
-constexpr double kSmall = 8;                    // widths: loops shorter than this get a dab in their middle, than half of it are one
-constexpr double kShort = 0.5, kFine = 4;        // widths: shorter pieces are none; of finer lines
-constexpr int kLevels = 4;
+constexpr double kStem = 0.36, kCompact = 0.06;  // line's width: of a stem's, of the area's root
 
-double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
+// Widths of the line.
+constexpr double kFirst = 0.22;    // from the outline to the first line; bends draw the ink inwards
+constexpr double kNext = 0.33;     // from one line to the next
+constexpr double kChord = 0.1;     // of edges, and between points
+constexpr double kSlack = 0.02;    // that the outline which lines follow leaves the true one
+constexpr double kBare = 1;        // from the outline to the next line, where it counts as bare
+constexpr double kPoint = 0.4;     // within which a line turns at a point
+constexpr double kPast = 0.5;      // that it goes on past the corner, on the tape
+constexpr double kBetween = 1.75;  // and between others, where it begins thin
+constexpr double kSmall = 8;  // shorter loops get a dab in their middle, than half of it are one
+constexpr double kShort = 0.5, kFine = 4;  // shorter pieces are none; of finer lines
+constexpr int kLevels = 4;
 
 /// Points within a radius, found by the squares of a grid as wide.
 class Near {
@@ -36,92 +38,42 @@ class Near {
     bool any(const Vec2& p, Test test) const {
         for (std::int64_t j = -1; j <= 1; ++j)
             for (std::int64_t i = -1; i <= 1; ++i)
-                if (const auto at = squares_.find(key(square(p.x) + i, square(p.y) + j)); at != squares_.end())
+                if (const auto at = squares_.find(key(square(p.x) + i, square(p.y) + j));
+                    at != squares_.end())
                     for (const Vec2& q : at->second)
                         if (test(q)) return true;
         return false;
     }
 
   private:
-    std::int64_t square(double x) const { return static_cast<std::int64_t>(std::floor(x / radius_)); }
+    std::int64_t square(double x) const {
+        return static_cast<std::int64_t>(std::floor(x / radius_));
+    }
     static std::uint64_t key(std::int64_t i, std::int64_t j) {
-        return static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15u ^ static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4Fu;
+        return static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15u ^
+               static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4Fu;
     }
     double radius_;
     std::unordered_map<std::uint64_t, std::vector<Vec2>> squares_;
 };
 
+/// Of the outline; the area is on its left.
 struct Edge {
     Vec2 from, to;
-    Vec2 inward{0};   ///< unit; (0, 0): the area is on both sides, or on none
-    bool open = true; ///< not covered yet
-    bool border() const { return inward != Vec2(0); }
+    bool open = true;  ///< not covered yet
     Vec2 middle() const { return 0.5 * (from + to); }
 };
 
-bool within(std::span<const Line> rings, FillRule rule, const Vec2& p) {
-    int winding = 0, crossings = 0;
-    for (const Line& ring : rings)
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Vec2 &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
-            if ((a.y <= p.y) == (b.y <= p.y)) continue;
-            if ((cross(b - a, p - a) > 0) != (b.y > a.y)) continue;
-            ++crossings;
-            winding += b.y > a.y ? 1 : -1;
-        }
-    return rule == FillRule::nonzero ? winding != 0 : crossings % 2 != 0;
-}
-
-/// Area by rows, and the length of all rings.
-struct Extent {
-    double area = 0, perimeter = 0;
-};
-Extent extent(std::span<const Line> rings, FillRule rule) {
-    constexpr int kRows = 256;
-    Extent e;
-    double low = std::numeric_limits<double>::max(), high = -low;
-    for (const Line& ring : rings)
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            low = std::min(low, ring[i].y), high = std::max(high, ring[i].y);
-            e.perimeter += glm::distance(ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]);
-        }
-    std::vector<std::pair<double, int>> meets;
-    for (int row = 0; row < kRows && high > low; ++row) {
-        const double y = low + (high - low) * (row + 0.5) / kRows;
-        meets.clear();
-        for (const Line& ring : rings)
-            for (std::size_t i = 0; i < ring.size(); ++i) {
-                const Vec2 &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
-                if ((a.y <= y) != (b.y <= y)) meets.emplace_back(a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y), b.y > a.y ? 1 : -1);
-            }
-        std::sort(meets.begin(), meets.end());
-        int winding = 0;
-        for (std::size_t i = 0; i + 1 < meets.size(); ++i) {
-            winding += rule == FillRule::nonzero ? meets[i].second : 1;
-            if (rule == FillRule::nonzero ? winding != 0 : winding % 2 != 0)
-                e.area += (meets[i + 1].first - meets[i].first) * (high - low) / kRows;
-        }
-    }
-    return e;
-}
-
-/// The rings as short edges, each with the side that the area is on.
-std::vector<std::vector<Edge>> border_of(std::span<const Line> rings, FillRule rule, double chord) {
+/// The rings as short edges.
+std::vector<std::vector<Edge>> border_of(const Shape& shape, double chord) {
     std::vector<std::vector<Edge>> border;
-    for (const Line& ring : rings) {
+    for (const Ring& ring : shape.rings()) {
         std::vector<Edge> edges;
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const Vec2 &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
-            if (a == b) continue;
-            const Vec2 along = glm::normalize(b - a), left(-along.y, along.x);
             const auto n = static_cast<int>(std::ceil(glm::distance(a, b) / chord));
-            for (int k = 0; k < n; ++k) {
-                Edge e{glm::mix(a, b, double(k) / n), glm::mix(a, b, double(k + 1) / n)};
-                const Vec2 step = 0.01 * chord * left;
-                const bool l = within(rings, rule, e.middle() + step), r = within(rings, rule, e.middle() - step);
-                if (l != r) e.inward = l ? left : -left;
-                edges.push_back(e);
-            }
+            for (int k = 0; k < n; ++k)
+                edges.push_back({glm::mix(a, b, double(k) / n), glm::mix(a, b, double(k + 1) / n)});
         }
         border.push_back(std::move(edges));
     }
@@ -130,36 +82,12 @@ std::vector<std::vector<Edge>> border_of(std::span<const Line> rings, FillRule r
 
 constexpr double kTaped = 3;  // widths from a line within which the outline is taped
 
-/// The border in straight pieces as long as they are.
-std::vector<stroke::TapeEdge> tape_of(const std::vector<std::vector<Edge>>& border) {
+std::vector<stroke::TapeEdge> tape_of(const Shape& shape) {
     std::vector<stroke::TapeEdge> tape;
-    for (const std::vector<Edge>& ring : border) {
-        bool goes_on = false;
-        Vec2 way{0}, inward{0};
-        for (const Edge& e : ring) {
-            if (!e.border()) {
-                goes_on = false;
-                continue;
-            }
-            const Vec2 along = glm::normalize(e.to - e.from);
-            const bool turned = cross(along, e.inward) < 0;
-            if (goes_on && glm::distance(along, way) + glm::distance(e.inward, inward) < 1e-9) {
-                (turned ? tape.back().from : tape.back().to) = e.to;
-            } else {
-                tape.push_back(turned ? stroke::TapeEdge{e.to, e.from} : stroke::TapeEdge{e.from, e.to});
-            }
-            goes_on = true;
-            way = along;
-            inward = e.inward;
-        }
-    }
+    for (const Ring& ring : shape.rings())
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            tape.push_back({ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]});
     return tape;
-}
-
-double distance_to(const stroke::TapeEdge& e, const Vec2& p) {
-    const Vec2 d = e.to - e.from;
-    const double length2 = glm::dot(d, d);
-    return glm::distance(p, e.from + (length2 > 0 ? std::clamp(glm::dot(p - e.from, d) / length2, 0.0, 1.0) : 0.0) * d);
 }
 
 /// Gives each line the tape beside it.
@@ -170,87 +98,123 @@ void stick(const std::vector<stroke::TapeEdge>& tape, std::vector<AreaLine>& lin
         const double reach = kTaped * line.width;
         low -= reach, high += reach;
         for (const stroke::TapeEdge& e : tape) {
-            if (std::max(e.from.x, e.to.x) < low.x || std::max(e.from.y, e.to.y) < low.y || std::min(e.from.x, e.to.x) > high.x ||
-                std::min(e.from.y, e.to.y) > high.y)
+            if (std::max(e.from.x, e.to.x) < low.x || std::max(e.from.y, e.to.y) < low.y ||
+                std::min(e.from.x, e.to.x) > high.x || std::min(e.from.y, e.to.y) > high.y)
                 continue;
-            if (std::any_of(line.line.begin(), line.line.end(), [&](const Vec2& p) { return distance_to(e, p) < reach; }))
+            if (std::any_of(line.line.begin(), line.line.end(), [&](const Vec2& p) {
+                    return segment_distance(e.from, e.to, p) < reach;
+                }))
                 line.tape.push_back(e);
         }
     }
 }
 
-/// What of the open edges' offsets by `d` lies that far from all edges, in runs.
-std::vector<Line> runs_at(const std::vector<std::vector<Edge>>& border, double d, double width) {
-    Near edges(d + kChord * width);
+/// Points at even steps of about `step` along a way; its end is left out.
+Line even(std::span<const Vec2> way, double step) {
+    double whole = 0;
+    for (std::size_t i = 1; i < way.size(); ++i) whole += glm::distance(way[i - 1], way[i]);
+    const auto n = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(whole / step)));
+    Line points;
+    double along = 0;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        const double length = glm::distance(way[i - 1], way[i]);
+        for (double at; points.size() < n &&
+                        (at = whole * double(points.size()) / double(n)) < along + length;)
+            points.push_back(glm::mix(way[i - 1], way[i], (at - along) / length));
+        along += length;
+    }
+    return points;
+}
+
+/// Means of points beside each other, up to `reach` to both sides, by a Gauss curve; fewer towards
+/// the ends of a line that is open, which stay.
+Line means(const Line& line, std::ptrdiff_t reach, bool closed) {
+    const auto n = static_cast<std::ptrdiff_t>(line.size());
+    Line out;
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+        const std::ptrdiff_t m = closed ? std::min(reach, n / 2) : std::min({reach, i, n - 1 - i});
+        Vec2 sum = line[static_cast<std::size_t>(i)];
+        double weights = 1;
+        for (std::ptrdiff_t k = 1; k <= m; ++k) {
+            const double x = 2.5 * double(k) / double(m), w = std::exp(-0.5 * x * x);
+            sum += w * (line[static_cast<std::size_t>((i + k) % n)] +
+                        line[static_cast<std::size_t>((i - k + n) % n)]);
+            weights += 2 * w;
+        }
+        out.push_back(sum / weights);
+    }
+    return out;
+}
+
+/// The ring as points a chord apart that bend evenly between its corners, which turn by more than
+/// 45 degrees: a brush shows a wave at each chord of a bend else. Twice the mean less the mean of
+/// that keeps a circle's radius.
+Line smooth(const Ring& ring, double chord) {
+    constexpr double kCorner = 0.7;        // cosine
+    constexpr std::ptrdiff_t kReach = 12;  // chords
+    const std::size_t n = ring.size();
+    const auto corner = [&](std::size_t i) {
+        const Vec2 in = ring[i] - ring[(i + n - 1) % n], out = ring[(i + 1) % n] - ring[i];
+        return glm::dot(in, out) < kCorner * glm::length(in) * glm::length(out);
+    };
+    std::size_t first = 0;
+    while (first < n && !corner(first)) ++first;
+    const bool closed = first == n;
+    Line curve, side{ring[first % n]};
+    for (std::size_t i = first + 1; i <= first + n; ++i) {
+        side.push_back(ring[i % n]);
+        if (!(closed ? i == first + n : corner(i % n))) continue;
+        Line points = even(side, chord);
+        if (!closed) points.push_back(side.back());
+        const Line once = means(points, kReach, closed), twice = means(once, kReach, closed);
+        for (std::size_t k = 0; k < points.size() - !closed; ++k)
+            curve.push_back(2.0 * once[k] - twice[k]);
+        side = {ring[i % n]};
+    }
+    return curve;
+}
+
+/// What of the curves at `d` inside the outline lies beside open edges, in runs; closed ones end
+/// where they began.
+std::vector<Line> runs_at(const Shape& shape, const std::vector<std::vector<Edge>>& border,
+                          double d, double width) {
+    const double chord = kChord * width, beside = d + chord;
+    Near open(beside);
     for (const std::vector<Edge>& ring : border)
         for (const Edge& e : ring)
-            if (e.border()) edges.add(e.middle());
-    const double least = d - kSlack * width;
-    const auto clear = [&](const Vec2& p) { return !edges.any(p, [&](const Vec2& q) { return glm::dot(p - q, p - q) < least * least; }); };
+            if (e.open) open.add(e.middle());
     std::vector<Line> runs;
-    for (const std::vector<Edge>& ring : border) {
+    const Shape inner = shape.inset(d, 0.5 * kSlack * width);
+    for (const Ring& ring : inner.rings()) {
+        Line curve = smooth(ring, chord);
+        std::vector<bool> wanted;
+        for (const Vec2& p : curve)
+            wanted.push_back(
+                open.any(p, [&](const Vec2& q) { return glm::distance(p, q) < beside; }));
+        if (curve.size() < 2) continue;
+        const auto gap = static_cast<std::size_t>(std::find(wanted.begin(), wanted.end(), false) -
+                                                  wanted.begin());
+        if (gap == wanted.size()) {
+            curve.push_back(curve.front());
+            runs.push_back(std::move(curve));
+            continue;
+        }
         Line run;
-        const auto end = [&] {
-            if (run.size() > 1) runs.push_back(std::move(run));
-            run.clear();
-        };
-        // At bends into the area offsets overlap by the slack: those that lie behind are passed over.
-        const auto go = [&](const Vec2& p, const Vec2& along) {
-            if (!clear(p)) return end();
-            if (run.empty() || glm::dot(p - run.back(), along) > 0.2 * kChord * width) run.push_back(p);
-        };
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Edge &e = ring[i], &next = ring[i + 1 < ring.size() ? i + 1 : 0];
-            if (!e.border() || !e.open) {
-                end();
-                continue;
-            }
-            const Vec2 along = glm::normalize(e.to - e.from);
-            go(e.middle() + d * e.inward, along);
-            // Round a corner that juts into the area.
-            if (next.border() && next.open && glm::dot(next.inward - e.inward, next.to - e.from) > 0) {
-                const double gap = d * glm::distance(e.inward, next.inward);
-                const auto n = static_cast<int>(std::min(64.0, std::ceil(gap / (kChord * width))));
-                for (int k = 1; k < n; ++k) {
-                    const Vec2 normal = glm::mix(e.inward, next.inward, double(k) / n);
-                    const Vec2 way = d * (next.inward - e.inward);
-                    if (glm::length(normal) > 0.1) go(e.to + d * glm::normalize(normal), glm::normalize(way));
-                }
+        for (std::size_t i = 1; i <= curve.size(); ++i) {  // from one gap round to it
+            const std::size_t at = (gap + i) % curve.size();
+            if (wanted[at]) {
+                run.push_back(curve[at]);
+            } else {
+                if (run.size() > 1) runs.push_back(std::move(run));
+                run.clear();
             }
         }
-        end();
     }
     return runs;
 }
 
-/// Runs joined to lines where an end lies near the start of another, or of its own: that closes it.
-std::vector<Line> joined(std::vector<Line> runs, double reach) {
-    std::vector<Line> lines;
-    std::vector<bool> used(runs.size(), false);
-    for (std::size_t first = 0; first < runs.size(); ++first) {
-        if (used[first]) continue;
-        used[first] = true;
-        Line line = runs[first];
-        for (bool grown = true; grown;) {
-            grown = false;
-            double best = reach;
-            std::size_t at = runs.size();
-            for (std::size_t i = 0; i < runs.size(); ++i)
-                if (const double gap = glm::distance(line.back(), runs[i].front()); (!used[i] || i == first) && gap < best) best = gap, at = i;
-            if (at == first && line.size() > 3) {
-                line.push_back(line.front());
-            } else if (at < runs.size() && at != first) {
-                used[at] = grown = true;
-                line.insert(line.end(), runs[at].begin(), runs[at].end());
-            }
-        }
-        lines.push_back(std::move(line));
-    }
-    return lines;
-}
-
-/// The line in parts that turn by less than some 100 degrees within `reach`: a brush goes into a point and out of
-/// it in two strokes.
+/// The line in parts that turn by less than some 100 degrees within `reach`: a brush goes into a
+/// point and out of it in two strokes.
 struct Part {
     Line line;
     bool head = false, tail = false;  ///< ends that are such points
@@ -266,17 +230,21 @@ std::vector<Part> parted(const Line& line, double reach) {
     for (std::size_t i = 0; i < count; ++i) {
         // The first vertices `reach` away to both sides.
         std::size_t back = 0, ahead = 0;
-        const std::size_t most_back = closed ? count - 1 : i, most_ahead = closed ? count - 1 : count - 1 - i;
+        const std::size_t most_back = closed ? count - 1 : i,
+                          most_ahead = closed ? count - 1 : count - 1 - i;
         while (back < most_back && glm::distance(at(i + count - back), at(i)) < reach) ++back;
         while (ahead < most_ahead && glm::distance(at(i + ahead), at(i)) < reach) ++ahead;
         const Vec2 in = at(i) - at(i + count - back), out = at(i + ahead) - at(i);
-        if (glm::length(in) >= 0.5 * reach && glm::length(out) >= 0.5 * reach) turns[i] = glm::dot(glm::normalize(in), glm::normalize(out));
+        if (glm::length(in) >= 0.5 * reach && glm::length(out) >= 0.5 * reach)
+            turns[i] = glm::dot(glm::normalize(in), glm::normalize(out));
     }
     for (std::size_t i = 0; i < count; ++i) {  // the sharpest within reach
         if (turns[i] > kHairpin) continue;
         bool sharpest = true;
         for (std::size_t k = 0; k < count && sharpest; ++k)
-            if (k != i && glm::distance(at(k), at(i)) < reach && (turns[k] < turns[i] || (turns[k] == turns[i] && k < i))) sharpest = false;
+            if (k != i && glm::distance(at(k), at(i)) < reach &&
+                (turns[k] < turns[i] || (turns[k] == turns[i] && k < i)))
+                sharpest = false;
         if (sharpest) points.push_back(i);
     }
     if (points.empty()) return {{line}};
@@ -288,21 +256,26 @@ std::vector<Part> parted(const Line& line, double reach) {
     };
     if (!closed && points.front() > 0) part(0, points.front(), false, true);
     for (std::size_t k = 0; k + 1 < points.size(); ++k) part(points[k], points[k + 1], true, true);
-    if (closed) part(points.back(), points.front() + count, true, true);
-    else part(points.back(), count - 1, true, false);
+    if (closed)
+        part(points.back(), points.front() + count, true, true);
+    else
+        part(points.back(), count - 1, true, false);
     return parts;
 }
 
-/// From the end of a line at `d` from the outline, where it came to a point, into the corner of the area: to where the
-/// outline along it and the one on the point's other side meet, which is straight ahead on their bisector; a line
-/// `inside` others, or one that ends between others, 7/4 of a width; past the corner on tape. The length of a way into a corner, else 0.
+/// From the end of a line at `d` from the outline, where it came to a point, into the corner of the
+/// area: to where the outline along it and the one on the point's other side meet, which is
+/// straight ahead on their bisector; a line `inside` others, or one that ends between others, 7/4
+/// of a width; past the corner on tape. The length of a way into a corner, else 0.
 double run_out(Line& line, const Line& other, double d, double width, bool inside,
-               std::span<const Line> rings, FillRule rule) {
+               const Shape& shape) {
     const double reach = kPoint * width;
     const auto heading = [&](const Line& l, bool from_end) {  // away from the point
         const Vec2 tip = from_end ? l.back() : l.front();
         for (std::size_t i = 1; i < l.size(); ++i)
-            if (const Vec2 p = from_end ? l[l.size() - 1 - i] : l[i]; glm::distance(p, tip) >= reach) return glm::normalize(p - tip);
+            if (const Vec2 p = from_end ? l[l.size() - 1 - i] : l[i];
+                glm::distance(p, tip) >= reach)
+                return glm::normalize(p - tip);
         const Vec2 p = from_end ? l.front() : l.back();
         return p == tip ? Vec2(1, 0) : glm::normalize(p - tip);
     };
@@ -316,10 +289,11 @@ double run_out(Line& line, const Line& other, double d, double width, bool insid
     constexpr int kSteps = 40;
     const double most = 1.4 * length;  // points may be bent
     int n = 0;
-    while (n < kSteps && within(rings, rule, tip + way * (most * (n + 1) / kSteps))) ++n;
+    while (n < kSteps && shape.contains(tip + way * (most * (n + 1) / kSteps))) ++n;
     const bool corner = n < kSteps;  // else the line ends where the area is narrow, between others
     double in = most * n / kSteps, out = in + most / kSteps;
-    for (int k = 0; corner && k < 10; ++k) (within(rings, rule, tip + way * (0.5 * (in + out))) ? in : out) = 0.5 * (in + out);
+    for (int k = 0; corner && k < 10; ++k)
+        (shape.contains(tip + way * (0.5 * (in + out))) ? in : out) = 0.5 * (in + out);
     length = corner && !inside ? in + kPast * width : std::min(in, kBetween * width);
     if (length > 0) line.push_back(tip + way * length);
     return corner && !inside ? length : 0;
@@ -337,7 +311,9 @@ Line dab(const Line& loop, double width) {
     for (const Vec2& p : loop)
         for (const Vec2& q : loop)
             if (glm::distance(p, q) > glm::distance(a, b)) a = p, b = q;
-    const Vec2 middle = 0.5 * (a + b), half = a == b ? Vec2(0.3 * width, 0) : glm::normalize(b - a) * (0.5 * glm::distance(a, b) + 0.3 * width);
+    const Vec2 middle = 0.5 * (a + b),
+               half = a == b ? Vec2(0.3 * width, 0)
+                             : glm::normalize(b - a) * (0.5 * glm::distance(a, b) + 0.3 * width);
     return {middle - half, middle, middle + half};
 }
 
@@ -350,7 +326,10 @@ bool cover(std::vector<std::vector<Edge>>& border, const std::vector<AreaLine>& 
             for (const Vec2& p : lines[to].line) near.add(p);
         for (std::vector<Edge>& ring : border)
             for (Edge& e : ring)
-                if (const Vec2 p = e.middle(); e.open && near.any(p, [&](const Vec2& q) { return glm::distance(p, q) <= reach; })) e.open = false;
+                if (const Vec2 p = e.middle(); e.open && near.any(p, [&](const Vec2& q) {
+                        return glm::distance(p, q) <= reach;
+                    }))
+                    e.open = false;
     }
     constexpr std::ptrdiff_t kBeside = 30;
     bool bare = false;
@@ -358,35 +337,41 @@ bool cover(std::vector<std::vector<Edge>>& border, const std::vector<AreaLine>& 
         const auto n = static_cast<std::ptrdiff_t>(ring.size());
         std::vector<bool> open(ring.size(), false);
         for (std::ptrdiff_t i = 0; i < n; ++i) {
-            if (!ring[static_cast<std::size_t>(i)].open || !ring[static_cast<std::size_t>(i)].border()) continue;
+            if (!ring[static_cast<std::size_t>(i)].open) continue;
             bare = true;
-            for (std::ptrdiff_t j = i - kBeside; j <= i + kBeside; ++j) open[static_cast<std::size_t>(((j % n) + n) % n)] = true;
+            for (std::ptrdiff_t j = i - kBeside; j <= i + kBeside; ++j)
+                open[static_cast<std::size_t>(((j % n) + n) % n)] = true;
         }
         for (std::size_t i = 0; i < ring.size(); ++i) ring[i].open = open[i];
     }
     return bare;
 }
 
+/// Of a line that is a third of a stem wide; 0: the shape has no area.
+double line_width(const Shape& shape) {
+    const double area = shape.area(), perimeter = shape.perimeter();
+    if (!(area > 1e-6 * perimeter * perimeter)) return 0;
+    return std::max(kStem * 2 * area / perimeter, kCompact * std::sqrt(area));
+}
+
 }  // namespace
 
-std::vector<AreaLine> area_lines(std::span<const Line> rings, FillRule rule) {
-    const Extent e = extent(rings, rule);
-    if (!(e.area > 1e-4 * e.perimeter * e.perimeter / 100) || !std::isfinite(e.perimeter)) return {};
-    const double width = std::max(kStem * 2 * e.area / e.perimeter, kCompact * std::sqrt(e.area));
-    std::size_t n_points = 0;
-    for (const Line& ring : rings) n_points += ring.size();
+std::vector<AreaLine> area_lines(std::span<const Ring> rings, FillRule rule) {
+    const Shape shape(rings, rule);
+    double w = line_width(shape);
+    // A jagged outline is longer than the way along it.
+    if (w > 0) w = line_width(shape.simplified(kSlack * w));
+    if (!(w > 0)) return {};
     std::vector<AreaLine> lines;
-    std::vector<stroke::TapeEdge> tape;
-    double w = width;
     for (int level = 0; level < kLevels; ++level, w *= 0.5) {
-        if (e.perimeter / (kChord * w) + double(n_points) > double(kMostEdges)) break;
-        std::vector<std::vector<Edge>> border = border_of(rings, rule, kChord * w);
-        if (level == 0) tape = tape_of(border);
+        const Shape outline = shape.simplified(kSlack * w);
+        if (outline.perimeter() / (kChord * w) > double(kMostEdges)) break;
+        std::vector<std::vector<Edge>> border = border_of(outline, kChord * w);
         if (!cover(border, lines)) break;
         std::vector<std::vector<AreaLine>> shells;
         for (int k = 0; level == 0 || k < 3; ++k) {
             const double d = (kFirst + kNext * k) * w;
-            const std::vector<Line> runs = runs_at(border, d, w);
+            const std::vector<Line> runs = runs_at(outline, border, d, w);
             if (runs.empty()) break;
             std::vector<AreaLine> shell;
             const auto add_parts = [&](std::vector<Part> parts, int inside) {
@@ -394,18 +379,20 @@ std::vector<AreaLine> area_lines(std::span<const Line> rings, FillRule rule) {
                 for (std::size_t i = 0; i < parts.size(); ++i) {
                     AreaLine line{.line = std::move(parts[i].line), .width = w};
                     if (length_of(line.line) < (level ? kFine : kShort) * w) continue;
-                    if (parts[i].tail) line.tail = run_out(line.line, all[(i + 1) % all.size()].line, d, w, inside > 0, rings, rule);
+                    if (parts[i].tail)
+                        line.tail = run_out(line.line, all[(i + 1) % all.size()].line, d, w,
+                                            inside > 0, shape);
                     if (parts[i].head) {
                         Line before = all[(i + all.size() - 1) % all.size()].line;
                         std::reverse(before.begin(), before.end());
                         std::reverse(line.line.begin(), line.line.end());
-                        line.head = run_out(line.line, before, d, w, inside > 0, rings, rule);
+                        line.head = run_out(line.line, before, d, w, inside > 0, shape);
                         std::reverse(line.line.begin(), line.line.end());
                     }
                     shell.push_back(std::move(line));
                 }
             };
-            for (const Line& line : joined(runs, kJoin * w)) {
+            for (const Line& line : runs) {
                 const double around = line.front() == line.back() ? length_of(line) / w : kSmall;
                 if (around < kSmall) shell.push_back({.line = dab(line, w), .width = w});
                 if (around >= 0.5 * kSmall) add_parts(parted(line, kPoint * w), k);
@@ -415,7 +402,7 @@ std::vector<AreaLine> area_lines(std::span<const Line> rings, FillRule rule) {
         for (auto shell = shells.rbegin(); shell != shells.rend(); ++shell)
             for (AreaLine& line : *shell) lines.push_back(std::move(line));
     }
-    stick(tape, lines);
+    stick(tape_of(shape), lines);
     return lines;
 }
 

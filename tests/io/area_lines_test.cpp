@@ -12,7 +12,6 @@
 namespace tuft::io {
 namespace {
 
-using Ring = std::vector<Vec2>;
 using std::numbers::pi;
 
 Ring circle(double r, int n = 90, Vec2 c = {0, 0}) {
@@ -84,6 +83,34 @@ TEST(AreaLines, CoverTheAreaAndLittleElse) {
         // Lines 0.2 w past the outline reach into square corners; chords of the circles cut off 0.1 % of them.
         EXPECT_LT(bare, 0.002 * inside) << s.name;
         EXPECT_LT(spilt, 0.002 * inside) << s.name;
+    }
+}
+
+// What a scanner or a tracing program makes of a disk is drawn as the disk is, up to its own outline.
+TEST(AreaLines, AJaggedOutlineIsDrawnAsASmoothOne) {
+    const double r = 0.04;
+    const auto smooth = area_lines(std::vector<Ring>{circle(r, 360)}, FillRule::nonzero);
+    Ring jagged = circle(r, 6000), stairs;
+    for (std::size_t i = 0; i < jagged.size(); ++i) jagged[i] *= 1 + (i % 2 ? 5e-4 : -5e-4);
+    for (const Vec2& p : circle(r, 6000)) {
+        const Vec2 at = 1e-4 * glm::round(1e4 * p);
+        if (!stairs.empty() && stairs.back().x != at.x && stairs.back().y != at.y) stairs.push_back({at.x, stairs.back().y});
+        if (stairs.empty() || stairs.back() != at) stairs.push_back(at);
+    }
+    for (const Ring& ring : {jagged, stairs}) {
+        const auto lines = area_lines(std::vector<Ring>{ring}, FillRule::nonzero);
+        ASSERT_EQ(lines.size(), smooth.size());
+        const AreaLine &line = lines.back(), &same = smooth.back();
+        EXPECT_NEAR(line.width, same.width, 0.02 * same.width);
+        // Of the outermost, as far from the middle and as evenly bent: its points turn by no more than some of a
+        // circle's, of which there are 2π r / (0.1 w) at most.
+        const double bend = 2 * 0.1 * line.width / (r - 0.3 * line.width);
+        for (std::size_t i = 1; i + 1 < line.line.size(); ++i) {
+            EXPECT_NEAR(glm::length(line.line[i]), r - 0.22 * line.width, 0.03 * line.width);
+            const Vec2 in = glm::normalize(line.line[i] - line.line[i - 1]), out = glm::normalize(line.line[i + 1] - line.line[i]);
+            EXPECT_LT(std::acos(std::min(1.0, glm::dot(in, out))), bend) << i;
+        }
+        EXPECT_GT(line.tape.size(), ring.size() / 2) << "the tape is the outline's own";
     }
 }
 
