@@ -45,7 +45,8 @@ struct Crossing {
         links = n;
         size = 0;
         pigments = 0;
-        lanes.assign((n + kSide - 1) / kSide, {});
+        if (n == 0) return;
+        lanes.resize((n + kSide - 1) / kSide);
         texels.resize(n);
         beyond.resize(n * static_cast<std::size_t>(n_pigments));
     }
@@ -76,8 +77,7 @@ struct Ahead {
     void fetch(int lines) {
         for (; lines > 0 && next < n; ++next) {
             Piece& piece = pieces[next];
-            // Into the second cache: the first is full of what is being worked on.
-            for (; piece.at < piece.end && lines > 0; piece.at += 64, --lines) __builtin_prefetch(piece.at, 0, 2);
+            for (; piece.at < piece.end && lines > 0; piece.at += 64, --lines) __builtin_prefetch(piece.at);
             if (piece.at < piece.end) return;
         }
     }
@@ -272,6 +272,7 @@ struct WetFilm::State : TileList {
     void cross_seams(std::size_t index, int pigments, const Step& step, bool thin, Work& work, Crossing& crossing) const {
         const Active& tile = list[index];
         crossing.clear(tile.links.size(), pigments);
+        if (tile.links.empty()) return;
         for (std::size_t i = 0; i < tile.links.size(); ++i) {
             const atlas::SeamLink& l = tile.links[i];
             const std::uint32_t other = tile.others[tile.link_others[i]].place;
@@ -284,14 +285,11 @@ struct WetFilm::State : TileList {
             for (int p = 0; p < pigments; ++p) crossing.pigments |= static_cast<std::uint32_t>(sources[other].open[p] != nullptr) << p;
             SeamLanes& lanes = crossing.lanes[crossing.size / kSide];
             const std::size_t lane = crossing.size % kSide;
-            if (!(t > 0 && u > 0)) {  // else what pins rims has no say, and lies in memory far away
-                lanes.grain[0][lane] = geometry[tile.slot]->grain[field_of(l.texel)];
-                lanes.grain[1][lane] = geometry[l.other_slot]->grain[field_of(l.other_texel)];
-            }
-            if (any_relief) {
-                lanes.z[0][lane] = at(sources[index].relief, l.texel);
-                lanes.z[1][lane] = at(sources[other].relief, l.other_texel);
-            }
+            const bool both = t > 0 && u > 0;  // then what pins rims has no say, and lies in memory far away
+            lanes.grain[0][lane] = both ? 0 : geometry[tile.slot]->grain[field_of(l.texel)];
+            lanes.grain[1][lane] = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
+            lanes.z[0][lane] = at(sources[index].relief, l.texel);
+            lanes.z[1][lane] = at(sources[other].relief, l.other_texel);
             crossing.add(l, {here[0], there[0]}, {here[1], there[1]});
         }
         wet::seam_fluxes(std::span(crossing.lanes).first((crossing.size + kSide - 1) / kSide), step);

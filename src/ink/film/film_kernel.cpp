@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "core/random.h"
@@ -250,7 +251,7 @@ TUFT_INLINE float sum_of(float a, float d, float noise) {
 }
 
 struct Settled {
-    float most_w = 0, most_s = 0, least = 0, closed = 0;  ///< the last: > 0 where a texel had liquid and has none
+    float most_w = 0, most_s = 0, least = 0;  ///< the last: of both together
     double air = 0;  ///< what went into the air, film units · mean area
 };
 /// Texels' new liquid, soaking and drying. Beside charts there is no air; 0 / 0 there, thrown away or not, is no number,
@@ -259,7 +260,7 @@ TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work&
                            const float* __restrict noise, const Step& step) {
     const float soak = step.soak, pores = step.pores, per_pores = pores > 0 ? 1 / pores : 0;
     const float evaporation = step.evaporation, rim = step.rim;
-    alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, closed[kLanes] = {}, air[kLanes] = {}, least[kLanes];
+    alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, air[kLanes] = {}, least[kLanes];
     for (float& l : least) l = std::numeric_limits<float>::max();
     for (int row = 0; row < kSide; ++row) {
 #pragma GCC ivdep
@@ -284,7 +285,6 @@ TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work&
             s[i] = s1;
             air[x] += (from_w + from_s) / larger(inverse[i], kLeast);
             const float total = w1 + s1;
-            closed[x] = larger(closed[x], o.total[k] > 0 && !(total > 0) ? 1.0f : 0.0f);
             least[x] = smaller(least[x], total);
             most_w[x] = larger(most_w[x], w1);
             most_s[x] = larger(most_s[x], s1);
@@ -294,11 +294,24 @@ TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work&
     for (int lane = 0; lane < kLanes; ++lane) {
         out.most_w = larger(out.most_w, most_w[lane]);
         out.most_s = larger(out.most_s, most_s[lane]);
-        out.closed = larger(out.closed, closed[lane]);
         out.least = smaller(out.least, least[lane]);
         out.air += static_cast<double>(air[lane]);
     }
     return out;
+}
+
+/// Whether a texel had liquid and has none.
+TUFT_CLONES bool any_closed(const float* w, const float* s, const Work& o) {
+    float closed[kLanes] = {};
+    for (int row = 0; row < kSide; ++row)
+        for (int x = 0; x < kSide; ++x) {
+            const int i = row * kSide + x;
+            const float was = o.total[field_at(x, row)], is = w[i] + s[i];
+            closed[x] = larger(closed[x], was > 0 && !(is > 0) ? 1.0f : 0.0f);
+        }
+    float any = 0;
+    for (const float c : closed) any = larger(any, c);
+    return any > 0;
 }
 
 TUFT_INLINE float carried(const Faces& f, const float* p, int k, int from, int to) {
@@ -367,30 +380,23 @@ TUFT_CLONES void sixteen_seams(SeamLanes& l, const Step& p) {
     else seam_faces<false, true>(l, p);
 }
 
-TUFT_CLONES void gather_rows(float* __restrict to, const float* above, const float* __restrict here,
-                             const float* below) {
-    const auto row = [to](int r, const float* from) __attribute__((always_inline)) {
-        for (int x = 0; x < kSide; ++x) to[field_at(0, r) + x] = from[x];
+TUFT_CLONES void gather_rows(float* __restrict to, const std::array<const float*, 9>& planes) {
+    constexpr int kEnd = kTexels - kSide;
+    const auto row = [to](int r, const float* left, const float* here, const float* right) __attribute__((always_inline)) {
+        float* at = to + field_at(0, r);
+        at[-1] = *left;
+        std::memcpy(at, here, kSide * sizeof(float));
+        at[kSide] = *right;
     };
-    row(-1, above + kTexels - kSide);
-    for (int r = 0; r < kSide; ++r) row(r, here + r * kSide);
-    row(kSide, below);
+    row(-1, planes[0] + kTexels - 1, planes[1] + kEnd, planes[2] + kEnd);
+    for (int r = 0; r < kSide; ++r)
+        row(r, planes[3] + r * kSide + kSide - 1, planes[4] + r * kSide, planes[5] + r * kSide);
+    row(kSide, planes[6] + kSide - 1, planes[7], planes[8]);
 }
 
 }  // namespace
 
-void gather(Field& field, const std::array<const float*, 9>& planes) {
-    gather_rows(field.data(), planes[1], planes[4], planes[7]);
-    constexpr int end = kTexels - kSide;
-    field[field_at(-1, -1)] = planes[0][kTexels - 1];
-    field[field_at(kSide, -1)] = planes[2][end];
-    field[field_at(-1, kSide)] = planes[6][kSide - 1];
-    field[field_at(kSide, kSide)] = planes[8][0];
-    for (int row = 0; row < kSide; ++row) {
-        field[field_at(-1, row)] = planes[3][row * kSide + kSide - 1];
-        field[field_at(kSide, row)] = planes[5][row * kSide];
-    }
-}
+void gather(Field& field, const std::array<const float*, 9>& planes) { gather_rows(field.data(), planes); }
 
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
     const float depth = step.rim > 0 ? step.rim_depth : 0, least = levels(work, step);
@@ -410,14 +416,14 @@ void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std
 Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
                    std::uint64_t seed, std::array<std::uint8_t, kTexels>& closing) {
     const Settled settled = settle(w, s, work, g.inverse.data(), dither(seed), step);
-    Outcome out{.most_w = settled.most_w, .most_s = settled.most_s, .closing = settled.closed > 0, .evaporated = settled.air};
+    Outcome out{.most_w = settled.most_w, .most_s = settled.most_s, .evaporated = settled.air};
     if (settled.least > 0) {
         out.sides = 15;
         return out;
     }
     const auto wet = [w, s](int i) { return w[i] + s[i] > 0; };
-    if (out.closing)
-        for (int i = 0; i < kTexels; ++i) closing[i] = work.total[field_of(i)] > 0 && !wet(i);
+    out.closing = any_closed(w, s, work);
+    for (int i = 0; out.closing && i < kTexels; ++i) closing[i] = work.total[field_of(i)] > 0 && !wet(i);
     bool first = false, last = false, left = false, right = false;
     for (int i = 0; i < kSide; ++i) {
         first |= wet(i);
