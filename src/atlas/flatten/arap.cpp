@@ -1,18 +1,16 @@
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
 
+#include "atlas/flatten/dissection.h"
 #include "atlas/flatten/flatten.h"
+#include "atlas/flatten/planar_factor.h"
 #include "atlas/flatten/reference.h"
 
 namespace tuft::atlas {
 namespace {
-
-using Matrix = Eigen::SparseMatrix<double>;
 
 /// The part of a chart that is laid out anew: its triangles and their vertices, those that move
 /// first.
@@ -79,9 +77,9 @@ Part part_of(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
 
 /// Stiffness matrix Σ half_cot over edges, rows and columns of the vertices that move; `held` is
 /// what the others pull with.
-Matrix stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& held) {
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(6 * part.faces.size() + part.n_free);
+LowerMatrix stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& held) {
+    std::vector<LowerMatrix::Entry> entries;
+    entries.reserve(3 * part.faces.size() + part.n_free);
     std::vector<double> diagonal(part.vertex.size(), 0);
     held.assign(part.n_free, Vec2(0));
     for (std::size_t t = 0; t < part.faces.size(); ++t)
@@ -91,16 +89,30 @@ Matrix stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2
             diagonal[i] += w;
             diagonal[j] += w;
             if (j < part.n_free)
-                entries.emplace_back(static_cast<int>(j), static_cast<int>(i), -w);
+                entries.push_back({j, i, -w});
             else if (i < part.n_free)
                 held[i] += w * uv[j];
         }
-    for (std::size_t v = 0; v < part.n_free; ++v)
-        entries.emplace_back(static_cast<int>(v), static_cast<int>(v), diagonal[v]);
-    const auto size = static_cast<Eigen::Index>(part.n_free);
-    Matrix matrix(size, size);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    return matrix;
+    for (std::uint32_t v = 0; v < part.n_free; ++v) entries.push_back({v, v, diagonal[v]});
+    return {part.n_free, entries};
+}
+
+/// Numbers the vertices that move by their order of elimination.
+Dissection renumber(Part& part, std::vector<Vec2>& at) {
+    Dissection dissection = dissect(std::span(at).first(part.n_free), part.faces);
+    std::vector<std::uint32_t> slot(part.vertex.size());
+    std::iota(slot.begin(), slot.end(), 0u);
+    const std::vector<std::uint32_t> vertex = part.vertex;
+    const std::vector<Vec2> before = at;
+    for (std::uint32_t i = 0; i < dissection.order.size(); ++i) {
+        const std::uint32_t v = dissection.order[i];
+        slot[v] = i;
+        part.vertex[i] = vertex[v];
+        at[i] = before[v];
+    }
+    for (auto& face : part.faces)
+        for (std::uint32_t& v : face) v = slot[v];
+    return dissection;
 }
 
 struct Rotation {
@@ -124,44 +136,6 @@ Rotation closest_rotation(const std::array<std::uint32_t, 3>& f, const Reference
     if (!(norm > 0)) return {1, 0, std::max(0.0, square)};
     return {c / norm, s / norm, std::max(0.0, square - 2 * norm)};
 }
-
-/// A factorised stiffness matrix: both coordinates are solved for in one pass over it.
-class Factor {
-  public:
-    bool compute(const Matrix& matrix) {
-        ldlt_.compute(matrix);
-        if (ldlt_.info() != Eigen::Success) return false;
-        diagonal_ = ldlt_.vectorD();
-        permuted_.resize(static_cast<std::size_t>(matrix.rows()));
-        return true;
-    }
-
-    /// Replaces the right hand side by the solution.
-    void solve(std::span<Vec2> x) {
-        const auto& place = ldlt_.permutationP().indices();
-        const auto& factor = ldlt_.matrixL().nestedExpression();  // below the diagonal of ones
-        const int* start = factor.outerIndexPtr();
-        const int* row = factor.innerIndexPtr();
-        const double* value = factor.valuePtr();
-        const auto n = static_cast<Eigen::Index>(x.size());
-        Vec2* p = permuted_.data();
-        for (Eigen::Index i = 0; i < n; ++i) p[place[i]] = x[static_cast<std::size_t>(i)];
-        for (Eigen::Index j = 0; j < n; ++j)
-            for (int k = start[j]; k < start[j + 1]; ++k) p[row[k]] -= value[k] * p[j];
-        for (Eigen::Index j = 0; j < n; ++j) p[j] /= diagonal_[j];
-        for (Eigen::Index j = n; j-- > 0;) {
-            Vec2 sum = p[j];
-            for (int k = start[j]; k < start[j + 1]; ++k) sum -= value[k] * p[row[k]];
-            p[j] = sum;
-        }
-        for (Eigen::Index i = 0; i < n; ++i) x[static_cast<std::size_t>(i)] = p[place[i]];
-    }
-
-  private:
-    Eigen::SimplicialLDLT<Matrix> ldlt_;
-    Eigen::VectorXd diagonal_;
-    std::vector<Vec2> permuted_;
-};
 
 /// The local step: `rhs` of the global one for the rotations that fit `uv` best. Returns the
 /// energy of `uv`.
@@ -196,10 +170,10 @@ double arap_energy(const ChartMesh& chart, const std::vector<Vec2>& uv) {
 double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options,
             std::span<const std::uint32_t> faces) {
     if (chart.n_vertices() < 3) return 0;
-    const Part part = faces.empty() ? whole(chart) : part_of(chart, faces);
+    Part part = faces.empty() ? whole(chart) : part_of(chart, faces);
     if (part.n_free == 0) return 0;
     const double area = std::max(part.area, 1e-300);
-    Factor factor;
+    PlanarFactor factor;
     std::vector<Vec2> at(part.vertex.size()), rhs(part.vertex.size()), held;
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = uv[part.vertex[v]];
     double before = -1, energy = 0;
@@ -214,7 +188,11 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
             if (left > options.hopeless) break;
         }
         before = energy;
-        if (step == 0 && !factor.compute(stiffness(part, at, held))) break;
+        if (step == 0) {
+            const Dissection dissection = renumber(part, at);
+            if (!factor.compute(stiffness(part, at, held), dissection)) break;
+            fit_rotations(part, at, rhs);
+        }
         for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += held[v];
         factor.solve(std::span(rhs).first(part.n_free));
         std::copy(rhs.begin(), rhs.begin() + static_cast<std::ptrdiff_t>(part.n_free), at.begin());
