@@ -50,6 +50,60 @@ bool eliminate(Dense& panel, Dense& rest, double* diagonal) {
     return true;
 }
 
+constexpr std::size_t kAtOnce = 4;  // columns
+
+/// b += Σ l_j p_j over `columns` columns of `n` rows, `stride` apart.
+void add_columns(const double* __restrict l, std::size_t stride, std::size_t columns, std::size_t n,
+                 const Vec2* p, double* __restrict bx, double* __restrict by) {
+    if (columns < kAtOnce) {
+        for (std::size_t j = 0; j < columns; ++j)
+            for (std::size_t i = 0; i < n; ++i) {
+                bx[i] += l[j * stride + i] * p[j].x;
+                by[i] += l[j * stride + i] * p[j].y;
+            }
+        return;
+    }
+    const Vec2 p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3];
+    const double *l0 = l, *l1 = l + stride, *l2 = l1 + stride, *l3 = l2 + stride;
+    for (std::size_t i = 0; i < n; ++i) {
+        bx[i] += (l0[i] * p0.x + l1[i] * p1.x) + (l2[i] * p2.x + l3[i] * p3.x);
+        by[i] += (l0[i] * p0.y + l1[i] * p1.y) + (l2[i] * p2.y + l3[i] * p3.y);
+    }
+}
+
+/// p_j −= l_j · b over the same.
+void take_columns(const double* __restrict l, std::size_t stride, std::size_t columns,
+                  std::size_t n, const double* __restrict bx, const double* __restrict by,
+                  Vec2* p) {
+    constexpr std::size_t kLanes = 2;
+    std::size_t j = 0;
+    for (; j + 2 <= columns; j += 2) {
+        const double *l0 = l + j * stride, *l1 = l0 + stride;
+        double x0[kLanes] = {}, y0[kLanes] = {}, x1[kLanes] = {}, y1[kLanes] = {};
+        std::size_t i = 0;
+        for (; i + kLanes <= n; i += kLanes)
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                x0[k] += l0[i + k] * bx[i + k];
+                y0[k] += l0[i + k] * by[i + k];
+                x1[k] += l1[i + k] * bx[i + k];
+                y1[k] += l1[i + k] * by[i + k];
+            }
+        for (; i < n; ++i) {
+            x0[0] += l0[i] * bx[i];
+            y0[0] += l0[i] * by[i];
+            x1[0] += l1[i] * bx[i];
+            y1[0] += l1[i] * by[i];
+        }
+        p[j] -= Vec2(x0[0] + x0[1], y0[0] + y0[1]);
+        p[j + 1] -= Vec2(x1[0] + x1[1], y1[0] + y1[1]);
+    }
+    for (; j < columns; ++j) {
+        Vec2 sum(0);
+        for (std::size_t i = 0; i < n; ++i) sum += l[j * stride + i] * Vec2(bx[i], by[i]);
+        p[j] -= sum;
+    }
+}
+
 }  // namespace
 
 LowerMatrix::LowerMatrix(std::size_t size, std::span<const Entry> entries)
@@ -135,50 +189,32 @@ void PlanarFactor::solve(std::span<Vec2> x) const {
     std::vector<double> below(2 * tallest_);
     double *bx = below.data(), *by = bx + tallest_;
     for (const Block& block : blocks_) {
-        const std::size_t own = block.end - block.begin, size = own + block.n_rows;
-        std::fill_n(bx, block.n_rows, 0.0);
-        std::fill_n(by, block.n_rows, 0.0);
-        for (std::size_t j = 0; j < own; ++j) {
-            const Vec2 p = x[block.begin + j];
-            const double* l = values_.data() + block.values + j * size;
-            for (std::size_t i = j + 1; i < own; ++i) x[block.begin + i] -= l[i] * p;
-            l += own;
-            for (std::size_t i = 0; i < block.n_rows; ++i) {
-                bx[i] += l[i] * p.x;
-                by[i] += l[i] * p.y;
-            }
-        }
-        for (std::size_t i = 0; i < block.n_rows; ++i)
-            x[rows_[block.first_row + i]] -= Vec2(bx[i], by[i]);
+        const std::size_t own = block.end - block.begin, n = block.n_rows, size = own + n;
+        const double* l = values_.data() + block.values;
+        Vec2* p = x.data() + block.begin;
+        for (std::size_t j = 0; j < own; ++j)
+            for (std::size_t i = j + 1; i < own; ++i) p[i] -= l[j * size + i] * p[j];
+        std::fill_n(bx, n, 0.0);
+        std::fill_n(by, n, 0.0);
+        for (std::size_t j = 0; j < own; j += kAtOnce)
+            add_columns(l + j * size + own, size, std::min(kAtOnce, own - j), n, p + j, bx, by);
+        const std::uint32_t* row = rows_.data() + block.first_row;
+        for (std::size_t i = 0; i < n; ++i) x[row[i]] -= Vec2(bx[i], by[i]);
     }
     for (std::size_t i = 0; i < x.size(); ++i) x[i] /= diagonal_[i];
     for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) {
-        const std::size_t own = block->end - block->begin, size = own + block->n_rows;
-        for (std::size_t i = 0; i < block->n_rows; ++i) {
-            const Vec2 p = x[rows_[block->first_row + i]];
-            bx[i] = p.x;
-            by[i] = p.y;
+        const std::size_t own = block->end - block->begin, n = block->n_rows, size = own + n;
+        const double* l = values_.data() + block->values;
+        Vec2* p = x.data() + block->begin;
+        const std::uint32_t* row = rows_.data() + block->first_row;
+        for (std::size_t i = 0; i < n; ++i) {
+            bx[i] = x[row[i]].x;
+            by[i] = x[row[i]].y;
         }
-        for (std::size_t j = own; j-- > 0;) {
-            const double* l = values_.data() + block->values + j * size;
-            Vec2 sum = x[block->begin + j];
-            for (std::size_t i = j + 1; i < own; ++i) sum -= l[i] * x[block->begin + i];
-            l += own;
-            // Four sums, which a compiler may keep in vectors.
-            double sx[4] = {}, sy[4] = {};
-            std::size_t i = 0;
-            for (; i + 4 <= block->n_rows; i += 4)
-                for (std::size_t k = 0; k < 4; ++k) {
-                    sx[k] += l[i + k] * bx[i + k];
-                    sy[k] += l[i + k] * by[i + k];
-                }
-            for (; i < block->n_rows; ++i) {
-                sx[0] += l[i] * bx[i];
-                sy[0] += l[i] * by[i];
-            }
-            x[block->begin + j] =
-                sum - Vec2((sx[0] + sx[1]) + (sx[2] + sx[3]), (sy[0] + sy[1]) + (sy[2] + sy[3]));
-        }
+        for (std::size_t j = 0; j < own; j += kAtOnce)
+            take_columns(l + j * size + own, size, std::min(kAtOnce, own - j), n, bx, by, p + j);
+        for (std::size_t j = own; j-- > 0;)
+            for (std::size_t i = j + 1; i < own; ++i) p[j] -= l[j * size + i] * p[i];
     }
 }
 
