@@ -82,6 +82,8 @@ void press_to_widths(std::vector<stroke::Stroke>& strokes, stroke::WidthTables& 
                              widths.least() / kMillimetre, widths.most() / kMillimetre));
 }
 
+constexpr double kTooLarge = 3;  // diagonals of the model
+
 double extent_along(const Box& box, const Vec3& direction) {
     return glm::dot(box.size(), glm::abs(direction));
 }
@@ -130,6 +132,9 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
     if (a.place_mm.empty())
         console.note(fmt::format("the strokes name no place; they go to the {} of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",
                                  lies ? "top" : "front", at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre, note));
+    if (const double large = scale * std::max(area.size().x, area.size().y); large > kTooLarge * box.diagonal())
+        console.note(fmt::format("the drawing is {:.4g} mm large, the model {:.4g} mm: most of it meets no surface (see --place-width, --unit)",
+                                 large / kMillimetre, box.diagonal() / kMillimetre));
     for (stroke::Trace* trace : drawing) trace->line_width *= scale;
     if (a.brush.empty()) size_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), widths);
     for (stroke::Trace* trace : drawing) {

@@ -115,6 +115,16 @@ TEST_F(Place, TheWidthAskedForIsThatOfTheInk) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(own.size(axis), asked.size(axis), 1e-6) << "the scale is 1 but for rounding";
 }
 
+TEST_F(Place, ADrawingFarLargerThanTheModelIsTold) {
+    write("box.obj", box(false));  // 108 mm across
+    write("lines.inkml", lines(0, 0, 10));
+    for (const auto& [width, told] : {std::pair{"300", false}, {"400", true}}) {
+        const Ran ran = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") + " --place 0,-30,0 --place-width " + width);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        EXPECT_EQ(ran.err.find("the drawing is 400 mm large, the model 107.7 mm") != std::string::npos, told) << ran.err;
+    }
+}
+
 TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
     write("box.obj", box(false));
     write("device.inkml", lines(12000, 3000, 8000));  // a tablet's own units, read as millimetres
