@@ -32,21 +32,13 @@ inline std::int64_t twice_area(const std::array<std::int64_t, 2>& a,
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// Calls run(row, first, last) for every row of texels of a size × size page whose
-/// centres first..last lie in the triangle. A centre on an edge belongs to one side
-/// only. Orientation does not matter; triangles without area, or with a corner that is not
-/// finite, have no texels.
-template <class Run>
-void raster_rows(const std::array<Vec2f, 3>& uv, std::uint32_t size, Run&& run) {
-    using Wide = __int128;
-    if (!std::all_of(uv.begin(), uv.end(), is_finite)) return;
-    std::array<std::array<std::int64_t, 2>, 3> p{uv_grid(uv[0]), uv_grid(uv[1]), uv_grid(uv[2])};
-    const std::int64_t area = twice_area(p[0], p[1], p[2]);
-    if (area == 0) return;
-    if (area < 0) std::swap(p[1], p[2]);
+/// As `raster_rows`, of a triangle with positive area in grid steps; `Wide` holds what comes up.
+template <class Wide, class Run>
+void raster_rows_in(const std::array<std::array<std::int64_t, 2>, 3>& p, std::uint32_t size,
+                    Run&& run) {
     // In units of 1 / (2 size) of a grid step, texel i has its centre at (2i + 1) 2²⁴.
     const auto n = static_cast<std::int64_t>(size);
-    const std::int64_t grid = static_cast<std::int64_t>(kUvGrid);
+    constexpr auto grid = static_cast<std::int64_t>(kUvGrid);
     const auto floor_div = [](Wide a, Wide b) { return a >= 0 ? a / b : -((-a + b - 1) / b); };
     const auto [y_lo, y_hi] = std::minmax({p[0][1], p[1][1], p[2][1]});
     const auto first_row = static_cast<std::int64_t>(
@@ -77,6 +69,32 @@ void raster_rows(const std::array<Vec2f, 3>& uv, std::uint32_t size, Run&& run) 
             run(static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(first),
                 static_cast<std::uint32_t>(last));
     }
+}
+
+/// Calls run(row, first, last) for every row of texels of a size × size page whose
+/// centres first..last lie in the triangle. A centre on an edge belongs to one side
+/// only. Orientation does not matter; triangles without area, or with a corner that is not
+/// finite, have no texels.
+template <class Run>
+void raster_rows(const std::array<Vec2f, 3>& uv, std::uint32_t size, Run&& run) {
+    if (!std::all_of(uv.begin(), uv.end(), is_finite)) return;
+    std::array<std::array<std::int64_t, 2>, 3> p{uv_grid(uv[0]), uv_grid(uv[1]), uv_grid(uv[2])};
+    const std::int64_t area = twice_area(p[0], p[1], p[2]);
+    if (area == 0) return;
+    if (area < 0) std::swap(p[1], p[2]);
+    // Sides times places stay within 2⁶² where they are products of less than 2⁶⁰ each: a division
+    // of 64 bits takes a third of one of 128.
+    std::int64_t side = 0, far = static_cast<std::int64_t>(kUvGrid);
+    for (int k = 0; k < 3; ++k)
+        for (int axis = 0; axis < 2; ++axis) {
+            side = std::max(side, std::abs(p[(k + 1) % 3][axis] - p[k][axis]));
+            far = std::max(far, std::abs(p[k][axis]));
+        }
+    // A centre and a corner are 4 n far apart at most, and there are two such products.
+    if (side < (std::int64_t{1} << 59) / far / (4 * static_cast<std::int64_t>(size) + 4))
+        raster_rows_in<std::int64_t>(p, size, run);
+    else
+        raster_rows_in<__int128>(p, size, run);
 }
 
 }  // namespace tuft::atlas
