@@ -74,8 +74,9 @@ TEST(SeamPaths, CornersMoveToWhereSeamsAreShortest) {
     const ThreeCharts sheet;
     for (const Corners corners : {Corners::stay, Corners::move}) {
         SeamPaths paths(sheet.patch, sheet.seam);
+        PathSearch search(sheet.patch);
         for (int round = 0; round < 20; ++round) {
-            const SeamMove move = paths.shorten(sheet.slanting(paths), 0.25f, corners);
+            const SeamMove move = paths.shorten(sheet.slanting(paths), 0.25f, corners, search);
             if (move.path.empty()) break;
             EXPECT_NEAR(move.saved, sheet.length(move.chain) - sheet.length(move.path), 1e-5);
             paths.move(move);
@@ -94,8 +95,9 @@ TEST(SeamPaths, CornersMoveToWhereSeamsAreShortest) {
 TEST(SeamPaths, MovesCanBeTakenBack) {
     const ThreeCharts sheet;
     SeamPaths paths(sheet.patch, sheet.seam);
+    PathSearch search(sheet.patch);
     const std::vector<std::uint32_t> charts = paths.charts();
-    SeamMove move = paths.shorten(sheet.slanting(paths), 0.25f, Corners::move);
+    SeamMove move = paths.shorten(sheet.slanting(paths), 0.25f, Corners::move, search);
     ASSERT_FALSE(move.path.empty());
     std::vector<std::uint32_t> swept[2];
     paths.move(move, swept);
@@ -113,8 +115,7 @@ double seam_length(const mesh::TriangleMesh& m, const CutMesh& cut) {
     double sum = 0;
     for (std::uint32_t h = 0; h < cut.twin.size(); ++h)
         if (cut.twin[h] != kNone && cut.glued[h] == kNone)
-            sum += 0.5 * glm::distance(m.position(h / 3, h % 3),
-                                       m.position(h / 3, (h + 1) % 3));
+            sum += 0.5 * glm::distance(m.position(h / 3, h % 3), m.position(h / 3, (h + 1) % 3));
     return sum;
 }
 

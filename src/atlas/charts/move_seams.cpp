@@ -17,17 +17,17 @@ namespace {
 constexpr int kReaches = 2;
 constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
 constexpr double kLeastSaved = 0.02;  // of a seam's length, for which charts are laid anew
-constexpr int kIterations = 8;         // from where a chart lies, most of it well
-constexpr std::size_t kAround = 5;     // times the triangles taken over, laid anew
+constexpr int kIterations = 8;        // from where a chart lies, most of it well
+constexpr std::size_t kAround = 5;    // times the triangles taken over, laid anew
 constexpr std::size_t kLeastAround = 500;
-constexpr double kLeastValue = 0.05;  // saved, over the unit, for laying all of the mesh anew
+constexpr double kLeastValue = 0.05;     // saved, over the unit, for laying all of the mesh anew
 constexpr double kLeastValueDear = 0.1;  // the same where that takes many seconds
-constexpr double kMostWork = 8;       // triangles laid flat, over those of the mesh
+constexpr double kMostWork = 8;          // triangles laid flat, over those of the mesh
 
 struct Trial {
     SeamMove move;
-    std::array<std::uint32_t, 2> chart{};               // left and right of the chain
-    std::array<std::vector<std::uint32_t>, 2> swept;    // triangles that left each
+    std::array<std::uint32_t, 2> chart{};             // left and right of the chain
+    std::array<std::vector<std::uint32_t>, 2> swept;  // triangles that left each
     std::array<FlatChart, 2> flat;
     Refusals::Change change{};
     bool good = false;
@@ -77,8 +77,7 @@ class Mover {
     }
 
   private:
-    static std::vector<std::uint32_t> chart_of(const mesh::TriangleMesh& mesh,
-                                               const CutMesh& cut) {
+    static std::vector<std::uint32_t> chart_of(const mesh::TriangleMesh& mesh, const CutMesh& cut) {
         std::vector<std::uint32_t> chart(mesh.n_triangles());
         for (std::uint32_t c = 0; c < cut.charts.size(); ++c)
             for (const std::uint32_t t : cut.charts[c].mesh.triangles) chart[t] = c;
@@ -102,38 +101,60 @@ class Mover {
         return newest;
     }
 
+    /// A chain and where it may move to.
+    struct Candidate {
+        Trial trial;
+        std::vector<std::uint32_t> chain;
+        int* refused = nullptr;  // reaches that were tried in vain
+        Refusals::Change around;
+    };
+
+    void search(Candidate& c, PathSearch& search) const {
+        if (const auto known = found_.find(c.around);
+            known != found_.end() && known->second.refused == *c.refused) {
+            c.trial.move = known->second.move;
+            return;
+        }
+        double length = 0;
+        for (const std::uint32_t g : c.chain) length += patch_.length[g];
+        const double work = double(n_triangles(c.trial)) / double(mesh_.n_triangles());
+        const double least = std::max(kLeastSaved * length, least_value_ * work);
+        for (; *c.refused < kReaches; ++*c.refused) {
+            c.trial.move = paths_.shorten(c.chain, kReach[*c.refused], Corners::move, search);
+            if (c.trial.move.saved > least) break;
+        }
+    }
+
     /// Moves of disjoint pairs of charts, those that save most first.
     std::vector<Trial> next_trials() {
-        std::vector<Trial> all;
-        // A path found before is still the shortest while the charts beside it and all around them are
-        // as they were.
+        // A path found before is still the shortest while the charts beside it and all around them
+        // are as they were.
         const std::vector<std::uint32_t> newest = newest_versions();
-        std::map<Refusals::Change, Found> found;
+        std::vector<Candidate> candidates;
         std::vector<std::uint8_t> seen(paths_.seams().size(), 0);
         for (std::uint32_t h = 0; h < seen.size(); ++h) {
             if (seen[h] || !paths_.starts_chain(h)) continue;
-            std::vector<std::uint32_t> chain = paths_.chain_from(h);
-            for (const std::uint32_t g : chain) seen[g] = seen[patch_.twin[g]] = 1;
-            Trial t;
-            t.chart = {paths_.charts()[h / 3], paths_.charts()[patch_.twin[h] / 3]};
-            double length = 0;
-            for (const std::uint32_t g : chain) length += patch_.length[g];
-            const double work = double(n_triangles(t)) / double(mesh_.n_triangles());
-            const double least = std::max(kLeastSaved * length, least_value_ * work);
-            t.change = {h, cut_.charts[t.chart[0]].version, cut_.charts[t.chart[1]].version};
-            int& refused = cut_.refused.moved[t.change];
-            const Refusals::Change around{h, newest[t.chart[0]], newest[t.chart[1]]};
-            if (const auto known = found_.find(around); known != found_.end() && known->second.refused == refused) {
-                t.move = known->second.move;
-            } else {
-                for (; refused < kReaches; ++refused) {
-                    t.move = paths_.shorten(chain, kReach[refused], Corners::move);
-                    if (t.move.saved > least) break;
-                }
-            }
-            if (refused == kReaches) continue;
-            found[around] = {refused, t.move};
-            all.push_back(std::move(t));
+            Candidate c;
+            c.chain = paths_.chain_from(h);
+            for (const std::uint32_t g : c.chain) seen[g] = seen[patch_.twin[g]] = 1;
+            c.trial.chart = {paths_.charts()[h / 3], paths_.charts()[patch_.twin[h] / 3]};
+            c.trial.change = {h, cut_.charts[c.trial.chart[0]].version,
+                              cut_.charts[c.trial.chart[1]].version};
+            c.refused = &cut_.refused.moved[c.trial.change];
+            c.around = {h, newest[c.trial.chart[0]], newest[c.trial.chart[1]]};
+            candidates.push_back(std::move(c));
+        }
+        while (searches_.size() < static_cast<std::size_t>(thread_count()))
+            searches_.emplace_back(patch_);
+        run_tasks_by_worker(candidates.size(), [&](std::size_t i, std::size_t worker) {
+            search(candidates[i], searches_[worker]);
+        });
+        std::map<Refusals::Change, Found> found;
+        std::vector<Trial> all;
+        for (Candidate& c : candidates) {
+            if (*c.refused == kReaches) continue;
+            found[c.around] = {*c.refused, c.trial.move};
+            all.push_back(std::move(c.trial));
         }
         found_ = std::move(found);
         std::stable_sort(all.begin(), all.end(), [](const Trial& a, const Trial& b) {
@@ -171,8 +192,8 @@ class Mover {
         return come;
     }
 
-    /// Where both sides of the chain are one chart: the triangles between where the seam was and where
-    /// it is, which are all but the largest of the parts that the two leave.
+    /// Where both sides of the chain are one chart: the triangles between where the seam was and
+    /// where it is, which are all but the largest of the parts that the two leave.
     std::vector<std::uint32_t> change_sides(const Trial& t) const {
         const std::vector<std::uint32_t>& own = cut_.charts[t.chart[0]].mesh.triangles;
         std::vector<std::uint32_t> chain(t.move.chain);
@@ -200,12 +221,14 @@ class Mover {
     }
 
     /// The triangles of one of the charts after the move, of which it has taken some over.
-    std::vector<std::uint32_t> triangles_after(const Trial& t, int side, const std::vector<std::uint32_t>& come) const {
+    std::vector<std::uint32_t> triangles_after(const Trial& t, int side,
+                                               const std::vector<std::uint32_t>& come) const {
         const std::vector<std::uint32_t>& own = cut_.charts[t.chart[side]].mesh.triangles;
         if (t.n_charts() == 1) return own;
         std::vector<std::uint32_t> kept, gone = t.swept[side];
         std::sort(gone.begin(), gone.end());
-        std::set_difference(own.begin(), own.end(), gone.begin(), gone.end(), std::back_inserter(kept));
+        std::set_difference(own.begin(), own.end(), gone.begin(), gone.end(),
+                            std::back_inserter(kept));
         std::vector<std::uint32_t> after(kept.size() + come.size());
         std::merge(kept.begin(), kept.end(), come.begin(), come.end(), after.begin());
         return kept.empty() ? kept : after;
@@ -213,7 +236,8 @@ class Mover {
 
     /// Faces of a chart that are laid anew after it took some over: those and as many again around
     /// them, `kAround` times. None where that is most of the chart, which is all of it.
-    static std::vector<std::uint32_t> around(const ChartMesh& chart, const std::vector<std::uint32_t>& come) {
+    static std::vector<std::uint32_t> around(const ChartMesh& chart,
+                                             const std::vector<std::uint32_t>& come) {
         const std::size_t wanted = std::max(kAround * come.size(), kLeastAround);
         if (2 * wanted > chart.faces.size()) return {};
         std::vector<std::uint8_t> seen(chart.faces.size(), 0);
@@ -223,7 +247,8 @@ class Mover {
         };
         for (std::size_t f = 0, k = 0; f < chart.faces.size(); ++f) {
             while (k < come.size() && come[k] < chart.triangles[f]) ++k;
-            if (k < come.size() && come[k] == chart.triangles[f]) add(static_cast<std::uint32_t>(f));
+            if (k < come.size() && come[k] == chart.triangles[f])
+                add(static_cast<std::uint32_t>(f));
         }
         for (std::size_t i = 0; i < faces.size() && faces.size() < wanted; ++i)
             for (std::uint32_t h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
@@ -241,12 +266,14 @@ class Mover {
         flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         if (!flat.mesh.disk) return false;
         const bool large = flat.mesh.faces.size() > kLargeChart;
-        flat.uv = large ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh) : unfold_uvs(old, flat.mesh);
+        flat.uv = large ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh)
+                        : unfold_uvs(old, flat.mesh);
         // A large chart that only gave triangles away is left as it lies, no less flat than before.
         if (!large || !come.empty()) {
             ArapOptions trial = trial_arap(options_);
             trial.iterations = kIterations;
-            arap(flat.mesh, flat.uv, trial, large ? around(flat.mesh, come) : std::vector<std::uint32_t>{});
+            arap(flat.mesh, flat.uv, trial,
+                 large ? around(flat.mesh, come) : std::vector<std::uint32_t>{});
         }
         scale_to_area(flat.mesh, flat.uv);
         const FlatCheck check = check_flat(flat.mesh, flat.uv, options_.gap);
@@ -257,8 +284,7 @@ class Mover {
         flat.l2 = check.l2;
         if (flat.mesh.area > old.mesh.area && flat.mesh.area > options_.grown) return false;
         const double length = smallest_rectangle(chart_hull(flat)).length;
-        return length <= options_.longest ||
-               length <= smallest_rectangle(chart_hull(old)).length;
+        return length <= options_.longest || length <= smallest_rectangle(chart_hull(old)).length;
     }
 
     void conclude(Trial& t) {
@@ -290,6 +316,7 @@ class Mover {
     StretchBudget budget_;
     Patch patch_;
     SeamPaths paths_;
+    std::vector<PathSearch> searches_;  // of each thread
 
     struct Found {
         int refused = 0;  // how often before

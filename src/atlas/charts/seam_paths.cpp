@@ -39,12 +39,7 @@ SeamPaths::SeamPaths(const Patch& patch, std::vector<std::uint8_t> seam,
       weight_(seam_.size(), 0),
       degree_(patch.n_vertices, 0),
       border_(patch.n_vertices, 0),
-      corner_(patch.n_vertices, 0),
-      band_(patch.n_vertices, kFar),
-      distance_(patch.n_vertices, kFar),
-      weight_from_(patch.n_vertices, kNone),
-      start_(patch.n_vertices, 0),
-      goal_(seam_.size(), 0) {
+      corner_(patch.n_vertices, 0) {
     for (std::uint32_t h = 0; h < seam_.size(); ++h) {
         const std::uint32_t a = origin(h), b = end(h);
         const std::uint32_t g = patch.twin[h];
@@ -117,12 +112,13 @@ void SeamPaths::slide(std::uint32_t h, float reach, std::vector<std::uint32_t>& 
 }
 
 /// Marks inner vertices within `reach` of the chain.
-void SeamPaths::mark_band(const std::vector<std::uint32_t>& chain, float reach) {
+void SeamPaths::mark_band(const std::vector<std::uint32_t>& chain, float reach,
+                          PathSearch& s) const {
     Queue queue;
     const auto offer = [&](std::uint32_t v, float d, std::uint32_t h) {
-        if (d >= band_[v] || d > reach) return;
-        if (band_[v] == kFar) marked_.push_back(v);
-        band_[v] = d;
+        if (d >= s.band_[v] || d > reach) return;
+        if (s.band_[v] == kFar) s.marked_.push_back(v);
+        s.band_[v] = d;
         queue.push({d, v, h});
     };
     const auto offer_ends = [&](std::uint32_t h, float d) {
@@ -130,18 +126,19 @@ void SeamPaths::mark_band(const std::vector<std::uint32_t>& chain, float reach) 
         if (!border_[v] && degree_[v] == 0) offer(v, d + patch_.length[h], patch_.twin[h]);
     };
     for (std::size_t i = 1; i < chain.size(); ++i) offer(origin(chain[i]), 0, chain[i]);
-    for (const auto* ends : {&starts_, &goals_})
+    for (const auto* ends : {&s.starts_, &s.goals_})
         for (const std::uint32_t h : *ends)
             if (!seam_[h]) offer_ends(h, 0);
     while (!queue.empty()) {
         const Entry top = queue.top();
         queue.pop();
-        if (top.distance > band_[top.vertex]) continue;
+        if (top.distance > s.band_[top.vertex]) continue;
         around(patch_, top.half, [&](std::uint32_t h) { offer_ends(h, top.distance); });
     }
 }
 
-SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corners corners) {
+SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corners corners,
+                            PathSearch& s) const {
     SeamMove move;
     move.chain = std::move(chain);
     if (origin(move.chain.front()) == end(move.chain.back())) return move;
@@ -152,16 +149,16 @@ SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corne
     }
     // Only edges inside the two charts may leave and enter the ends.
     const std::uint32_t first = move.chain.front(), back = patch_.twin[move.chain.back()];
-    starts_ = wedge(first);
-    goals_ = wedge(back);
+    s.starts_ = wedge(first);
+    s.goals_ = wedge(back);
     if (corners == Corners::move) {
-        slide(first, reach * length, starts_);
-        slide(back, reach * length, goals_);
+        slide(first, reach * length, s.starts_);
+        slide(back, reach * length, s.goals_);
     }
-    for (const std::uint32_t h : starts_) start_[origin(h)] = 1;
-    std::erase_if(goals_, [&](std::uint32_t h) { return start_[origin(h)] != 0; });
-    for (const std::uint32_t h : goals_) goal_[h] = 1;
-    mark_band(move.chain, reach * length);
+    for (const std::uint32_t h : s.starts_) s.start_[origin(h)] = 1;
+    std::erase_if(s.goals_, [&](std::uint32_t h) { return s.start_[origin(h)] != 0; });
+    for (const std::uint32_t h : s.goals_) s.goal_[h] = 1;
+    mark_band(move.chain, reach * length, s);
 
     Queue queue;
     std::uint32_t last = kNone;  // half-edge into a goal
@@ -169,39 +166,39 @@ SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corne
     const auto offer = [&](std::uint32_t h, float d) {
         const std::uint32_t v = end(h);
         if (d >= best) return;
-        if (goal_[patch_.twin[h]]) {
+        if (s.goal_[patch_.twin[h]]) {
             best = d;
             last = h;
             return;
         }
-        if (band_[v] == kFar || d >= distance_[v]) return;
-        if (distance_[v] == kFar) touched_.push_back(v);
-        distance_[v] = d;
-        weight_from_[v] = h;
+        if (s.band_[v] == kFar || d >= s.distance_[v]) return;
+        if (s.distance_[v] == kFar) s.touched_.push_back(v);
+        s.distance_[v] = d;
+        s.weight_from_[v] = h;
         queue.push({d, v, h});
     };
-    for (const std::uint32_t h : starts_) offer(h, weight_[h]);
+    for (const std::uint32_t h : s.starts_) offer(h, weight_[h]);
     while (!queue.empty()) {
         const Entry top = queue.top();
         queue.pop();
         if (top.distance >= best) break;
-        if (top.distance > distance_[top.vertex]) continue;
+        if (top.distance > s.distance_[top.vertex]) continue;
         around(patch_, patch_.twin[top.half],
                [&](std::uint32_t h) { offer(h, top.distance + weight_[h]); });
     }
     if (last != kNone) {
         move.saved = now - best;
         move.path.assign(1, last);
-        while (!start_[origin(move.path.back())])
-            move.path.push_back(weight_from_[origin(move.path.back())]);
+        while (!s.start_[origin(move.path.back())])
+            move.path.push_back(s.weight_from_[origin(move.path.back())]);
         std::reverse(move.path.begin(), move.path.end());
     }
-    for (const std::uint32_t v : touched_) distance_[v] = kFar;
-    for (const std::uint32_t v : marked_) band_[v] = kFar;
-    for (const std::uint32_t h : starts_) start_[origin(h)] = 0;
-    for (const std::uint32_t h : goals_) goal_[h] = 0;
-    touched_.clear();
-    marked_.clear();
+    for (const std::uint32_t v : s.touched_) s.distance_[v] = kFar;
+    for (const std::uint32_t v : s.marked_) s.band_[v] = kFar;
+    for (const std::uint32_t h : s.starts_) s.start_[origin(h)] = 0;
+    for (const std::uint32_t h : s.goals_) s.goal_[h] = 0;
+    s.touched_.clear();
+    s.marked_.clear();
     return move;
 }
 
@@ -211,8 +208,7 @@ void SeamPaths::set_seam(std::uint32_t h, bool on) {
 }
 
 /// Gives `start` and what hangs together with it to a chart.
-void SeamPaths::sweep(std::uint32_t start, std::uint32_t chart,
-                      std::vector<std::uint32_t>* swept) {
+void SeamPaths::sweep(std::uint32_t start, std::uint32_t chart, std::vector<std::uint32_t>* swept) {
     if (chart_[start] == chart) return;
     chart_[start] = chart;
     queue_.assign(1, start);

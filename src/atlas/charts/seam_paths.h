@@ -21,6 +21,27 @@ struct SeamMove {
 /// Whether a new path may leave from places other than the ends of the chain.
 enum class Corners { stay, move };
 
+/// What the search for a path needs, as it is between two of them: one for each thread that
+/// searches.
+class PathSearch {
+  public:
+    explicit PathSearch(const Patch& patch)
+        : band_(patch.n_vertices, kFar),
+          distance_(patch.n_vertices, kFar),
+          weight_from_(patch.n_vertices, kNone),
+          start_(patch.n_vertices, 0),
+          goal_(patch.twin.size(), 0) {}
+
+  private:
+    friend class SeamPaths;
+    static constexpr float kFar = std::numeric_limits<float>::infinity();
+    std::vector<float> band_, distance_;         // by vertex
+    std::vector<std::uint32_t> weight_from_;     // by vertex
+    std::vector<std::uint8_t> start_, goal_;     // by vertex, by half-edge
+    std::vector<std::uint32_t> starts_, goals_;  // half-edges that leave them
+    std::vector<std::uint32_t> marked_, touched_;
+};
+
 /// Where the seams of a patch run, chain by chain. Corners are places where three or more
 /// seams meet, where one ends, at borders, and at vertices that want a slit.
 ///
@@ -45,14 +66,15 @@ class SeamPaths {
 
     /// The shortest path that stays within `reach` of the chain, over its length. Bent edges
     /// count less, so that seams keep to creases. `path` is empty where none is shorter.
-    SeamMove shorten(std::vector<std::uint32_t> chain, float reach, Corners corners);
+    SeamMove shorten(std::vector<std::uint32_t> chain, float reach, Corners corners,
+                     PathSearch& search) const;
 
     /// Moves a seam; the triangles that change from the chart on its left to the other one and
     /// back are added to `swept`, for each of the two.
     void move(const SeamMove& move, std::vector<std::uint32_t>* swept = nullptr);
 
   private:
-    static constexpr float kFar = std::numeric_limits<float>::infinity();
+    static constexpr float kFar = PathSearch::kFar;
     struct Entry {
         float distance;
         std::uint32_t vertex, half;  // a half-edge that leaves (band) or reaches (path) the vertex
@@ -68,7 +90,7 @@ class SeamPaths {
     std::uint32_t onward(std::uint32_t h) const;
     std::vector<std::uint32_t> wedge(std::uint32_t h) const;
     void slide(std::uint32_t h, float reach, std::vector<std::uint32_t>& starts) const;
-    void mark_band(const std::vector<std::uint32_t>& chain, float reach);
+    void mark_band(const std::vector<std::uint32_t>& chain, float reach, PathSearch& search) const;
     void set_seam(std::uint32_t h, bool on);
     void sweep(std::uint32_t start, std::uint32_t chart, std::vector<std::uint32_t>* swept);
 
@@ -78,12 +100,7 @@ class SeamPaths {
     std::vector<float> weight_;                  // of edges, by half-edge
     std::vector<std::uint32_t> degree_;          // of vertices, borders included
     std::vector<std::uint8_t> border_, corner_;  // of vertices
-    // What a search needs, as it was between two of them.
-    std::vector<float> band_, distance_;         // by vertex
-    std::vector<std::uint32_t> weight_from_;     // by vertex
-    std::vector<std::uint8_t> start_, goal_;     // by vertex, by half-edge
-    std::vector<std::uint32_t> starts_, goals_;  // half-edges that leave them
-    std::vector<std::uint32_t> marked_, touched_, queue_;
+    std::vector<std::uint32_t> queue_;
 };
 
 }  // namespace tuft::atlas

@@ -12,6 +12,7 @@ constexpr float kReach = 0.25f;  // how far a seam may leave its chain, over the
 
 void straighten_seams(const Patch& patch, std::vector<std::uint8_t>& seam) {
     SeamPaths paths(patch, std::move(seam));
+    PathSearch search(patch);
     for (int round = 0; round < kRounds; ++round) {
         std::vector<std::uint8_t> seen(paths.seams().size(), 0);
         const auto see = [&](const std::vector<std::uint32_t>& halves) {
@@ -21,7 +22,7 @@ void straighten_seams(const Patch& patch, std::vector<std::uint8_t>& seam) {
             if (seen[h] || !paths.starts_chain(h)) continue;
             std::vector<std::uint32_t> chain = paths.chain_from(h);
             see(chain);
-            const SeamMove move = paths.shorten(std::move(chain), kReach, Corners::stay);
+            const SeamMove move = paths.shorten(std::move(chain), kReach, Corners::stay, search);
             if (move.path.empty()) continue;
             paths.move(move);
             see(move.path);
