@@ -3,6 +3,7 @@
 
 #include "brush/rod_energy.h"
 #include "brush/rod_law.h"
+#include "brush/rod_points.h"
 
 namespace tuft::brush::rod {
 
@@ -83,19 +84,24 @@ Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const
     return out;
 }
 
-bool all_clear(const Frozen& frozen, int p, const Evaluation& at) {
+bool all_clear(const Frozen& frozen, int k, const Evaluation& at) {
     const Law& law = *frozen.law;
-    const int j = p / law.points_per_segment;
-    if (law.points_per_segment < 3 || law.hard) return false;
-    for (int q = p - 1; q < p + law.points_per_segment; ++q) {
-        if (frozen.crease[q].share > 0) return false;
+    const int per = law.points_per_segment, n = frozen.rod->segments();
+    if (per < 3 || law.hard) return false;
+    const PointRange range = points_of(k, per, n);
+    double reach = 0;
+    for (int p = range.begin; p < range.end; ++p) {
+        if (frozen.crease[p].share > 0) return false;
+        reach = std::max(reach, frozen.obstacles[p].radius);
     }
-    // A point's plane lies between its neighbours' planes, which are of one surface here.
-    const Obstacle &first = frozen.obstacles[p], &last = frozen.obstacles[p + law.points_per_segment - 2];
-    const double reach = law.adhesion_range + std::max(first.radius, last.radius);
-    for (const Obstacle* o : {&first, &last}) {
-        for (int i = j; i <= j + 1; ++i) {
-            if (glm::dot(at.node[i] - o->origin, o->normal) < 1.5 * reach) return false;
+    reach = 1.5 * (reach + law.adhesion_range);
+    // The hair lies between its nodes, and a point's plane between its neighbours' planes, which are of one
+    // surface here.
+    const Stencil& stencil = frozen.stencil[range.begin];
+    for (const int p : {range.begin, std::clamp(per * k, range.begin, range.end - 1), range.end - 1}) {
+        const Obstacle& o = frozen.obstacles[p];
+        for (int i = stencil.first; i < stencil.first + stencil.count; ++i) {
+            if (glm::dot(at.node[i] - o.origin, o.normal) < reach) return false;
         }
     }
     return true;
@@ -103,10 +109,22 @@ bool all_clear(const Frozen& frozen, int p, const Evaluation& at) {
 
 namespace {
 
-/// Part of a contact point's length of hair over a crease, on segment j at share s of it.
+/// Adds curvature · f(k, l) to the second derivatives over nodes k and l of a stencil.
+template <class F>
+void add_curvature(const Stencil& at, const Sym3& curvature, Evaluation& out, const F& f) {
+    for (int k = 0; k < at.count; ++k) out.curvature[at.first + k] += f(k, k) * curvature;
+    for (int k = 0; k + 1 < at.count; ++k) out.coupling[at.first + k] += f(k, k + 1) * curvature;
+    if (at.count > 2) out.across[at.first] += f(0, 2) * curvature;
+}
+
+void add_slope(const Stencil& at, const double* w, const Vec3& slope, Evaluation& out) {
+    for (int k = 0; k < at.count; ++k) out.slope[at.first + k] += w[k] * slope;
+}
+
+/// Part of a contact point's length of hair over a crease.
 struct Piece {
-    int j = 0;
-    double s = 0, weight = 0, radius = 0, give = 0;
+    Stencil at;
+    double weight = 0, radius = 0, give = 0;
 };
 
 /// Hair over a crease, moved back along itself by `s` to where it stands.
@@ -169,9 +187,9 @@ Standing stand_back(const Law& law, const Crease& crease, const Obstacle& o, con
 
 /// Adds the potential of a piece over an edge where it stands. With i the direction inwards, y = x + s i
 /// and ψ(y) the contact's: E = s²/(2 give) + ψ, E_x = ψ', E_i = s ψ'.
-double add_piece(const Frozen& frozen, int p, const Piece& piece, const Standing& st, Evaluation& out) {
-    const double length = frozen.rod->length[piece.j];
-    const Vec3 inwards = (out.node[piece.j] - out.node[piece.j + 1]) / length;
+double add_piece(int p, const Piece& piece, const Standing& st, Evaluation& out) {
+    const Stencil& at = piece.at;
+    const Vec3 inwards = at.inwards(out.node);
     const double force = st.push.force - st.pull.force;
     if (force == 0) return 0;
     const Vec3& n = st.at_surface.slope;
@@ -179,7 +197,6 @@ double add_piece(const Frozen& frozen, int p, const Piece& piece, const Standing
     Sym3 xx = (st.push.stiffness + st.pull.stiffness) * outer(n);
     xx += -force * st.at_surface.bend * outer(st.at_surface.across);
     out.normal[p] += st.push.force;
-    const double w[2] = {1 - piece.s, piece.s}, v = 1 / length;
     double energy = st.push.energy + st.pull.energy;
     if (st.s > 0) {
         energy += st.s * st.s / (2 * piece.give);
@@ -188,17 +205,12 @@ double add_piece(const Frozen& frozen, int p, const Piece& piece, const Standing
         const Sym3 ii = st.s * st.s * xx + -1 / total * outer(b);
         const Sym3 mixed = 2 * st.s * xx + -2 / total * symmetric(ci, b);
         xx += -1 / total * outer(ci);
-        out.slope[piece.j] += v * st.s * slope;
-        out.slope[piece.j + 1] -= v * st.s * slope;
-        out.curvature[piece.j] += w[0] * v * mixed + v * v * ii;
-        out.curvature[piece.j + 1] += v * v * ii + -w[1] * v * mixed;
-        out.coupling[piece.j] += 0.5 * v * (w[1] - w[0]) * mixed + -v * v * ii;
+        add_slope(at, at.d, st.s * slope, out);
+        add_curvature(at, mixed, out, [&](int k, int l) { return 0.5 * (at.w[k] * at.d[l] + at.d[k] * at.w[l]); });
+        add_curvature(at, ii, out, [&](int k, int l) { return at.d[k] * at.d[l]; });
     }
-    out.slope[piece.j] += w[0] * slope;
-    out.slope[piece.j + 1] += w[1] * slope;
-    out.curvature[piece.j] += w[0] * w[0] * xx;
-    out.curvature[piece.j + 1] += w[1] * w[1] * xx;
-    out.coupling[piece.j] += w[0] * w[1] * xx;
+    add_slope(at, at.w, slope, out);
+    add_curvature(at, xx, out, [&](int k, int l) { return at.w[k] * at.w[l]; });
     return energy;
 }
 
@@ -219,15 +231,13 @@ void for_pieces(const Frozen& frozen, int p, const std::vector<Vec3>& node, cons
         const int first = offset < 0 ? p - 1 : p;
         if (first < 0 || first >= per * n) continue;
         Piece piece;
-        piece.j = first / per;
-        piece.s = (p + offset) / per - piece.j;
-        piece.weight = frozen.rod->length[piece.j] / (per * kPieces);
+        const int j = first / per;
+        piece.at = stencil_at(*frozen.rod, rounded(*frozen.law), j, (p + offset) / per - j);
+        piece.weight = frozen.rod->length[j] / (per * kPieces);
         const Obstacle &o = frozen.obstacles[p], &other = frozen.obstacles[offset < 0 ? p - 1 : p + 1];
         piece.radius = o.radius + std::abs(offset) * (other.radius - o.radius);
         piece.give = frozen.give[p] * frozen.weight[p] / piece.weight;
-        const Vec3 &from = node[piece.j], &to = node[piece.j + 1];
-        const Vec3 x = (1 - piece.s) * from + piece.s * to;
-        f(piece, stand_back(*frozen.law, frozen.crease[p], o, piece, x, (from - to) / frozen.rod->length[piece.j]));
+        f(piece, stand_back(*frozen.law, frozen.crease[p], o, piece, piece.at.at(node), piece.at.inwards(node)));
     }
 }
 
@@ -236,27 +246,22 @@ void for_pieces(const Frozen& frozen, int p, const std::vector<Vec3>& node, cons
 double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     const Law& law = *frozen.law;
     const Obstacle& o = frozen.obstacles[p];
-    const PointPlace& at = frozen.place[p];
-    const Vec3 x = (1 - at.s) * out.node[at.node] + at.s * out.node[at.node + 1];
+    const Stencil& at = frozen.stencil[p];
+    const Vec3 x = at.at(out.node);
     const Distance at_surface = distance_of(o, frozen.crease[p], law.edge, x);
     const double depth = o.radius - at_surface.z;
-    const double length = frozen.rod->length[at.node];
-    const double reach = law.adhesion_range + (over_edge(frozen, p) ? length / law.points_per_segment : 0);
+    const double length = frozen.rod->length[frozen.place[p].node] / law.points_per_segment;
+    const double reach = law.adhesion_range + (over_edge(frozen, p) ? length : 0);
     if (depth <= -reach && !law.hard) return 0;
     const Vec3& n = at_surface.slope;
-    const double inner = 1 - at.s;
     const auto add = [&](const Vec3& slope, const Sym3& curvature) {
-        out.slope[at.node] += inner * slope;
-        out.slope[at.node + 1] += at.s * slope;
-        out.curvature[at.node] += inner * inner * curvature;
-        out.curvature[at.node + 1] += at.s * at.s * curvature;
-        if (at.s > 0 && at.s < 1) out.coupling[at.node] += at.s * inner * curvature;
+        add_slope(at, at.w, slope, out);
+        add_curvature(at, curvature, out, [&](int k, int l) { return at.w[k] * at.w[l]; });
     };
-    const Vec3 inwards = (out.node[at.node] - out.node[at.node + 1]) / length;
     if (over_edge(frozen, p)) {
         double energy = 0;
         for_pieces(frozen, p, out.node, [&](const Piece& piece, const Standing& standing) {
-            energy += add_piece(frozen, p, piece, standing, out);
+            energy += add_piece(p, piece, standing, out);
         });
         out.contact += energy;
         Vec3 slope{0};
@@ -265,7 +270,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
         add(slope, curvature);
         return energy;
     }
-    const double c = glm::dot(inwards, n);
+    const double c = glm::dot(at.inwards(out.node), n);
     EndOn f;
     if (depth > 0 && c > 0 && frozen.give[p] > 0 && frozen.crease[p].share <= 0) {
         f = end_on(law, frozen.weight[p], o.radius, depth, c, frozen.give[p]);
@@ -286,14 +291,10 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     add_friction(frozen.friction[p], frozen.friction[p].normal, x, energy, slope, curvature);
     add(slope, curvature);
     if (f.c != 0) {
-        // c turns with the difference of the two nodes, the indentation with their mean.
-        const Sym3 nn = outer(n);
-        const double dc = f.dc / length, cc = f.cc / (length * length);
-        out.slope[at.node] += f.c / length * n;
-        out.slope[at.node + 1] -= f.c / length * n;
-        out.curvature[at.node] += (cc - 2 * inner * dc) * nn;
-        out.curvature[at.node + 1] += (cc + 2 * at.s * dc) * nn;
-        out.coupling[at.node] += ((inner - at.s) * dc - cc) * nn;
+        add_slope(at, at.d, f.c * n, out);
+        add_curvature(at, outer(n), out, [&](int k, int l) {
+            return f.cc * at.d[k] * at.d[l] - f.dc * (at.w[k] * at.d[l] + at.d[k] * at.w[l]);
+        });
     }
     return energy;
 }
@@ -301,8 +302,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
 Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node) {
     const Obstacle& o = frozen.obstacles[p];
     if (frozen.crease[p].share <= 0) return {o.origin, o.normal, o.radius};
-    const PointPlace& at = frozen.place[p];
-    const Vec3 x = (1 - at.s) * node[at.node] + at.s * node[at.node + 1];
+    const Vec3 x = frozen.stencil[p].at(node);
     const Distance d = distance_of(o, frozen.crease[p], frozen.law->edge, x);
     const double size = glm::length(d.slope);
     const Vec3 n = size > 1e-6 ? d.slope / size : o.normal;

@@ -171,13 +171,18 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
         gain.rest[0] = i00 * g[0] + i10 * g[1];
         gain.rest[1] = i10 * g[0] + i11 * g[1];
         if (j == 0) break;
-        const Sym3& coupling = at.coupling[j];
+        // The node before x_j moves by x less the steps there, v: V_{j-1,j+1} couples those to x and to u.
+        const Sym3& far = at.across[j - 1];
+        const Sym3 coupling = at.coupling[j] + far;
+        const double before = rod.length[j - 1];
+        const Vec3 far_arm[2] = {before * (far * shape.side[j - 1]), before * (far * d.second[j - 1])};
         const Vec3 x0 = pa[0] + big_q[0] + coupling * arm[0],
                    x1 = pa[1] + big_q[1] + coupling * arm[1];
         gain.move[0] = i00 * x0 + i10 * x1;
         gain.move[1] = i10 * x0 + i11 * x1;
-        const Mat2& in = d.segment[j].inboard;
+        Mat2 in = d.segment[j].inboard;
         for (int i = 0; i < 2; ++i) {
+            for (int k = 0; k < 2; ++k) in.m[i][k] -= glm::dot(far_arm[i], arm[k]);
             gain.inner.m[0][i] = i00 * in.m[i][0] + i10 * in.m[i][1];
             gain.inner.m[1][i] = i10 * in.m[i][0] + i11 * in.m[i][1];
         }
@@ -185,7 +190,7 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
         big_p += -1.0 * (symmetric(x0, gain.move[0]) + symmetric(x1, gain.move[1]));
         p -= gain.rest[0] * x0 + gain.rest[1] * x1;
         for (int i = 0; i < 2; ++i) {
-            big_q[i] = -(in.m[i][0] * gain.move[0] + in.m[i][1] * gain.move[1]);
+            big_q[i] = -far_arm[i] - (in.m[i][0] * gain.move[0] + in.m[i][1] * gain.move[1]);
             r[i] = -(in.m[i][0] * gain.rest[0] + in.m[i][1] * gain.rest[1]);
             for (int k = 0; k <= i; ++k) {
                 big_r.m[i][k] =
@@ -221,20 +226,21 @@ void fill_hessian(const Rod& rod, const Shape& shape, const Evaluation& at, cons
     Sym3 stiffness;
     for (int b = n - 1; b >= 0; --b) {
         stiffness += at.curvature[b + 1];
-        if (b + 1 < n) stiffness += 2 * at.coupling[b + 1];
-        // Segments inboard of b also move the node at its inner end.
-        const Sym3 inboard = stiffness + at.coupling[b];
+        if (b + 1 < n) stiffness += 2 * (at.coupling[b + 1] + at.across[b + 1]);
+        // Segments inboard of b also move the node at its inner end, and all but the next the one before it.
+        const Sym3 next = stiffness + at.coupling[b] + at.across[b], further = b > 0 ? next + at.across[b - 1] : next;
         const double lb = rod.length[b];
         const Vec3 tb[2] = {shape.side[b], d.second[b]};
         for (int k = 0; k < 2; ++k) {
-            const Vec3 own = lb * lb * (stiffness * tb[k]), y = lb * (inboard * tb[k]);
+            const Vec3 own = lb * lb * (stiffness * tb[k]), near = lb * (next * tb[k]), y = lb * (further * tb[k]);
             for (int i = 0; i < 2; ++i) {
                 h(2 * b + k, 2 * b + i) += d.segment[b].own.m[k][i] + glm::dot(tb[i], own);
                 if (b > 0) h(2 * b + k, 2 * (b - 1) + i) += d.segment[b].inboard.m[i][k];
             }
             for (int c = 0; c < b; ++c) {
-                h(2 * b + k, 2 * c) += rod.length[c] * glm::dot(shape.side[c], y);
-                h(2 * b + k, 2 * c + 1) += rod.length[c] * glm::dot(d.second[c], y);
+                const Vec3& from = c + 1 == b ? near : y;
+                h(2 * b + k, 2 * c) += rod.length[c] * glm::dot(shape.side[c], from);
+                h(2 * b + k, 2 * c + 1) += rod.length[c] * glm::dot(d.second[c], from);
             }
         }
     }

@@ -241,14 +241,13 @@ double add_contacts(const Frozen& frozen, bool derivatives, Evaluation& out) {
     if (frozen.obstacles.empty()) return 0;
     const int per = frozen.law->points_per_segment;
     double value = 0;
-    for (int j = 0; j < frozen.rod->segments(); ++j) {
-        if (frozen.patch[j].flat) {
-            value += add_patch(frozen, j, derivatives, out);
-            continue;
+    for (int k = 0; k <= frozen.rod->segments(); ++k) {
+        if (frozen.patch[k].flat) {
+            value += add_patch(frozen, k, derivatives, out);
+        } else if (!all_clear(frozen, k, out)) {
+            const PointRange range = points_of(k, per, frozen.rod->segments());
+            for (int p = range.begin; p < range.end; ++p) value += add_contact(frozen, p, out);
         }
-        int p = per * j + 1;
-        if (all_clear(frozen, p, out)) p += per - 1;
-        for (; p <= per * (j + 1); ++p) value += add_contact(frozen, p, out);
     }
     return value;
 }
@@ -260,6 +259,7 @@ double value_of(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     out.slope.resize(n + 1);
     out.curvature.resize(n + 1);
     out.coupling.resize(n);
+    out.across.resize(n);
     out.normal.resize(frozen.obstacles.size());
     const double joints = add_joints(frozen, shape, out);
     return joints + add_contacts(frozen, false, out);
@@ -270,6 +270,7 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     out.slope.assign(n + 1, Vec3{0});
     out.curvature.assign(n + 1, Sym3{});
     out.coupling.assign(n, Sym3{});
+    out.across.assign(n, Sym3{});
     out.normal.assign(frozen.obstacles.size(), 0.0);
     out.contact = 0;
     const double joints = add_joints(frozen, shape, out);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "brush/rod.h"
@@ -16,6 +17,32 @@ struct PointPlace {
     int node = 0;
     double s = 0;
 };
+
+/// A place of the hair among the nodes, x = Σ w_k x_{first+k}, and the hair's direction there towards the
+/// root, Σ d_k x_{first+k}.
+struct Stencil {
+    int first = 0, count = 0;
+    double w[3] = {0, 0, 0}, d[3] = {0, 0, 0};
+
+    Vec3 at(const std::vector<Vec3>& node) const { return sum(node, w); }
+    Vec3 inwards(const std::vector<Vec3>& node) const { return sum(node, d); }
+
+  private:
+    Vec3 sum(const std::vector<Vec3>& node, const double* f) const {
+        Vec3 x{0};
+        for (int k = 0; k < count; ++k) x += f[k] * node[first + k];
+        return x;
+    }
+};
+
+/// Contact points [begin, end) nearest to node k, all of whose stencils lie among the same nodes.
+struct PointRange {
+    int begin = 0, end = 0;
+};
+inline PointRange points_of(int k, int per_segment, int segments) {
+    const int half = per_segment / 2;
+    return {std::max(1, per_segment * k - half), k < segments ? per_segment * (k + 1) - half : per_segment * segments + 1};
+}
 
 /// Crease beside a contact point: the planes of an edge near it, or of two neighbouring nodes.
 struct Crease {
@@ -34,17 +61,17 @@ Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node);
 
 struct Evaluation;
 
-/// True where the points between two nodes, from p on, are all out of reach of one plane.
-bool all_clear(const Frozen& frozen, int p, const Evaluation& at);
+/// True where the points of node k are all out of reach of one plane.
+bool all_clear(const Frozen& frozen, int k, const Evaluation& at);
 
-/// Finds the patches among the segments; and sets their frames by their points' friction.
+/// Finds the patches round the nodes; and sets their frames by their points' friction.
 void lay_patches(Frozen& frozen);
 void turn_patches(Frozen& frozen);
 
-/// Adds the points of the patch on segment j; returns their potential. Without `derivatives` nothing else.
-double add_patch(const Frozen& frozen, int j, bool derivatives, Evaluation& out);
+/// Adds the points of the patch round node k; returns their potential. Without `derivatives` nothing else.
+double add_patch(const Frozen& frozen, int k, bool derivatives, Evaluation& out);
 
-/// Adds contact point p to the slopes and curvatures of its two nodes; returns its potential.
+/// Adds contact point p to the slopes and curvatures of its nodes; returns its potential.
 double add_contact(const Frozen& frozen, int p, Evaluation& out);
 
 /// Friction of one contact point, frozen during one Newton solve.
@@ -58,9 +85,9 @@ struct Friction {
     double pore_cap = 0;     ///< force against being pushed along the grain
 };
 
-/// The contact points on a segment and its outer node where they all meet planes of one normal, away
+/// The contact points of a node where they all meet planes of one normal, away
 /// from creases, with ends that do not give: their potential goes by heights along the normal and
-/// by places along the hair and across it, which are linear between the nodes.
+/// by places along the hair and across it, which are linear in the nodes.
 struct Patch {
     bool flat = false;
     Vec3 normal{0, 0, 1}, along{1, 0, 0}, across{0, 1, 0};
@@ -78,6 +105,7 @@ struct Frozen {
     const std::vector<JointMemory>* joint = nullptr;
     std::span<const Obstacle> obstacles;  ///< of the contact points, or none
     std::vector<PointPlace> place;    ///< of the contact points
+    std::vector<Stencil> stencil;     ///< of the contact points
     std::vector<Crease> crease;       ///< of the contact points
     std::vector<double> weight;       ///< of the contact points, tributary lengths
     const Law* law = nullptr;
@@ -86,7 +114,7 @@ struct Frozen {
     std::vector<Friction> friction;   ///< of the contact points
     std::vector<double> multiplier;   ///< of the contact points
     std::vector<double> give;         ///< of the contact points, end-on displacement per force
-    std::vector<Patch> patch;         ///< of the segments, or none
+    std::vector<Patch> patch;         ///< of the nodes, or none
     std::vector<PatchPoint> spot;     ///< of the contact points on patches
 };
 
@@ -116,6 +144,7 @@ struct Evaluation {
     std::vector<Vec3> slope;         ///< [n+1] ∂V/∂x_i of contact, friction and load
     std::vector<Sym3> curvature;     ///< [n+1] ∂²V/∂x_i²
     std::vector<Sym3> coupling;      ///< [n] ∂²V/∂x_i∂x_{i+1}
+    std::vector<Sym3> across;        ///< [n] ∂²V/∂x_i∂x_{i+2}, the last of them 0
     std::vector<double> normal;      ///< of the contact points, normal force
     std::vector<JointForce> joint;   ///< [n]
 };

@@ -67,20 +67,21 @@ Place place_in(const Patch& patch, const Vec3& from_clamp) {
             {glm::dot(from_clamp, patch.along), glm::dot(from_clamp, patch.across)}};
 }
 
-/// Sums of a patch over its two nodes.
+/// Sums of a patch over its nodes.
 struct PatchSum {
-    double normal[2] = {0, 0}, along[2] = {0, 0}, across[2] = {0, 0};
-    PlaneForm own[2], coupling;
+    double normal[3] = {0, 0, 0}, along[3] = {0, 0, 0}, across[3] = {0, 0, 0};
+    PlaneForm own[3], coupling[2], far;
 
-    void add(double s, const PointPotential& v) {
-        const double w[2] = {1 - s, s};
-        for (int k = 0; k < 2; ++k) {
+    void add(const double* w, const PointPotential& v) {
+        for (int k = 0; k < 3; ++k) {
             normal[k] += w[k] * v.normal;
             along[k] += w[k] * v.along;
             across[k] += w[k] * v.across;
             own[k].add(w[k] * w[k], v.second);
         }
-        coupling.add(w[0] * w[1], v.second);
+        coupling[0].add(w[0] * w[1], v.second);
+        coupling[1].add(w[1] * w[2], v.second);
+        far.add(w[0] * w[2], v.second);
     }
 };
 
@@ -89,14 +90,16 @@ struct PatchSum {
 void lay_patches(Frozen& frozen) {
     const Law& law = *frozen.law;
     const int per = law.points_per_segment, n = frozen.rod->segments();
-    frozen.patch.assign(static_cast<std::size_t>(n), {});
+    frozen.patch.assign(static_cast<std::size_t>(n + 1), {});
     frozen.spot.resize(frozen.obstacles.size());
-    for (int j = 0; j < n && !law.hard && !frozen.obstacles.empty(); ++j) {
-        Patch& patch = frozen.patch[j];
-        patch.normal = frozen.obstacles[per * j + 1].normal;
+    for (int k = 0; k <= n && !law.hard && !frozen.obstacles.empty(); ++k) {
+        const PointRange range = points_of(k, per, n);
+        if (range.begin >= range.end) continue;
+        Patch& patch = frozen.patch[k];
+        patch.normal = frozen.obstacles[range.begin].normal;
         patch.flat = true;
         double reach = -1e300;
-        for (int p = per * j + 1; p <= per * (j + 1); ++p) {
+        for (int p = range.begin; p < range.end; ++p) {
             const Obstacle& o = frozen.obstacles[p];
             patch.flat = patch.flat && o.normal == patch.normal && frozen.crease[p].share <= 0 &&
                          frozen.give[p] <= 0;
@@ -109,12 +112,13 @@ void lay_patches(Frozen& frozen) {
 }
 
 void turn_patches(Frozen& frozen) {
-    const int per = frozen.law->points_per_segment;
-    for (std::size_t j = 0; j < frozen.patch.size(); ++j) {
-        Patch& patch = frozen.patch[j];
+    const int per = frozen.law->points_per_segment, n = frozen.rod->segments();
+    for (int k = 0; k <= n; ++k) {
+        Patch& patch = frozen.patch[k];
         if (!patch.flat) continue;
         bool framed = false;
-        for (std::size_t p = per * j + 1; p <= per * (j + 1); ++p) {
+        const PointRange range = points_of(k, per, n);
+        for (int p = range.begin; p < range.end; ++p) {
             const Friction& f = frozen.friction[p];
             if (f.cap <= 0 || f.stick <= 0) continue;
             if (!framed) {
@@ -130,21 +134,21 @@ void turn_patches(Frozen& frozen) {
     }
 }
 
-double add_patch(const Frozen& frozen, int j, bool derivatives, Evaluation& out) {
+double add_patch(const Frozen& frozen, int k, bool derivatives, Evaluation& out) {
     const Law& law = *frozen.law;
-    const Patch& patch = frozen.patch[j];
-    const Place from = place_in(patch, out.node[j] - frozen.clamp.position);
-    const Place to = place_in(patch, out.node[j + 1] - frozen.clamp.position);
-    if (std::min(from.height, to.height) >= patch.reach) return 0;
-    const int per = law.points_per_segment;
-    const double step = 1.0 / per;
+    const Patch& patch = frozen.patch[k];
+    const PointRange range = points_of(k, law.points_per_segment, frozen.rod->segments());
+    const int first = frozen.stencil[range.begin].first, count = frozen.stencil[range.begin].count;
+    Place node[3];
+    for (int i = 0; i < count; ++i) node[i] = place_in(patch, out.node[first + i] - frozen.clamp.position);
+    if (count < 3) node[2] = node[1];
+    if (std::min({node[0].height, node[1].height, node[2].height}) >= patch.reach) return 0;
     PatchSum sum;
     double energy = 0;
-    for (int t = 1; t <= per; ++t) {
-        const int p = per * j + t;
-        const double s = t == per ? 1 : t * step;
+    for (int p = range.begin; p < range.end; ++p) {
+        const double* w = frozen.stencil[p].w;
         const Obstacle& o = frozen.obstacles[p];
-        const double height = (1 - s) * from.height + s * to.height;
+        const double height = w[0] * node[0].height + w[1] * node[1].height + w[2] * node[2].height;
         const double depth = o.radius + frozen.spot[p].height - height;
         if (depth <= -law.adhesion_range) continue;
         const double weight = frozen.weight[p];
@@ -157,12 +161,13 @@ double add_patch(const Frozen& frozen, int j, bool derivatives, Evaluation& out)
         out.contact += v.energy;
         const Friction& f = frozen.friction[p];
         if (f.cap > 0 && f.stick > 0) {
-            add_sliding(patch, f, (1 - s) * from.flat + s * to.flat - frozen.spot[p].anchor, v);
+            const Vec2 flat = w[0] * node[0].flat + w[1] * node[1].flat + w[2] * node[2].flat;
+            add_sliding(patch, f, flat - frozen.spot[p].anchor, v);
         }
         energy += v.energy;
         if (!derivatives) continue;
         out.normal[p] = push.force;
-        sum.add(s, v);
+        sum.add(w, v);
     }
     if (!derivatives) return energy;
     const Sym3 nn = outer(patch.normal), aa = outer(patch.along), cc = outer(patch.across),
@@ -170,12 +175,12 @@ double add_patch(const Frozen& frozen, int j, bool derivatives, Evaluation& out)
     const auto in_space = [&](const PlaneForm& m) {
         return m.normal * nn + m.along * aa + m.mixed * ac + m.across * cc;
     };
-    for (int k = 0; k < 2; ++k) {
-        out.slope[j + k] += sum.normal[k] * patch.normal + sum.along[k] * patch.along +
-                            sum.across[k] * patch.across;
-        out.curvature[j + k] += in_space(sum.own[k]);
+    for (int i = 0; i < count; ++i) {
+        out.slope[first + i] += sum.normal[i] * patch.normal + sum.along[i] * patch.along + sum.across[i] * patch.across;
+        out.curvature[first + i] += in_space(sum.own[i]);
+        if (i + 1 < count) out.coupling[first + i] += in_space(sum.coupling[i]);
     }
-    out.coupling[j] += in_space(sum.coupling);
+    if (count > 2) out.across[first] += in_space(sum.far);
     return energy;
 }
 

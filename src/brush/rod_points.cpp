@@ -122,7 +122,7 @@ struct Layer {
             if (alike && (at.s > 0 || alike_before)) {
                 lay_plane(p, at, from, to, from.normal);
             } else if (edge) {
-                const Vec3 x = point_at(at, node);
+                const Vec3 x = frozen.stencil[p].at(node);
                 lay_point(p, at, within_reach(from, x), within_reach(to, x));
             } else {
                 lay_point(p, at, from, to);
@@ -142,6 +142,8 @@ struct Layer {
             for (int t = 0; t < per; ++t) frozen.place.push_back({j, static_cast<double>(t) / per});
         }
         frozen.place.push_back({n() - 1, 1.0});
+        frozen.stencil.clear();
+        for (const PointPlace& at : frozen.place) frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
     }
 
     void lay_point(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b) {
@@ -174,6 +176,36 @@ struct Layer {
 };
 
 }  // namespace
+
+Stencil stencil_at(const Rod& rod, bool round, int j, double s) {
+    const int n = rod.segments(), k = s < 0.5 ? j : j + 1;  // the node that it belongs to
+    Stencil out;
+    out.first = std::clamp(k - 1, 0, std::max(0, n - 2));
+    out.count = std::min(3, n + 1);
+    if (!round || k == 0 || k == n) {
+        const int inner = j - out.first;
+        out.w[inner] = 1 - s;
+        out.w[inner + 1] = s;
+        out.d[inner] = 1 / rod.length[j];
+        out.d[inner + 1] = -1 / rod.length[j];
+        return out;
+    }
+    const double before = rod.length[k - 1], after = rod.length[k], half = 0.5 * (before + after);
+    const double t = (j < k ? (s - 0.5) * before : 0.5 * before + s * after) / half, u = 1 - t;
+    out.w[0] = 0.5 * u * u;
+    out.w[2] = 0.5 * t * t;
+    out.w[1] = 1 - out.w[0] - out.w[2];
+    out.d[0] = u / before;
+    out.d[1] = t / after - u / before;
+    out.d[2] = -t / after;
+    return out;
+}
+
+std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node) {
+    std::vector<Vec3> x = node;
+    for (int j = 1; j < rod.segments(); ++j) x[j] = stencil_at(rod, true, j, 0).at(node);
+    return x;
+}
 
 void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
                 std::vector<Obstacle>& fine) {

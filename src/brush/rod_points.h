@@ -8,13 +8,20 @@
 /// Inside of the rod solver: where contact points lie and what each of them meets.
 namespace tuft::brush::rod {
 
-inline Vec3 point_at(const PointPlace& at, const std::vector<Vec3>& node) {
-    return (1 - at.s) * node[at.node] + at.s * node[at.node + 1];
-}
+/// Where hair is a curve for its contact: where points lie between the nodes.
+inline bool rounded(const Law& law) { return law.points_per_segment > 2 && !law.hard; }
+
+/// The place at share s of segment j. Rounded: on the curve that runs from middle to middle of the segments along
+/// parabolas with the nodes as their control points, so that the bend of a joint is spread evenly over the length of
+/// hair that the joint stands for; straight outside the first and the last middle (quadratic B-spline).
+Stencil stencil_at(const Rod& rod, bool round, int j, double s);
+
+/// The nodes' own places on the rounded hair. [n+1]
+std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node);
 
 /// Planes and radii of the contact points, interpolated between those of the nodes; over creases,
 /// where a node has two planes or neighbours' planes part, both. `obstacles`: [n+1], or none;
-/// `node`: [n+1], where the nodes are. Fills place, crease, weight and give of `frozen`, whose rod and law
+/// `node`: [n+1], where the nodes are. Fills place, stencil, crease, weight and give of `frozen`, whose rod and law
 /// are set. `fine`: [points], or none.
 void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
                 std::vector<Obstacle>& fine);

@@ -160,9 +160,7 @@ struct Solver {
 
     const PointPlace& place(std::size_t p) const { return frozen.place[p]; }
 
-    Vec3 point(const std::vector<Vec3>& x, std::size_t p) const {
-        return point_at(place(p), x);
-    }
+    Vec3 point(const std::vector<Vec3>& x, std::size_t p) const { return frozen.stencil[p].at(x); }
 
     Distance distance(std::size_t p, const Vec3& x) const {
         return distance_of(fine[p], frozen.crease[p], law.edge, x);
@@ -343,13 +341,12 @@ struct Solver {
             c = {};
             return;
         }
-        const PointPlace& at = place(p);
+        const Stencil& at = frozen.stencil[p];
         // Half of it taken from before, so that what a pass leaves is not carried on at twice its size.
         c.growth = c.force > 0 ? 0.5 * (c.growth + ws.at.normal[p] - c.force) : 0;
         c.force = ws.at.normal[p];
         c.multiplier = law.hard ? c.force : 0;
-        out.normal_force[at.node] += (1 - at.s) * c.force;
-        out.normal_force[at.node + 1] += at.s * c.force;
+        for (int k = 0; k < at.count; ++k) out.normal_force[at.first + k] += at.w[k] * c.force;
         const Vec3 x = point(ws.at.node, p);
         const Friction& f = frozen.friction[p];
         const bool sticks = f.cap > 0 && f.stick > 0;
@@ -367,11 +364,9 @@ struct Solver {
         if (q > reach) {
             out.dissipation += f.cap * (q - reach);
             c.anchor = x - d * (reach / q);
-            out.slip[at.node] += (1 - at.s) * f.cap * (1 - reach / q) * d;
-            out.slip[at.node + 1] += at.s * f.cap * (1 - reach / q) * d;
+            for (int k = 0; k < at.count; ++k) out.slip[at.first + k] += at.w[k] * f.cap * (1 - reach / q) * d;
         }
-        buffers.friction_sum[at.node] += (1 - at.s) * f.cap;
-        buffers.friction_sum[at.node + 1] += at.s * f.cap;
+        for (int k = 0; k < at.count; ++k) buffers.friction_sum[at.first + k] += at.w[k] * f.cap;
     }
 };
 

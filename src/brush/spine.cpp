@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/rod_points.h"
 #include "brush/splay.h"
 #include "brush/tuft_sections.h"
 #include "brush/wedge.h"
@@ -134,12 +135,12 @@ Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, 
 
 namespace {
 
-Solved with_sections(const Preset& p, Spine& spine, rod::Result result, const Quat& turn,
+Solved with_sections(const Preset& p, Spine& spine, rod::Result result, std::span<const Vec3> node, const Quat& turn,
                      std::span<const rod::Obstacle> obstacles, double wetness, double share,
                      std::span<const ContactPlane> walls = {}) {
     Solved out{std::move(result), {}};
     const std::span<const rod::Obstacle> met = out.result.met.empty() ? obstacles : out.result.met;
-    SectionOutput sections = make_sections({p, spine, out.result, met, turn, wetness, share, walls});
+    SectionOutput sections = make_sections({p, spine, out.result, met, node, turn, wetness, share, walls});
     spine.side = std::move(sections.sides);
     spine.wide = sections.wide;
     spine.aside = std::move(sections.aside);
@@ -162,7 +163,8 @@ Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const
     spine.pressed = result.contact_energy;
     result.dissipation += passed.dissipation;
     for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
-    return with_sections(p, spine, std::move(result), turn, obstacles, wetness, share, walls);
+    const std::vector<Vec3> node = rod::curve_nodes(spine.rod, spine.memory.node);
+    return with_sections(p, spine, std::move(result), node, turn, obstacles, wetness, share, walls);
 }
 
 namespace {
@@ -245,7 +247,7 @@ Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const
     }
     if (obstacles.empty()) {
         lay(table.rows.front(), side);
-        return with_sections(p, spine, std::move(r), turn, obstacles, wetness, 1);
+        return with_sections(p, spine, std::move(r), m.node, turn, obstacles, wetness, 1);
     }
     const rod::Obstacle& o = obstacles.back();
     const double root = glm::dot(clamp.position - o.origin, o.normal);
@@ -277,7 +279,7 @@ Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const
         }
         for (double& f : r.normal_force) f *= sum > 0 ? reaction / sum : 0;
     }
-    return with_sections(p, spine, std::move(r), turn, obstacles, wetness, 1);
+    return with_sections(p, spine, std::move(r), m.node, turn, obstacles, wetness, 1);
 }
 
 }  // namespace tuft::brush

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "brush/lateral.h"
+#include "core/ease.h"
 
 namespace tuft::brush {
 
@@ -65,17 +66,39 @@ Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
 
 namespace {
 
-/// How far the contact squashes the hair round each node, 0 to 1, root first: indentation
-/// over radius; hair that stands on the surface is not pressed flat.
-std::vector<double> squash(const SectionInput& in) {
-    const rod::Memory& m = in.spine.memory;
-    std::vector<double> out(m.node.size(), 0);
-    for (std::size_t i = 1; i < out.size() && !in.obstacles.empty(); ++i) {
-        const rod::Obstacle& o = in.obstacles[i];
-        const double z = glm::dot(m.node[i] - o.origin, o.normal);
-        const double c = glm::dot(m.tangent[i - 1], o.normal);
-        if (o.radius > 0) out[i] = std::clamp((o.radius - z) / o.radius, 0.0, 1.0) * (1 - c * c);
+/// Cubic from p to q with slopes u and v (Hermite), at f of the way.
+double cubic(double p, double q, double u, double v, double f) {
+    const double g = 1 - f;
+    return g * g * (1 + 2 * f) * p + f * f * (1 + 2 * g) * q + f * g * (g * u - f * v);
+}
+
+/// How far the contact squashes the hair round each node, 0 to 1, root first: indentation over radius, mean
+/// over the hair that the node stands for (its hat function), along the cubic through the nodes; hair that stands
+/// on the surface is not pressed flat. A contact that comes in between two nodes so begins smoothly at both.
+std::vector<double> squash(const SectionInput& in, const std::vector<Vec3>& t) {
+    constexpr int kPoints = 6;  // per segment
+    const std::size_t count = in.node.size();
+    std::vector<double> out(count, 0);
+    if (in.obstacles.empty()) return out;
+    std::vector<double> z(count), c(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        z[i] = glm::dot(in.node[i] - in.obstacles[i].origin, in.obstacles[i].normal);
+        c[i] = glm::dot(t[i], in.obstacles[i].normal);
     }
+    for (std::size_t j = 0; j + 1 < count; ++j) {
+        const double l = in.spine.rod.length[j];
+        for (int k = 0; k < kPoints; ++k) {
+            const double f = (k + 0.5) / kPoints;
+            const double r = std::lerp(in.obstacles[j].radius, in.obstacles[j + 1].radius, f);
+            const double depth = r - cubic(z[j], z[j + 1], l * c[j], l * c[j + 1], f);
+            if (r <= 0 || depth <= 0) continue;
+            const double lean = std::lerp(c[j], c[j + 1], f);
+            const double squashed = std::min(depth / r, 1.0) * (1 - lean * lean) * l / kPoints;
+            out[j] += (1 - f) * squashed / in.spine.rod.weight[j];
+            out[j + 1] += f * squashed / in.spine.rod.weight[j + 1];
+        }
+    }
+    out.front() = 0;
     return out;
 }
 
@@ -84,38 +107,45 @@ constexpr double kReach = 0.045; ///< of the length, λ of the side nodes
 constexpr double kFinest = 1e-5; ///< m, radius of a tuft's point at least
 constexpr double kSides = 0.03;    ///< of k_c, the stretch springs: water holds hair together by some 0.3 N/m a millimetre
 constexpr double kSideDrag = 1.0;  ///< of kSides: share of the friction across a section that its side nodes take
+constexpr double kGrip = 0.05;  ///< of the length, way along the hair over which a contact comes to hold the hair beyond it
+constexpr double kFree = 0.1;   ///< of r, height off the surface from which hair beyond the contact is free of it
 constexpr double kLying = 0.6;  ///< height over b at which wet hair lies by its own weight
 
 /// How far each centre comes down along its plane's normal, metres, root first. A flattened
 /// section keeps its lower side where the contact has it, so the centre sinks by r - b, but
-/// not below the surface; what the contact's give let sink is lifted onto it. The free end
-/// beyond the contact comes down with the contact, and by the wet film's thickness more,
-/// until it touches. Towards the root it fades for sections more than r off the surface.
+/// not below the surface; what the contact's give let sink is lifted onto it; this fades within r off
+/// the surface, beyond the contact within kFree r. The free end beyond the contact comes down with the contact, and by the wet
+/// film's thickness more, until it touches: all of it from kGrip behind the place on where the hair comes to touch.
 std::vector<double> lowering(const SectionInput& in, const std::vector<Section>& sections) {
     const std::size_t count = sections.size();
     std::vector<double> down(count, 0);
     if (in.obstacles.empty()) return down;
     const double film = in.preset.adhesion > 0 ? in.wetness * in.preset.adhesion_range : 0;
-    double tail = -1;  // how far the free end may come down; negative before any contact
+    double at = 0, gap_before = 0;  // along the hair; how far the hair's side is off the surface there
+    double touch = -1;              // where the hair comes to touch
+    double give = 0;                // by which the contact comes down
     for (std::size_t i = 1; i < count; ++i) {
         const Section& s = sections[count - 1 - i];
         const rod::Obstacle& o = in.obstacles[i];
         const double z = glm::dot(s.centre - o.origin * in.preset.length, o.normal);
         const double r = in.spine.rest_radius[i], upright = std::abs(glm::dot(s.m, o.normal));
+        const double l = in.spine.rod.length[i - 1], gap = z - r;
+        if (touch < 0 && gap < 0) touch = i > 1 ? at + l * gap_before / (gap_before - gap) : at;
+        at += l;
+        gap_before = gap;
         double height = std::numeric_limits<double>::infinity();
-        if (tail >= 0) {
+        if (touch >= 0) {
+            const double tail = smooth_step((at - touch) / kGrip) * (give + film);
             // Comes to lie without a kink, so that the patch's end moves evenly with depth.
             const double lying = kLying * s.b * upright, h = z - tail - lying;
             height = std::min(z, lying + 0.5 * (h + std::hypot(h, s.b)));
         }
-        if (z < r || tail < 0) {
-            const double near = r > 0 ? std::clamp(2 - z / r, 0.0, 1.0) : 1;
-            // Deeper than the tuft is thick it is not give: it is within the model, and stays there.
-            height = std::max(std::min(0.0, z + in.preset.radius), std::min(height, z - near * (r - s.b) * upright));
-        }
+        const double fade = (touch >= 0 ? kFree : 1) * r, sinks = (r - s.b) * upright;
+        const double near = fade > 0 ? std::clamp(1 - gap / fade, 0.0, 1.0) : gap < 0 ? 1 : 0;
+        // Deeper than the tuft is thick it is not give: it is within the model, and stays there.
+        height = std::max(std::min(0.0, z + in.preset.radius), std::min(height, z - near * sinks));
         down[i] = z - height;
-        if (z >= r && tail >= 0) continue;
-        tail = z < r ? down[i] + film : -1;
+        give += near * (down[i] - give);
     }
     return down;
 }
@@ -137,19 +167,19 @@ double clearance(const SectionInput& in, std::size_t node, const ContactPlane& w
     constexpr double kGround = 0.34;  // sin 20°
     const double nearing = -glm::dot(way, wall.normal);
     if (nearing < kGround) return std::numeric_limits<double>::infinity();
-    const Vec3 x = in.spine.memory.node[node] * in.preset.length;
+    const Vec3 x = in.node[node] * in.preset.length;
     return glm::dot(x - wall.origin, wall.normal) / nearing - in.spine.rest_radius[node];
 }
 
 /// What pushes the side nodes out, as if it worked against the wet stretch springs alone:
 /// r (κ1 |m|/M_e0 + κ2 k_F + κ3 squash); and the shift by the friction of the surface along e.
-Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& e) {
+Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e) {
     const Preset& p = in.preset;
     const std::size_t count = e.size();
     const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
     const double newton = p.stiffness / (p.length * p.length);
     const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * newton / p.force_limit);
-    const std::vector<double> squashed = squash(in);
+    const std::vector<double> squashed = squash(in, t);
     const double wet = kSides * p.transverse_stiffness;
     LateralSprings springs{.stretch = wet * (kDry + (1 - kDry) * in.wetness),
                            .bend = wet,
@@ -214,7 +244,7 @@ SectionOutput make_sections(const SectionInput& in) {
     for (std::size_t i = wide.node; i-- > 0;) e[i] = parallel_transport(e[i + 1], t[i + 1], t[i]);
     for (std::size_t i = 0; i < count; ++i) e[i] = glm::normalize(e[i] - glm::dot(e[i], t[i]) * t[i]);
 
-    Widths widths = side_nodes(in, e);
+    Widths widths = side_nodes(in, t, e);
     SectionOutput out;
     out.aside = std::move(widths.shift.shift);
     out.slips = std::move(widths.shift.slips);
@@ -229,7 +259,7 @@ SectionOutput make_sections(const SectionInput& in) {
         section.tangent = t[i];
         section.e = e[i];
         section.m = glm::cross(e[i], t[i]);
-        section.centre = m.node[i] * p.length + 0.5 * (widths.plus[i] - widths.minus[i]) * e[i];
+        section.centre = in.node[i] * p.length + 0.5 * (widths.plus[i] - widths.minus[i]) * e[i];
         section.moment = (i + 1 < count ? in.result.moment[i] : 0) * p.stiffness / p.length;
         section.pressure = in.result.normal_force[i] / in.spine.rod.weight[i] * p.stiffness /
                            (p.length * p.length * p.length);
@@ -240,7 +270,7 @@ SectionOutput make_sections(const SectionInput& in) {
     }
     const Quat back = glm::conjugate(in.rotation);
     for (std::size_t i = count; i-- > 0;) {
-        const Vec3 x = (m.node[i] - m.node[0]) * p.length;
+        const Vec3 x = (in.node[i] - in.node[0]) * p.length;
         out.sides.push_back(back * (x + widths.plus[i] * e[i]));
         out.sides.push_back(back * (x - widths.minus[i] * e[i]));
     }

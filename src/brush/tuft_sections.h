@@ -13,6 +13,7 @@ struct SectionInput {
     const Spine& spine;
     const rod::Result& result;
     std::span<const rod::Obstacle> obstacles;
+    std::span<const Vec3> node;  ///< [n+1] where the hair is, units of L
     Quat rotation;       ///< of the ferrule
     double wetness = 1;  ///< 0 to 1: the film that draws the tip down, the cohesion that keeps hair together
     double share = 1;    ///< spines the hair is shared among

@@ -40,8 +40,20 @@ Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlan
     return cut;
 }
 
-/// Slope of a monotone cubic at a node from the slopes on both sides (Fritsch and Butland 1984).
+/// Slope at a node of the parabola through it and its neighbours, from the slopes on both sides.
+double parabola_slope(double before, double after, double h_before, double h_after) {
+    return (h_after * before + h_before * after) / (h_before + h_after);
+}
+
+/// The same, limited so that the cubic is monotone where the nodes are (Fritsch and Carlson 1980).
 double monotone_slope(double before, double after, double h_before, double h_after) {
+    if (!(before * after > 0)) return 0;
+    const double most = 3 * std::min(std::abs(before), std::abs(after));
+    return std::clamp(parabola_slope(before, after, h_before, h_after), -most, most);
+}
+
+/// Slope of a monotone cubic at a node that keeps to the flatter side (Fritsch and Butland 1984).
+double cautious_slope(double before, double after, double h_before, double h_after) {
     if (!(before * after > 0)) return 0;
     const double w1 = 2 * h_after + h_before, w2 = h_after + 2 * h_before;
     return (w1 + w2) / (w1 / before + w2 / after);
@@ -149,11 +161,18 @@ class Skin {
                 continue;
             }
             const double h0 = steps_[i - 1], h1 = steps_[i];
-            const auto slope = [&](auto get) {
-                return monotone_slope(rate(i - 1, get), rate(i, get), h0, h1);
-            };
-            slopes_[i] = {(h1 * rate(i - 1, centre) + h0 * rate(i, centre)) / (h0 + h1), slope(z),
-                          slope(a), slope(b)};
+            const auto slope = [&](auto get, auto law) { return law(rate(i - 1, get), rate(i, get), h0, h1); };
+            slopes_[i].centre = (h1 * rate(i - 1, centre) + h0 * rate(i, centre)) / (h0 + h1);
+            if (i <= cap_) {
+                // The point's round end goes over into long stretches.
+                slopes_[i].z = slope(z, cautious_slope);
+                slopes_[i].a = slope(a, cautious_slope);
+                slopes_[i].b = slope(b, cautious_slope);
+            } else {
+                slopes_[i].z = slope(z, monotone_slope);
+                slopes_[i].a = slope(a, monotone_slope);
+                slopes_[i].b = slope(b, monotone_slope);
+            }
         }
     }
 

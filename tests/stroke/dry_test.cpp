@@ -139,7 +139,10 @@ TEST(DryBrush, HairLeavesInkOrNone) {
     const ink::Ink ink = ink::load_ink("carbon");
     const double left = 0.2;
     const Model coarse = sheet(), fine = sheet({}, 2 * kSize);
-    const double at_coarse = half_tone(dry_stroke(coarse, left, 3), ink), at_fine = half_tone(dry_stroke(fine, left, 3), ink);
+    double at_coarse = 0;
+    constexpr int kSeeds = 8;  // one by itself has 0.19 to 0.28
+    for (int seed = 1; seed <= kSeeds; ++seed) at_coarse += half_tone(dry_stroke(coarse, left, seed), ink) / kSeeds;
+    const double at_fine = half_tone(dry_stroke(fine, left, 3), ink);
     EXPECT_LT(at_coarse, 0.25);
     EXPECT_LT(at_fine, 0.05 + 0.6 * at_coarse);
 }

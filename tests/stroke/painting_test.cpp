@@ -209,7 +209,7 @@ TEST(Painting, TurningSheetAndHandTogetherKeepsTheWidth) {
     const Frame turned = make_frame({0.4, -0.2, 0.1}, n, {0.2, 0.9, 0.1});
     const Model model = sheet(turned);
     // The line runs at an angle to the rows of texels: one that lies along them counts a row at its edge or not, by
-    // round-off, 1.1 % of this width.
+    // round-off, 1.1 % of this width; at an angle a part of one, 0.3 %.
     const auto at_angle = [](const Frame& sheet, double angle) {
         return make_frame(sheet.origin, sheet.n, std::cos(angle) * sheet.t + std::sin(angle) * sheet.b);
     };
@@ -220,7 +220,7 @@ TEST(Painting, TurningSheetAndHandTogetherKeepsTheWidth) {
         there.paint(line("wolf-small", 4e-3, turned_way));
         const double width = middle_width(here, way);
         ASSERT_GT(width, 1e-3);
-        EXPECT_NEAR(middle_width(there, turned_way), width, 0.003 * width) << angle;
+        EXPECT_NEAR(middle_width(there, turned_way), width, 0.0035 * width) << angle;
     }
 }
 

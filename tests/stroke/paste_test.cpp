@@ -43,8 +43,8 @@ TEST(PasteStroke, ItLeavesFurrowsAlongTheHairAndSmoothOnes) {
     painting.paint(stroke_of(kWhite, {}));
     const std::vector<double> across = heights_across(painting, 0), further = heights_across(painting, 0.003);
     std::vector<double> inside, beside;
-    for (std::size_t i = 1; i + 1 < kSize; ++i)
-        if (std::min({across[i - 1], across[i], across[i + 1], further[i]}) > 60) {
+    for (std::size_t i = 3; i + 3 < kSize; ++i)
+        if (further[i] > 60 && *std::min_element(&across[i - 3], &across[i + 4]) > 60) {  // within the flanks of its edges
             inside.push_back(across[i]);
             beside.push_back(further[i]);
         }
