@@ -85,13 +85,28 @@ TUFT_CLONES void weighted_sum(float* __restrict out, const float* __restrict w, 
     for (; k < count; ++k) add_scaled<1, false>(out, w + k * kN, values + k);
 }
 
-TUFT_CLONES float dot(const float* __restrict w, const float* __restrict x) {
-    float sums[kSums] = {};
+/// Σ of kCount planes of weights times x. Several sums at once do not wait for each other.
+template <int kCount>
+inline __attribute__((always_inline)) void few_dots(float* __restrict out, const float* __restrict w, const float* __restrict x) {
+    static_assert(kCount <= 4);
+    float a[kSums] = {}, b[kSums] = {}, c[kSums] = {}, d[kSums] = {};
     for (int t = 0; t < kN; t += kSums)
-        for (int i = 0; i < kSums; ++i) sums[i] += w[t + i] * x[t + i];
-    float sum = 0;
-    for (const float s : sums) sum += s;
-    return sum;
+        for (int i = 0; i < kSums; ++i) {
+            const float here = x[t + i];
+            a[i] += w[t + i] * here;
+            if constexpr (kCount > 1) b[i] += w[kN + t + i] * here;
+            if constexpr (kCount > 2) c[i] += w[2 * kN + t + i] * here;
+            if constexpr (kCount > 3) d[i] += w[3 * kN + t + i] * here;
+        }
+    float sum[4] = {};
+    for (int i = 0; i < kSums; ++i) sum[0] += a[i], sum[1] += b[i], sum[2] += c[i], sum[3] += d[i];
+    for (int k = 0; k < kCount; ++k) out[k] = sum[k];
+}
+TUFT_CLONES void dots(float* __restrict out, const float* __restrict w, const float* __restrict x, int count) {
+    int k = 0;
+    for (; k + kAtOnce <= count; k += kAtOnce) few_dots<kAtOnce>(out + k, w + k * kN, x);
+    for (; k + 2 <= count; k += 2) few_dots<2>(out + k, w + k * kN, x);
+    for (; k < count; ++k) few_dots<1>(out + k, w + k * kN, x);
 }
 
 TUFT_CLONES double difference_area(const float* __restrict after, const float* __restrict before,
@@ -189,8 +204,9 @@ void tent_sums(std::span<double, kNodes> out, const Tents& tents, const float* x
     alignas(64) Texels amounts;
     if (x) product(amounts.data(), x, area.data());
     const float* by = x ? amounts.data() : area.data();
-    for (int k = 0; k < tents.count; ++k)
-        out[k] = static_cast<double>(dot(tents.weight[k].data(), by));
+    std::array<float, kNodes> sums;
+    dots(sums.data(), tents.weight[0].data(), by, tents.count);
+    for (int k = 0; k < tents.count; ++k) out[k] = static_cast<double>(sums[k]);
 }
 
 void interpolate(Texels& out, const Tents& tents, const std::array<float, kNodes>& values) {
