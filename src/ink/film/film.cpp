@@ -95,16 +95,18 @@ struct Worker {
     Spare spare;
 };
 
+/// What lies on a tile and on those around it.
+using Near = std::array<const Sources*, 9>;
+
 /// Copies a plane with a border of one texel from the tiles around; absent planes are zeros, and
 /// so are tiles that are not in the list: nothing there can move.
 template <class PlaneOf>
-bool load(Field& field, const std::vector<Sources>& sources, const std::array<std::uint32_t, 9>& around,
-          PlaneOf&& plane_of) {
+bool load(Field& field, const Near& near, PlaneOf&& plane_of) {
     static constexpr Plane kDry{};
     std::array<const float*, 9> planes;
     bool any = false;
     for (int i = 0; i < 9; ++i) {
-        const Plane* plane = around[i] == kNone ? nullptr : plane_of(sources[around[i]]);
+        const Plane* plane = plane_of(*near[i]);
         any |= plane != nullptr;
         planes[i] = (plane ? plane : &kDry)->data();
     }
@@ -347,11 +349,14 @@ struct WetFilm::State : TileList {
         Active& tile = list[index];
         Work& work = worker.work;
         const Geometry& g = *geometry[tile.slot];
-        const bool any_w = load(work.w, sources, tile.around, [](const Sources& a) { return a.liquid[0]; });
+        static constexpr Sources kNothing{};
+        Near near;
+        for (int i = 0; i < 9; ++i) near[i] = tile.around[i] == kNone ? &kNothing : &sources[tile.around[i]];
+        const bool any_w = load(work.w, near, [](const Sources& a) { return a.liquid[0]; });
         if (!any_w) work.w.fill(0);
-        const bool any_s = load(work.s, sources, tile.around, [](const Sources& a) { return a.liquid[1]; });
+        const bool any_s = load(work.s, near, [](const Sources& a) { return a.liquid[1]; });
         if (!any_s) work.s.fill(0);
-        work.on_relief = any_relief && load(work.z, sources, tile.around, [](const Sources& a) { return a.relief; });
+        work.on_relief = any_relief && load(work.z, near, [](const Sources& a) { return a.relief; });
         Ahead& ahead = worker.ahead;
         ahead.fetch(kLines);
         const bool thin = fluxes(work, g, step);
@@ -382,14 +387,14 @@ struct WetFilm::State : TileList {
             tile.seam_wet = tile.seam_wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
         tile.spreads = before.sides != tile.outcome.sides || seam_was != tile.seam_wet ||
                        (before.most_w + before.most_s > 0) != tile.wet();
-        for (int p = 0; p < pigments; ++p) compute_pigment(index, p, seed + 1 + static_cast<std::uint64_t>(p), worker);
+        for (int p = 0; p < pigments; ++p) compute_pigment(index, near, p, seed + 1 + static_cast<std::uint64_t>(p), worker);
     }
 
-    void compute_pigment(std::size_t index, int p, std::uint64_t seed, Worker& worker) {
+    void compute_pigment(std::size_t index, const Near& near, int p, std::uint64_t seed, Worker& worker) {
         Active& tile = list[index];
         Work& work = worker.work;
         const Geometry& g = *geometry[tile.slot];
-        bool any = load(work.p, sources, tile.around, [p](const Sources& a) { return a.open[p]; });
+        bool any = load(work.p, near, [p](const Sources& a) { return a.open[p]; });
         if (!any) work.p.fill(0);
         const Crossing& crossing = worker.crossing;
         any = any || (crossing.pigments >> p & 1);
