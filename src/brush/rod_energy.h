@@ -106,6 +106,9 @@ struct Frozen {
     std::span<const Obstacle> obstacles;  ///< of the contact points, or none
     std::vector<PointPlace> place;    ///< of the contact points
     std::vector<Stencil> stencil;     ///< of the contact points
+    std::vector<double> laid_length;  ///< segments for which place and stencil were laid,
+    int laid_per = 0;                 ///< points per segment,
+    bool laid_round = false;          ///< and whether rounded
     std::vector<Crease> crease;       ///< of the contact points
     std::vector<double> weight;       ///< of the contact points, tributary lengths
     const Law* law = nullptr;

@@ -137,6 +137,10 @@ struct Layer {
     }
 
     void lay_places(int per) {
+        if (frozen.laid_length == rod.length && frozen.laid_per == per && frozen.laid_round == rounded(law)) return;
+        frozen.laid_length = rod.length;
+        frozen.laid_per = per;
+        frozen.laid_round = rounded(law);
         frozen.place.clear();
         for (int j = 0; j < n(); ++j) {
             for (int t = 0; t < per; ++t) frozen.place.push_back({j, static_cast<double>(t) / per});
