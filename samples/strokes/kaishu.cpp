@@ -31,7 +31,7 @@ void shoulder(Stroke& s, const Axis& l, double b, double w) {
     const double n = l.length;
     append(s, {l.at(n - 0.94 * w, 0.4 * b + 0.04 * w, 0.66 * w, 0.7),
                l.at(n - 0.685 * w, 0.3 * b + 0.01 * w, 0.73 * w, 0.5, 0),
-               l.at(n - 0.375 * w, 0.3 * b + 0.16 * w, 0.545 * w, 0.4, 0),
+               l.at(n - 0.375 * w, 0.3 * b + 0.205 * w, 0.545 * w, 0.4, 0),
                l.at(n - 0.43 * w, 0.3 * b + 0.14 * w, 0.34 * w, 0.4), l.at(n - 0.77 * w, 0.3 * b, 0, 0.4)});
 }
 
