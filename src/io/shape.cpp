@@ -181,14 +181,25 @@ Shape Shape::simplified(double tolerance) const {
 }
 
 Shape Shape::inset(double d, double tolerance) const {
-    Shape shape;
-    const Grid grid(rings_);
-    if (grid.scale == 0) return shape;
-    clip::ClipperOffset offset(2, std::max(0.25, tolerance * grid.scale));
-    offset.AddPaths(grid.paths(rings_), clip::jtRound, clip::etClosedPolygon);
-    clip::Paths out;
-    offset.Execute(out, -d * grid.scale);
-    shape.rings_ = grid.rings(out);
+    // A jagged outline crosses itself at d over the distance of its points: small steps first, each
+    // of which leaves fewer points to the next, twice as long.
+    const double first = 2 * tolerance;
+    const int steps =
+        1 + std::max(0, static_cast<int>(std::ceil(std::log2(std::max(d / first, 1.0)))));
+    const double part = tolerance / (2 * steps);
+    Shape shape = *this;
+    double done = 0;
+    for (int i = 0; i < steps && !shape.empty(); ++i) {
+        const double next = i + 1 < steps ? first * std::ldexp(1.0, i) : d;
+        const Grid grid(shape.rings_);
+        clip::ClipperOffset offset(2, std::max(0.25, part * grid.scale));
+        offset.AddPaths(grid.paths(shape.rings_), clip::jtRound, clip::etClosedPolygon);
+        clip::Paths out;
+        offset.Execute(out, -(next - done) * grid.scale);
+        shape.rings_ = grid.rings(out);
+        shape = shape.simplified(part);
+        done = next;
+    }
     return shape;
 }
 

@@ -31,7 +31,7 @@ class Shape {
     /// Peucker 1973).
     Shape simplified(double tolerance) const;
 
-    /// What lies more than `d` inside; arcs of it with chords that leave them by `tolerance`.
+    /// What lies more than `d` inside, to `tolerance` of the distance.
     Shape inset(double d, double tolerance) const;
 
     static constexpr std::size_t kMostPoints = 20'000;

@@ -114,6 +114,17 @@ TEST(AreaLines, AJaggedOutlineIsDrawnAsASmoothOne) {
     }
 }
 
+// Teeth deeper than what lines leave out, one beside the other: a hundred would cross each other at the line's distance.
+TEST(AreaLines, ADeeplyJaggedOutlineIsFilledToo) {
+    Ring teeth = circle(0.04, 3000);
+    for (std::size_t i = 0; i < teeth.size(); ++i) teeth[i] *= i % 2 ? 1.0025 : 0.9975;
+    const auto lines = area_lines(std::vector<Ring>{teeth}, FillRule::nonzero);
+    for (int i = 0; i < 400; ++i) {
+        const Vec2 p = 0.0395 * std::sqrt((i + 0.5) / 400) * Vec2(std::cos(2.4 * i), std::sin(2.4 * i));
+        EXPECT_LT(reach(lines, p), 1) << glm::length(p);
+    }
+}
+
 TEST(AreaLines, RunIntoPoints) {
     const std::vector<Ring> rings{star()};
     const auto lines = area_lines(rings, FillRule::nonzero);
