@@ -7,6 +7,7 @@
 #include "core/ease.h"
 #include "core/random.h"
 #include "core/simd.h"
+#include "footprint/bands.h"
 #include "footprint/slip.h"
 
 namespace tuft::footprint {
@@ -61,65 +62,13 @@ double roll(std::uint64_t seed, double x) {
     return value(cell) + g * (value(cell + 1) - value(cell));
 }
 
-/// Adds bands to a picture by columns, or rows for steep ones, with the area they cover.
-class Bands {
-  public:
-    Bands(int width, int height) : width_(width), height_(height), level_(std::size_t(width) * height, 0) {}
-
-    /// From p to q (cells), of half width r at p and s at q, measured along `across` (unit).
-    void draw(Vec2 p, Vec2 q, double r, double s, const Vec2& across) {
-        const bool steep = std::abs(across.x) > std::abs(across.y);
-        if (steep) {
-            std::swap(p.x, p.y);
-            std::swap(q.x, q.y);
-        }
-        if (p.x > q.x) {
-            std::swap(p, q);
-            std::swap(r, s);
-        }
-        const double run = q.x - p.x;
-        if (!(run > 1e-9)) return;
-        const double slope = (q.y - p.y) / run, grow = (s - r) / run;
-        // A band is cut along its columns; what it measures there.
-        const double along = steep ? across.y : across.x, over = steep ? across.x : across.y;
-        const double stretch = std::min(std::abs(over - slope * along), 1.0);
-        const int columns = steep ? height_ : width_, rows = steep ? width_ : height_;
-        const std::size_t next_column = steep ? std::size_t(width_) : 1, next = steep ? 1 : std::size_t(width_);
-        const int first = std::max(static_cast<int>(p.x), 0);
-        const int last = std::min(static_cast<int>(q.x), columns - 1);
-        for (int i = first; i <= last; ++i) {
-            const double from = std::max(p.x, double(i)), to = std::min(q.x, double(i) + 1);
-            if (!(to > from)) continue;
-            const double x = 0.5 * (from + to) - p.x, y = p.y + slope * x, reach = (r + grow * x) * stretch;
-            column(static_cast<float>(255 * (to - from)), static_cast<float>(y - reach), static_cast<float>(y + reach),
-                   rows, level_.data() + std::size_t(i) * next_column, next);
-        }
-    }
-
-    const std::vector<std::uint8_t>& level() const { return level_; }
-
-  private:
-    static void add(std::uint8_t& cell, float v) {
-        cell = static_cast<std::uint8_t>(std::min(255.0f, static_cast<float>(cell) + v + 0.5f));
-    }
-
-    static void column(float whole, float lo, float hi, int rows, std::uint8_t* cells, std::size_t next) {
-        lo = std::max(lo, 0.0f);
-        hi = std::min(hi, static_cast<float>(rows));
-        if (!(hi > lo)) return;
-        const int j0 = static_cast<int>(lo), j1 = std::min(static_cast<int>(hi), rows - 1);
-        if (j0 == j1) {
-            add(cells[std::size_t(j0) * next], whole * (hi - lo));
-            return;
-        }
-        add(cells[std::size_t(j0) * next], whole * (static_cast<float>(j0 + 1) - lo));
-        for (int j = j0 + 1; j < j1; ++j) add(cells[std::size_t(j) * next], whole);
-        add(cells[std::size_t(j1) * next], whole * (hi - static_cast<float>(j1)));
-    }
-
-    int width_, height_;
-    std::vector<std::uint8_t> level_;
-};
+/// Whether most of the hair lies rather along the picture's columns.
+bool mostly_steep(std::span<const Trail> trails) {
+    int steep = 0;
+    for (const Trail& trail : trails)
+        for (const Cut& cut : trail.cuts) steep += std::abs(cut.e.x) > std::abs(cut.e.y) ? 1 : -1;
+    return steep > 0;
+}
 
 /// A band of hair that gives ink: from bristle to bristle across the section, and ink beyond them.
 struct Strand {
@@ -371,7 +320,7 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
     std::vector<Placed> places;
     places.reserve(bundles.bristles.size());
     for (const brush::Bristle& b : bundles.bristles) places.emplace_back(brush::place_of(bundles, b), branches);
-    Bands bands(f.width, f.height);
+    Bands bands(f.width, f.height, mostly_steep(trails));
     std::vector<Lower> lower;
     const auto draw = [&](const Trail& trail, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
@@ -398,9 +347,10 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
         draw(trail, 0, std::min(trail.trunk + 1, trail.cuts.size()));
         draw(trail, trail.trunk, trail.cuts.size());
     }
-    const std::vector<std::uint8_t>& level = bands.level();
+    std::vector<std::uint8_t> level;
+    bands.rows(level);
     std::uint64_t sum = 0;
-    for (std::size_t row = 0; row < level.size(); row += static_cast<std::size_t>(f.width))
+    for (std::size_t row = 0; row < f.coverage.size(); row += static_cast<std::size_t>(f.width))
         sum += thin(f.coverage.data() + row, level.data() + row, f.width);
     result.closed_area = static_cast<double>(sum) / 255 * cell * cell;
     return result;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 #include "core/simd.h"
 #include "footprint/isa.h"
@@ -25,6 +27,22 @@ TUFT_CLONES void column_bits(const std::uint8_t* __restrict row0, const std::uin
         all[i] = row0[i] & row1[i] & row2[i] & row3[i];
         any[i] = row0[i] | row1[i] | row2[i] | row3[i];
     }
+}
+
+/// Eight rows of eight cells become columns: corners change places, in squares of 4, of 2 and of 1.
+void turn_square(const std::uint8_t* in, std::ptrdiff_t next_in, std::uint8_t* out,
+                 std::ptrdiff_t next_out) {
+    std::uint64_t row[8];
+    for (int k = 0; k < 8; ++k) std::memcpy(&row[k], in + k * next_in, 8);
+    const auto swap = [](std::uint64_t& a, std::uint64_t& b, int shift, std::uint64_t low) {
+        const std::uint64_t t = ((a >> shift) ^ b) & low;
+        a ^= t << shift;
+        b ^= t;
+    };
+    for (const int k : {0, 1, 2, 3}) swap(row[k], row[k + 4], 32, 0x00000000ffffffffu);
+    for (const int k : {0, 1, 4, 5}) swap(row[k], row[k + 2], 16, 0x0000ffff0000ffffu);
+    for (const int k : {0, 2, 4, 6}) swap(row[k], row[k + 1], 8, 0x00ff00ff00ff00ffu);
+    for (int k = 0; k < 8; ++k) std::memcpy(out + k * next_out, &row[k], 8);
 }
 
 constexpr int kLanes = 16;
@@ -126,6 +144,23 @@ void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs)
     const auto row = static_cast<std::size_t>(footprint.width);
     pairs.resize(row * (footprint.height - 1));
     pack_rows(footprint.coverage.data(), footprint.coverage.data() + row, pairs.data(), pairs.size());
+}
+
+void turn_over(std::span<const std::uint8_t> cells, int width, int height,
+               std::vector<std::uint8_t>& turned) {
+    constexpr int kSide = 8;
+    turned.resize(static_cast<std::size_t>(width) * height);
+    const auto in = [&](int x, int y) { return cells.data() + static_cast<std::ptrdiff_t>(y) * width + x; };
+    const auto out = [&](int x, int y) { return turned.data() + static_cast<std::ptrdiff_t>(x) * height + y; };
+    for (int y = 0; y < height; y += kSide)
+        for (int x = 0; x < width; x += kSide) {
+            if (x + kSide <= width && y + kSide <= height) {
+                turn_square(in(x, y), width, out(x, y), height);
+                continue;
+            }
+            for (int j = y; j < std::min(y + kSide, height); ++j)
+                for (int i = x; i < std::min(x + kSide, width); ++i) *out(i, j) = *in(i, j);
+        }
 }
 
 void BlockTally::count(const Footprint& footprint) {

@@ -95,8 +95,15 @@ struct StampJobs {
 
 /// Memory of `sweep`.
 struct SweepScratch {
-    std::vector<std::uint8_t> line;
-    std::vector<float> lines, sums, across;
+    /// Lines of the picture, by where they begin, between which and over which the motion leads to a place.
+    struct Passage {
+        std::size_t back = 0, on = 0, first = 0, last = 0;
+        float after_back = 0, after_on = 0;
+    };
+    std::vector<Passage> passages;
+    std::vector<const std::uint8_t*> rows;
+    std::vector<std::uint8_t> turned, strip;
+    std::vector<float> parts, lines, sums, passed;
     Footprint swept;
 };
 

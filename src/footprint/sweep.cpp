@@ -1,6 +1,7 @@
 #include "footprint/sweep.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/simd.h"
@@ -8,21 +9,33 @@
 namespace tuft::footprint {
 namespace {
 
-/// out = low + f (high − low): a line of the picture seen half a cell further.
-TUFT_CLONES void blend(const std::uint8_t* __restrict line, float f, float* __restrict out, int n) {
+/// Values of a line of the sheared picture that are worked on at a time: all lines of so many stay
+/// in the nearer cache, whatever the picture's size, and loops over them have no remainder.
+constexpr int kStrip = 64;
+
+/// out = low + f (high − low): `n` lines of cells each seen f of a cell further.
+TUFT_CLONES void blend(const std::uint8_t* const* lines, const float* __restrict f,
+                       float* __restrict out, int n) {
+    for (int i = 0; i < n; ++i, out += kStrip) {
+        const std::uint8_t* __restrict cells = lines[i];
+        const float part = f[i];
 #pragma omp simd
-    for (int j = 0; j < n; ++j) {
-        const auto low = static_cast<float>(int{line[j]}),
-                   high = static_cast<float>(int{line[j + 1]});
-        out[j] = low + f * (high - low);
+        for (int j = 0; j < kStrip; ++j) {
+            const auto low = static_cast<float>(int{cells[j]}),
+                       high = static_cast<float>(int{cells[j + 1]});
+            out[j] = low + part * (high - low);
+        }
     }
 }
 
-/// sum_out = sum_in + (before + now) / 2: the integral of what is linear between two lines.
-TUFT_CLONES void add_line(const float* __restrict sum_in, const float* __restrict before,
-                          const float* __restrict now, float* __restrict sum_out, int n) {
+/// sum_out = sum_in + (before + now) / 2: the integral of what is linear between two of the `n + 1`
+/// lines.
+TUFT_CLONES void add_up(const float* __restrict lines, float* __restrict sums, int n) {
+    for (int i = 0; i < n; ++i, lines += kStrip, sums += kStrip) {
 #pragma omp simd
-    for (int j = 0; j < n; ++j) sum_out[j] = sum_in[j] + 0.5f * (before[j] + now[j]);
+        for (int j = 0; j < kStrip; ++j)
+            sums[j + kStrip] = sums[j] + 0.5f * (lines[j] + lines[j + kStrip]);
+    }
 }
 
 /// The integral up to a part t of the way between lines a and b with integrals ia and ib.
@@ -33,12 +46,12 @@ struct Upper {
 
 /// out = (upper − lower) scale, rounded.
 TUFT_CLONES void difference(const Upper& to, const Upper& from, float scale,
-                            std::uint8_t* __restrict out, int n) {
+                            std::uint8_t* __restrict out) {
     const float t = to.t, s = from.t;
     const float *ti = to.integral, *ta = to.line, *tb = to.next;
     const float *si = from.integral, *sa = from.line, *sb = from.next;
 #pragma omp simd
-    for (int j = 0; j < n; ++j) {
+    for (int j = 0; j < kStrip; ++j) {
         const float high = ti[j] + t * (ta[j] + 0.5f * t * (tb[j] - ta[j]));
         const float low = si[j] + s * (sa[j] + 0.5f * s * (sb[j] - sa[j]));
         const float e = (high - low) * scale + 0.5f;
@@ -46,38 +59,40 @@ TUFT_CLONES void difference(const Upper& to, const Upper& from, float scale,
     }
 }
 
-/// out = the larger one.
-TUFT_CLONES void larger(const float* __restrict a, const float* __restrict b, float* __restrict out, int n) {
+/// out = the larger one of `in` here and `ahead` values on; both may be the same.
+TUFT_CLONES void larger(const float* in, std::size_t ahead, float* out, std::size_t n) {
 #pragma omp simd
-    for (int j = 0; j < n; ++j) out[j] = a[j] > b[j] ? a[j] : b[j];
+    for (std::size_t j = 0; j < n; ++j) out[j] = in[j] > in[j + ahead] ? in[j] : in[j + ahead];
 }
 
-/// A place between line a and the next one.
-struct Between {
-    const float *a, *b;
-    float t;
-};
-
-/// out = the largest of four lines, two of them between lines.
-TUFT_CLONES void largest(const Between& p, const Between& q, const float* __restrict c,
-                         const float* __restrict d, float* __restrict out, int n) {
-    const float s = p.t, t = q.t;
-    const float *pa = p.a, *pb = p.b, *qa = q.a, *qb = q.b;
+/// out = the largest of `most` at two lines and of the values between two pairs of lines, line for
+/// line.
+TUFT_CLONES void largest(const float* __restrict lines, const float* __restrict most,
+                         const SweepScratch::Passage* passages, int n, float* __restrict out) {
+    for (int k = 0; k < n; ++k, out += kStrip) {
+        const SweepScratch::Passage& p = passages[k];
+        const float s = p.after_back, t = p.after_on;
+        const float *pa = lines + p.back, *pb = pa + kStrip, *qa = lines + p.on, *qb = qa + kStrip;
+        const float *c = most + p.first, *d = most + p.last;
 #pragma omp simd
-    for (int j = 0; j < n; ++j) {
-        const float low = pa[j] + s * (pb[j] - pa[j]), high = qa[j] + t * (qb[j] - qa[j]);
-        const float ends = low > high ? low : high, inner = c[j] > d[j] ? c[j] : d[j];
-        out[j] = ends > inner ? ends : inner;
+        for (int j = 0; j < kStrip; ++j) {
+            const float low = pa[j] + s * (pb[j] - pa[j]), high = qa[j] + t * (qb[j] - qa[j]);
+            const float ends = low > high ? low : high, inner = c[j] > d[j] ? c[j] : d[j];
+            out[j] = ends > inner ? ends : inner;
+        }
     }
 }
 
-/// out = (line before + 2 line + line after) / 4 of each value's neighbours, rounded: the mean over two cells, a
-/// texel, wherever between the cells it is read. `line` has a value before and after the n.
-TUFT_CLONES void soften(const float* __restrict line, std::uint8_t* __restrict out, int n) {
+/// out = (value before + 2 value + value after) / 4 along each of `lines`, rounded: the mean over
+/// two cells, a texel, wherever between the cells it is read. The last two of a line are of no use.
+/// `in` has two values more.
+TUFT_CLONES void soften(const float* __restrict in, int lines, std::uint8_t* __restrict out,
+                        std::size_t stride) {
+    for (int k = 0; k < lines; ++k, in += kStrip, out += stride)
 #pragma omp simd
-    for (int j = 0; j < n; ++j)
-        out[j] = static_cast<std::uint8_t>(
-            static_cast<int>(0.25f * (line[j] + 2 * line[j + 1] + line[j + 2]) + 0.5f));
+        for (int j = 0; j < kStrip; ++j)
+            out[j] = static_cast<std::uint8_t>(
+                static_cast<int>(0.25f * (in[j] + 2 * in[j + 1] + in[j + 2]) + 0.5f));
 }
 
 /// The picture in lines across the motion, columns of it or rows, sheared so that the motion leads
@@ -85,39 +100,65 @@ TUFT_CLONES void soften(const float* __restrict line, std::uint8_t* __restrict o
 struct Sheared {
     bool along_x = true;
     double length = 0, slope = 0;  // cells; of the motion, and aside on the way from line to line
-    int n_lines = 0, first = 0, across = 0;
+    int n_lines = 0, n_cells = 0, first = 0, across = 0;
+    const std::uint8_t* cells = nullptr;  // [n_lines n_cells]
 
-    Sheared(const Footprint& footprint, const Vec2& shift) {
+    Sheared(const Footprint& footprint, const Vec2& shift, SweepScratch& scratch) {
         const Vec2 w = shift / footprint.cell;
         along_x = std::abs(w.x) >= std::abs(w.y);
         length = along_x ? w.x : w.y;
         slope = (along_x ? w.y : w.x) / length;
         n_lines = along_x ? footprint.width : footprint.height;
+        n_cells = along_x ? footprint.height : footprint.width;
         const double lean = slope * (n_lines - 1);
         first = static_cast<int>(std::floor(-std::max(lean, 0.0)));
-        across = static_cast<int>(std::ceil(n_cells(footprint) - 1 - std::min(lean, 0.0))) - first + 1;
+        across = static_cast<int>(std::ceil(n_cells - 1 - std::min(lean, 0.0))) - first + 1;
+        if (along_x)
+            turn_over(footprint.coverage, footprint.width, footprint.height, scratch.turned);
+        cells = along_x ? scratch.turned.data() : footprint.coverage.data();
     }
 
-    int n_cells(const Footprint& footprint) const { return along_x ? footprint.height : footprint.width; }
-
-    /// Line i into `out` [across]. `padded` is room for a line of cells.
-    void line(const Footprint& footprint, int i, std::vector<std::uint8_t>& padded, float* out) const {
-        // With room on both sides, so that it can be read shifted by any lean.
-        const auto pad = static_cast<std::size_t>(across) + 2;
-        const int cells = n_cells(footprint);
-        if (i == 0) padded.assign(2 * pad + cells, 0);
-        for (int j = 0; j < cells; ++j)
-            padded[pad + j] = footprint.coverage[along_x ? std::size_t(j) * footprint.width + i
-                                                         : std::size_t(i) * footprint.width + j];
-        const double begin = first + slope * i;  // the cell that the first value lies at
-        const auto cell = static_cast<int>(std::floor(begin));
-        blend(padded.data() + (static_cast<std::ptrdiff_t>(pad) + cell), static_cast<float>(begin - cell), out,
-              across);
+    /// Values [from, from + kStrip) of all lines into `out` [n_lines kStrip]; outside the picture
+    /// they are 0.
+    void strip(int from, SweepScratch& scratch, float* out) const {
+        constexpr int kCells = kStrip + 1;
+        scratch.strip.resize(static_cast<std::size_t>(n_lines) * kCells);
+        scratch.parts.resize(static_cast<std::size_t>(n_lines));
+        scratch.rows.resize(static_cast<std::size_t>(n_lines));
+        for (int i = 0; i < n_lines; ++i) {
+            const double begin = first + slope * i;  // the cell that the line's first value lies at
+            const auto cell = static_cast<int>(std::floor(begin));
+            scratch.parts[i] = static_cast<float>(begin - cell);
+            const std::uint8_t* line = cells + static_cast<std::ptrdiff_t>(i) * n_cells;
+            const int lo = cell + from;
+            if (lo >= 0 && lo + kCells <= n_cells) {
+                scratch.rows[i] = line + lo;
+                continue;
+            }
+            std::uint8_t* row = scratch.strip.data() + std::size_t(i) * kCells;
+            const int a = std::clamp(-lo, 0, kCells), b = std::clamp(n_cells - lo, a, kCells);
+            std::fill(row, row + a, std::uint8_t{0});
+            if (b > a) std::copy_n(line + lo + a, b - a, row + a);
+            std::fill(row + b, row + kCells, std::uint8_t{0});
+            scratch.rows[i] = row;
+        }
+        blend(scratch.rows.data(), scratch.parts.data(), out, n_lines);
     }
 
     /// Places along the motion where the picture passes, and a cell more on either side.
     int start() const { return static_cast<int>(std::floor(-std::max(length, 0.0))) - 1; }
-    int stop() const { return static_cast<int>(std::ceil(n_lines - 1 - std::min(length, 0.0))) + 1; }
+    int stop() const {
+        return static_cast<int>(std::ceil(n_lines - 1 - std::min(length, 0.0))) + 1;
+    }
+
+    /// Room in the scratch for a picture over those places.
+    Footprint& lay_out(SweepScratch& scratch) const {
+        Footprint& swept = scratch.swept;
+        swept.width = across;
+        swept.height = stop() - start() + 1;
+        swept.coverage.resize(static_cast<std::size_t>(across) * swept.height);
+        return swept;
+    }
 
     /// The picture over those places as the jobs' one sub-pose.
     void hand_over(const Footprint& swept, StampJobs& jobs) const {
@@ -134,109 +175,126 @@ struct Sheared {
     }
 };
 
+float* line_of(std::vector<float>& v, int line) {
+    return v.data() + static_cast<std::ptrdiff_t>(line) * kStrip;
+}
+
 /// E into the scratch's picture; returns the gain that belongs to it.
-float mean_over(const Sheared& sheared, const Footprint& footprint, SweepScratch& scratch) {
-    const int n_lines = sheared.n_lines, across = sheared.across;
+float mean_over(const Sheared& sheared, SweepScratch& scratch) {
+    const int n_lines = sheared.n_lines;
     const double length = sheared.length;
     std::vector<float>&lines = scratch.lines, &sums = scratch.sums;
     // One line of nothing before the picture and one after it.
-    lines.assign(static_cast<std::size_t>(n_lines + 2) * across, 0);
-    sums.assign(static_cast<std::size_t>(n_lines + 2) * across, 0);
-    const auto at = [&](std::vector<float>& v, int line) {
-        return v.data() + std::size_t(line) * across;
-    };
-    for (int i = 0; i < n_lines; ++i) {
-        sheared.line(footprint, i, scratch.line, at(lines, i + 1));
-        add_line(at(sums, i), at(lines, i), at(lines, i + 1), at(sums, i + 1), across);
-    }
-    add_line(at(sums, n_lines), at(lines, n_lines), at(lines, n_lines + 1), at(sums, n_lines + 1),
-             across);
-
-    const int start = sheared.start(), along = sheared.stop() - start + 1;
+    lines.assign(static_cast<std::size_t>(n_lines + 2) * kStrip, 0);
+    sums.assign(static_cast<std::size_t>(n_lines + 2) * kStrip, 0);
     const auto gain = static_cast<float>(std::min(1.0, (n_lines + 1) / std::abs(length)));
     const auto scale = static_cast<float>(1 / (std::abs(length) * gain));
     const auto upper = [&](double x) {  // line k of `lines` lies at k − 1
         const double p = std::clamp(x + 1, 0.0, double(n_lines + 1));
         const int k = std::min(static_cast<int>(p), n_lines);
-        return Upper{at(sums, k), at(lines, k), at(lines, k + 1), static_cast<float>(p - k)};
+        return Upper{line_of(sums, k), line_of(lines, k), line_of(lines, k + 1),
+                     static_cast<float>(p - k)};
     };
-    Footprint& swept = scratch.swept;
-    swept.width = across;
-    swept.height = along;
-    swept.coverage.resize(static_cast<std::size_t>(across) * along);
-    for (int k = 0; k < along; ++k) {
-        const double x = start + k;
-        difference(upper(std::max(x, x + length)), upper(std::min(x, x + length)), scale,
-                   swept.coverage.data() + std::size_t(k) * across, across);
+    Footprint& swept = sheared.lay_out(scratch);
+    alignas(64) std::array<std::uint8_t, kStrip> values;
+    for (int from = 0; from < sheared.across; from += kStrip) {
+        sheared.strip(from, scratch, line_of(lines, 1));
+        add_up(lines.data(), sums.data(), n_lines + 1);
+        const int n = std::min(kStrip, sheared.across - from);
+        for (int k = 0; k < swept.height; ++k) {
+            const double x = sheared.start() + k;
+            difference(upper(std::max(x, x + length)), upper(std::min(x, x + length)), scale,
+                       values.data());
+            std::copy_n(values.data(), n,
+                        swept.coverage.data() + std::size_t(k) * sheared.across + from);
+        }
     }
     return gain;
 }
 
 /// M likewise.
-void most_over(const Sheared& sheared, const Footprint& footprint, SweepScratch& scratch) {
-    const int n_lines = sheared.n_lines, across = sheared.across;
+void most_over(const Sheared& sheared, SweepScratch& scratch) {
+    const int n_lines = sheared.n_lines;
     const double back = std::min(sheared.length, 0.0), on = std::max(sheared.length, 0.0);
     // The same number of whole lines lies between both ends of the way at every place.
-    const int from = static_cast<int>(std::ceil(back)), count = static_cast<int>(std::floor(on)) - from + 1;
+    const int begin = static_cast<int>(std::ceil(back)),
+              count = static_cast<int>(std::floor(on)) - begin + 1;
     const int room = count + 3;  // lines of nothing before and after the picture
     const int total = n_lines + 2 * room;
     std::vector<float>& lines = scratch.lines;
-    std::vector<float>& most = scratch.sums;  // the largest value of `wide` lines from here on
-    lines.assign(static_cast<std::size_t>(total) * across, 0);
-    const auto at = [&](std::vector<float>& v, int line) {
-        return v.data() + std::size_t(line) * across;
-    };
-    for (int i = 0; i < n_lines; ++i) sheared.line(footprint, i, scratch.line, at(lines, i + room));
-    most = lines;
+    lines.assign(static_cast<std::size_t>(total) * kStrip, 0);
+    if (count > 1) scratch.sums.assign(static_cast<std::size_t>(total) * kStrip, 0);
+    std::vector<float>& most =
+        count > 1 ? scratch.sums : lines;  // the largest value of `wide` lines from here on
     int wide = 1;
-    for (; 2 * wide <= count; wide *= 2)
-        for (int i = 0; i + wide < total; ++i) larger(at(most, i), at(most, i + wide), at(most, i), across);
-
-    const int start = sheared.start(), along = sheared.stop() - start + 1;
-    Footprint& swept = scratch.swept;
-    swept.width = across;
-    swept.height = along;
-    swept.coverage.resize(static_cast<std::size_t>(across) * along);
-    const auto between = [&](double x) {
-        const int i = std::clamp(static_cast<int>(std::floor(x)), 0, total - 2);
-        return Between{at(lines, i), at(lines, i + 1), static_cast<float>(std::clamp(x - i, 0.0, 1.0))};
-    };
-    std::vector<float>& line = scratch.across;
-    line.assign(static_cast<std::size_t>(across) + 2, 0);
-    for (int k = 0; k < along; ++k) {
-        const int x = start + k + room, a = std::clamp(x + from, 0, total - 1);
-        const int b = std::clamp(x + from + count - wide, 0, total - 1);
-        largest(between(x + back), between(x + on), at(most, a), at(most, b), line.data() + 1, across);
-        soften(line.data(), swept.coverage.data() + std::size_t(k) * across, across);
+    while (2 * wide <= count) wide *= 2;
+    Footprint& swept = sheared.lay_out(scratch);
+    scratch.passed.resize(static_cast<std::size_t>(swept.height) * kStrip + 2);
+    scratch.passages.resize(static_cast<std::size_t>(swept.height));
+    for (int k = 0; k < swept.height; ++k) {
+        const int x = sheared.start() + k + room;
+        const auto between = [&](double y, std::size_t& line, float& after) {
+            const int i = std::clamp(static_cast<int>(std::floor(y)), 0, total - 2);
+            line = std::size_t(i) * kStrip;
+            after = static_cast<float>(std::clamp(y - i, 0.0, 1.0));
+        };
+        SweepScratch::Passage& p = scratch.passages[k];
+        between(x + back, p.back, p.after_back);
+        between(x + on, p.on, p.after_on);
+        p.first = std::size_t(std::clamp(x + begin, 0, total - 1)) * kStrip;
+        p.last = std::size_t(std::clamp(x + begin + count - wide, 0, total - 1)) * kStrip;
+    }
+    constexpr int kValues = kStrip - 2;
+    for (int from = 0; from < sheared.across; from += kValues) {
+        sheared.strip(from - 1, scratch, line_of(lines, room));
+        for (int w = 1; w < wide; w *= 2)
+            larger(w == 1 ? lines.data() : most.data(), std::size_t(w) * kStrip, most.data(),
+                   std::size_t(total - w) * kStrip);
+        largest(lines.data(), most.data(), scratch.passages.data(), swept.height,
+                scratch.passed.data());
+        std::uint8_t* out = swept.coverage.data() + from;
+        if (from + kStrip <= sheared.across) {  // the next strip goes over the last two
+            soften(scratch.passed.data(), swept.height, out, std::size_t(sheared.across));
+            continue;
+        }
+        scratch.strip.resize(static_cast<std::size_t>(swept.height) * kStrip);
+        soften(scratch.passed.data(), swept.height, scratch.strip.data(), kStrip);
+        for (int k = 0; k < swept.height; ++k)
+            std::copy_n(scratch.strip.data() + std::size_t(k) * kStrip,
+                        std::min(kValues, sheared.across - from),
+                        out + std::size_t(k) * sheared.across);
     }
 }
 
 /// most = gain mean + part (most − gain mean), rounded.
-TUFT_CLONES void mix(const std::uint8_t* __restrict mean, float gain, float part, std::uint8_t* __restrict most, int n) {
+TUFT_CLONES void mix(const std::uint8_t* __restrict mean, float gain, float part,
+                     std::uint8_t* __restrict most, int n) {
 #pragma omp simd
     for (int j = 0; j < n; ++j) {
         const float e = gain * static_cast<float>(int{mean[j]});
-        most[j] = static_cast<std::uint8_t>(static_cast<int>(e + part * (static_cast<float>(int{most[j]}) - e) + 0.5f));
+        most[j] = static_cast<std::uint8_t>(
+            static_cast<int>(e + part * (static_cast<float>(int{most[j]}) - e) + 0.5f));
     }
 }
 
 }  // namespace
 
 void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, SweepScratch& scratch) {
-    const Sheared sheared(footprint, shift);
-    jobs.gain = mean_over(sheared, footprint, scratch);
+    const Sheared sheared(footprint, shift, scratch);
+    jobs.gain = mean_over(sheared, scratch);
     sheared.hand_over(scratch.swept, jobs);
 }
 
-void sweep_over(const Footprint& footprint, const Vec2& shift, float part, StampJobs& jobs, SweepScratch& scratch) {
-    const Sheared sheared(footprint, shift);
+void sweep_over(const Footprint& footprint, const Vec2& shift, float part, StampJobs& jobs,
+                SweepScratch& scratch) {
+    const Sheared sheared(footprint, shift, scratch);
     std::vector<std::uint8_t> mean;
     float gain = 1;
     if (part < 1) {
-        gain = mean_over(sheared, footprint, scratch);
+        gain = mean_over(sheared, scratch);
         mean = scratch.swept.coverage;
     }
-    most_over(sheared, footprint, scratch);
+    most_over(sheared, scratch);
     std::vector<std::uint8_t>& swept = scratch.swept.coverage;
     if (part < 1) mix(mean.data(), gain, part, swept.data(), static_cast<int>(swept.size()));
     jobs.gain = 1;
