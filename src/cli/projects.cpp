@@ -192,6 +192,8 @@ int run(const Render& a) {
             options.unwrap.size = 4096;
             options.progress = console.progress();
             bare = stroke::rescale_model(std::move(bare), options);
+        } else {
+            bare.query = std::make_unique<mesh::SurfaceQuery>(*bare.mesh);
         }
     }
     const int count = std::max(1, a.turntable);

@@ -108,7 +108,6 @@ Loaded load_bare(const fs::path& path, const std::string& unit, const std::strin
         if (what.starts_with(path.string())) throw;
         throw Error(path.string(), what);
     }
-    model.query = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
     return {std::move(model), read.frame};
 }
 

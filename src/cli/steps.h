@@ -31,7 +31,7 @@ struct Loaded {
 /// unit, it is guessed from the size; a guess other than millimetres is told.
 Loaded load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
 
-/// The same without giving it an atlas: enough to look at it.
+/// The same without an atlas and without what finds points of the surface.
 Loaded load_bare(const std::filesystem::path& path, const std::string& unit, const std::string& up, Console& console);
 
 /// Throws `Error` when a file could not be written there: its folder is missing or not
