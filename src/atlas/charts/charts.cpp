@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "atlas/charts/asked_seams.h"
+#include "atlas/charts/developable.h"
 #include "atlas/charts/meter.h"
-#include "atlas/charts/seam_graph.h"
 #include "atlas/charts/straighten.h"
 #include "atlas/charts/tasks.h"
 #include "atlas/flatten/hull.h"
@@ -63,13 +63,6 @@ std::vector<Triangles> parts_of(const CutMesh& cut, const Triangles& triangles) 
     return parts;
 }
 
-/// Seams between developable charts of a patch. The graph that finds them takes three times the patch's memory, and goes.
-std::vector<std::uint8_t> developable_seams(const Patch& patch, const GluingLimits& limits, const ProgressFn& progress) {
-    SeamGraph graph(patch, {});
-    graph.glue_developable(limits, progress);
-    return graph.seams();
-}
-
 /// Cuts a piece that would not lie flat: by developability with limits that tighten with
 /// every cut, then by size, at last into single triangles.
 std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& piece) {
@@ -94,7 +87,7 @@ std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const
             limits.mean_normal = 0;
             limits.area = 0.6 * all.area;
         }
-        const std::vector<std::uint8_t> seam = developable_seams(patch, limits, {});
+        const std::vector<std::uint8_t> seam = developable_seams(patch, {}, limits, {});
         std::vector<std::uint32_t> local(patch.twin);
         for (std::uint32_t h = 0; h < seam.size(); ++h)
             if (seam[h]) local[h] = kNone;
@@ -247,8 +240,9 @@ CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& opti
     {
         const Patch patch = whole_patch(mesh, cut);
         GluingLimits limits;
-        limits.triangles = options.triangles;
-        std::vector<std::uint8_t> seam = developable_seams(patch, limits, progress);
+        limits.triangles = options.triangles / 2;  // so that all threads have some to lay flat
+        const std::vector<std::uint8_t> small = small_chart_seams(mesh, cut.twin, cut.unit, limits, progress);
+        std::vector<std::uint8_t> seam = developable_seams(patch, small, limits, progress);
         straighten_seams(patch, seam);
         cut_along(cut, patch, seam);
     }

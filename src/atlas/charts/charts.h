@@ -31,7 +31,7 @@ struct ChartOptions {
 /// How well charts are laid out to see whether they can be: stops early where that is clear.
 ArapOptions trial_arap(const ChartOptions& options);
 
-/// Triangles of a mesh for which seams are moved in one round, and where it gains much.
+/// Triangles of a mesh that is glued in blocks and whose seams are moved in one round, where it gains much.
 inline constexpr std::size_t kDearMesh = 500000;
 
 /// A chart and its UVs, over the same unit; every triangle has positive area and the

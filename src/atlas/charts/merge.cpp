@@ -18,7 +18,10 @@ constexpr std::size_t kDear = 4096;     // triangles
 constexpr double kNearEnds = 1.0 / 32;  // of the border's length
 constexpr double kAsLong = 1.05;        // as another
 constexpr double kAtFirst = 1.1;        // beyond limits of form, before a chart is laid flat
-constexpr double kUsualWork = 5;        // triangles in all trials, over those of the mesh
+constexpr double kOnTheWay = 1.01;      // the same after a step of it
+constexpr double kNearEndsOnTheWay = 1.0 / 64;
+constexpr int kSettled = 4;       // steps after which the rest of a crossing stays
+constexpr double kUsualWork = 5;  // triangles in all trials, over those of the mesh
 
 /// One pair of charts to be tried along one chain.
 struct Trial {
@@ -37,8 +40,8 @@ Vec2 corner_uv(const FlatChart& chart, std::uint32_t h) {
 
 /// The motion of b's UVs that brings the two sides of the chain together best, and the
 /// root mean square distance that is left.
-std::pair<RigidMotion, double> fit_sides(const FlatChart& a, const FlatChart& b, std::span<const std::uint32_t> twin,
-                                         const Trial& trial) {
+std::pair<RigidMotion, double> fit_sides(const FlatChart& a, const FlatChart& b,
+                                         std::span<const std::uint32_t> twin, const Trial& trial) {
     std::vector<std::array<Vec2, 2>> pairs;
     for (std::size_t i = 0; i < trial.n_chain; ++i) {
         std::uint32_t h = trial.halves[i], g = twin[h];
@@ -53,7 +56,8 @@ std::pair<RigidMotion, double> fit_sides(const FlatChart& a, const FlatChart& b,
 }
 
 /// Both charts where they lie, b moved, and the corners that they share in the middle.
-std::vector<Vec2> side_by_side(const FlatChart& a, const FlatChart& b, const RigidMotion& motion, const ChartMesh& both) {
+std::vector<Vec2> side_by_side(const FlatChart& a, const FlatChart& b, const RigidMotion& motion,
+                               const ChartMesh& both) {
     std::vector<Vec2> uv(both.n_vertices(), Vec2(0));
     std::vector<std::uint32_t> count(both.n_vertices(), 0);
     std::size_t ia = 0, ib = 0;
@@ -191,7 +195,8 @@ class Merger {
     }
 
     bool lies_flat(const FlatCheck& check, double worst) const {
-        return check.sound() && check.l2 <= options_.l2 && check.stretch_999 <= options_.largest && check.linf <= worst;
+        return check.sound() && check.l2 <= options_.l2 && check.stretch_999 <= options_.largest &&
+               check.linf <= worst;
     }
 
     /// Flattens the two charts as one from where they lie now.
@@ -209,10 +214,12 @@ class Merger {
         t.flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         ChartMesh& mesh = t.flat.mesh;
         if (!mesh.disk) return;
+        std::vector<std::uint32_t> anew;        // faces that are laid anew; none: all
         if (mesh.faces.size() > kLargeChart) {  // a start from which few steps lead on
             const bool grows = a.mesh.triangles.size() < b.mesh.triangles.size();  // b, by a
             const FlatChart &kept = grows ? b : a, &taken = grows ? a : b;
             t.flat.uv = carry_uvs(kept, taken, taken.mesh.triangles, mesh);
+            anew = faces_around(mesh, taken.mesh.triangles);
         } else {
             t.flat.uv = side_by_side(a, b, motion, mesh);
         }
@@ -229,7 +236,10 @@ class Merger {
         if (!check.sound() || check.l2 > flat_enough) {
             ArapOptions trial = trial_arap(options_);
             trial.on_step = [&] { part.advance(double(mesh.faces.size()) / trial.iterations); };
-            arap(mesh, t.flat.uv, trial);
+            bool vain = false;
+            trial.in_vain = [&](int steps) { return vain = in_vain(t.flat, parts, steps); };
+            arap(mesh, t.flat.uv, trial, anew);
+            if (vain) return;
             scale_to_area(mesh, t.flat.uv);
             check = check_flat(mesh, t.flat.uv, options_.gap);
         }
@@ -239,9 +249,19 @@ class Merger {
         t.merged = !misshapen(form_of(t.flat), parts, 1);
     }
 
+    /// Whether a chart of two parts that is being laid flat will have to be refused: nearly all its
+    /// motion is in the first steps.
+    bool in_vain(const FlatChart& chart, const std::array<Form, 2>& parts, int steps) const {
+        if (chart.mesh.faces.size() <= kDear) return false;
+        if (misshapen(form_of(chart), parts, kOnTheWay)) return true;
+        if (chart.mesh.faces.size() <= kLargeChart) return false;
+        return crosses_itself(chart.mesh, chart.uv, 0, steps < kSettled ? kNearEndsOnTheWay : 0);
+    }
+
     /// Whether a chart of two parts is too ragged or too long, by more than `slack`.
     bool misshapen(const Form& whole, const std::array<Form, 2>& parts, double slack) const {
-        if (slack * whole.fill < std::min({merge_.least_fill, parts[0].fill, parts[1].fill})) return true;
+        if (slack * whole.fill < std::min({merge_.least_fill, parts[0].fill, parts[1].fill}))
+            return true;
         // Two that lie beside each other may be as long as the longer of them.
         const double longer = std::max(parts[0].length, parts[1].length);
         return whole.length > slack * std::max(merge_.longest, kAsLong * longer);

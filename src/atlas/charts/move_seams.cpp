@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "atlas/charts/meter.h"
@@ -16,10 +17,8 @@ namespace {
 
 constexpr int kReaches = 2;
 constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
-constexpr double kLeastSaved = 0.02;  // of a seam's length, for which charts are laid anew
-constexpr int kIterations = 8;        // from where a chart lies, most of it well
-constexpr std::size_t kAround = 5;    // times the triangles taken over, laid anew
-constexpr std::size_t kLeastAround = 500;
+constexpr double kLeastSaved = 0.02;     // of a seam's length, for which charts are laid anew
+constexpr int kIterations = 8;           // from where a chart lies, most of it well
 constexpr double kLeastValue = 0.05;     // saved, over the unit, for laying all of the mesh anew
 constexpr double kLeastValueDear = 0.1;  // the same where that takes many seconds
 constexpr double kMostWork = 8;          // triangles laid flat, over those of the mesh
@@ -101,6 +100,13 @@ class Mover {
         return newest;
     }
 
+    /// Where a seam is and shall be.
+    static std::vector<std::uint32_t> places(const SeamMove& move) {
+        std::vector<std::uint32_t> places(move.chain);
+        places.insert(places.end(), move.path.begin(), move.path.end());
+        return places;
+    }
+
     /// A chain and where it may move to.
     struct Candidate {
         Trial trial;
@@ -121,7 +127,7 @@ class Mover {
         const double least = std::max(kLeastSaved * length, least_value_ * work);
         for (; *c.refused < kReaches; ++*c.refused) {
             c.trial.move = paths_.shorten(c.chain, kReach[*c.refused], Corners::move, search);
-            if (c.trial.move.saved > least) break;
+            if (c.trial.move.saved > least && !refused_.contains(places(c.trial.move))) break;
         }
     }
 
@@ -234,28 +240,6 @@ class Mover {
         return kept.empty() ? kept : after;
     }
 
-    /// Faces of a chart that are laid anew after it took some over: those and as many again around
-    /// them, `kAround` times. None where that is most of the chart, which is all of it.
-    static std::vector<std::uint32_t> around(const ChartMesh& chart,
-                                             const std::vector<std::uint32_t>& come) {
-        const std::size_t wanted = std::max(kAround * come.size(), kLeastAround);
-        if (2 * wanted > chart.faces.size()) return {};
-        std::vector<std::uint8_t> seen(chart.faces.size(), 0);
-        std::vector<std::uint32_t> faces;
-        const auto add = [&](std::uint32_t f) {
-            if (!std::exchange(seen[f], 1)) faces.push_back(f);
-        };
-        for (std::size_t f = 0, k = 0; f < chart.faces.size(); ++f) {
-            while (k < come.size() && come[k] < chart.triangles[f]) ++k;
-            if (k < come.size() && come[k] == chart.triangles[f])
-                add(static_cast<std::uint32_t>(f));
-        }
-        for (std::size_t i = 0; i < faces.size() && faces.size() < wanted; ++i)
-            for (std::uint32_t h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
-                if (chart.twin[h] != kNone) add(chart.twin[h] / 3);
-        return faces;
-    }
-
     /// Lays one of the charts flat as it would be from where it lies.
     bool lay(Trial& t, int side) {
         const FlatChart& old = cut_.charts[t.chart[side]];
@@ -265,6 +249,7 @@ class Mover {
         if (triangles.empty() || triangles.size() > options_.triangles) return false;
         flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         if (!flat.mesh.disk) return false;
+        if (flat.mesh.area > old.mesh.area && flat.mesh.area > options_.grown) return false;
         const bool large = flat.mesh.faces.size() > kLargeChart;
         flat.uv = large ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh)
                         : unfold_uvs(old, flat.mesh);
@@ -273,7 +258,7 @@ class Mover {
             ArapOptions trial = trial_arap(options_);
             trial.iterations = kIterations;
             arap(flat.mesh, flat.uv, trial,
-                 large ? around(flat.mesh, come) : std::vector<std::uint32_t>{});
+                 large ? faces_around(flat.mesh, come) : std::vector<std::uint32_t>{});
         }
         scale_to_area(flat.mesh, flat.uv);
         const FlatCheck check = check_flat(flat.mesh, flat.uv, options_.gap);
@@ -282,7 +267,6 @@ class Mover {
             return false;
         flat.worst = check.linf;
         flat.l2 = check.l2;
-        if (flat.mesh.area > old.mesh.area && flat.mesh.area > options_.grown) return false;
         const double length = smallest_rectangle(chart_hull(flat)).length;
         return length <= options_.longest || length <= smallest_rectangle(chart_hull(old)).length;
     }
@@ -302,6 +286,10 @@ class Mover {
             }
             return;
         }
+        // A large chart is laid anew around the move only, which fails there again whatever changes
+        // elsewhere.
+        if (std::max(t.flat[0].mesh.faces.size(), t.flat[1].mesh.faces.size()) > kLargeChart)
+            refused_.insert(places(t.move));
         std::swap(t.move.chain, t.move.path);
         paths_.move(t.move);
         glue(t.move.chain, true);
@@ -322,7 +310,8 @@ class Mover {
         int refused = 0;  // how often before
         SeamMove move;
     };
-    std::map<Refusals::Change, Found> found_;  // in the last round
+    std::map<Refusals::Change, Found> found_;       // in the last round
+    std::set<std::vector<std::uint32_t>> refused_;  // moves of large charts
 };
 
 }  // namespace

@@ -176,6 +176,9 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
     PlanarFactor factor;
     std::vector<Vec2> at(part.vertex.size()), rhs(part.vertex.size()), held;
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = uv[part.vertex[v]];
+    const auto hand_out = [&] {
+        for (std::size_t v = 0; v < part.n_free; ++v) uv[part.vertex[v]] = at[v];
+    };
     double before = -1, energy = 0;
     for (int step = 0; step < options.iterations; ++step) {
         if (options.on_step) options.on_step();
@@ -187,6 +190,10 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
             const double left = energy * std::pow(energy / before, options.iterations - step);
             if (left > options.hopeless) break;
         }
+        if (step > 0 && options.in_vain) {
+            hand_out();
+            if (options.in_vain(step)) break;
+        }
         before = energy;
         if (step == 0) {
             const Dissection dissection = renumber(part, at);
@@ -197,7 +204,7 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
         factor.solve(std::span(rhs).first(part.n_free));
         std::copy(rhs.begin(), rhs.begin() + static_cast<std::ptrdiff_t>(part.n_free), at.begin());
     }
-    for (std::size_t v = 0; v < part.n_free; ++v) uv[part.vertex[v]] = at[v];
+    hand_out();
     return energy;
 }
 

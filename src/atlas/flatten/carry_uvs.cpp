@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "atlas/flatten/rigid_motion.h"
 
 namespace tuft::atlas {
 namespace {
+
+constexpr std::size_t kAround = 5;  // times the triangles taken over, laid anew
+constexpr std::size_t kLeastAround = 500;
 
 /// Third corner of a triangle whose first edge lies at a, b.
 Vec2 unfold(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec2& a, const Vec2& b) {
@@ -167,6 +171,25 @@ std::vector<Vec2> unfold_uvs(const FlatChart& old, const ChartMesh& chart) {
             uv[c] = unfold(chart.position[a], chart.position[b], chart.position[c], uv[a], uv[b]);
         }
     return uv;
+}
+
+std::vector<std::uint32_t> faces_around(const ChartMesh& chart, std::span<const std::uint32_t> come) {
+    const std::size_t wanted = std::max(kAround * come.size(), kLeastAround);
+    if (2 * wanted > chart.faces.size()) return {};
+    std::vector<std::uint8_t> seen(chart.faces.size(), 0);
+    std::vector<std::uint32_t> faces;
+    const auto add = [&](std::uint32_t f) {
+        if (!std::exchange(seen[f], 1)) faces.push_back(f);
+    };
+    for (std::size_t f = 0, k = 0; f < chart.faces.size(); ++f) {
+        while (k < come.size() && come[k] < chart.triangles[f]) ++k;
+        if (k < come.size() && come[k] == chart.triangles[f])
+            add(static_cast<std::uint32_t>(f));
+    }
+    for (std::size_t i = 0; i < faces.size() && faces.size() < wanted; ++i)
+        for (std::uint32_t h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
+            if (chart.twin[h] != kNone) add(chart.twin[h] / 3);
+    return faces;
 }
 
 }  // namespace tuft::atlas

@@ -23,4 +23,8 @@ std::vector<Vec2> carry_uvs(const FlatChart& old, const FlatChart& donor,
 /// unfolded from those one by one, which follows a winding border better.
 std::vector<Vec2> unfold_uvs(const FlatChart& old, const ChartMesh& chart);
 
+/// Faces of a chart that are laid anew after it took the triangles `come` over (ascending): those and
+/// five times as many around them. None where that is most of the chart, which is all of it.
+std::vector<std::uint32_t> faces_around(const ChartMesh& chart, std::span<const std::uint32_t> come);
+
 }  // namespace tuft::atlas

@@ -17,6 +17,8 @@ struct ArapOptions {
     double enough = 1e-12;    ///< stop below this energy
     double hopeless = 1e300;  ///< stop when the energy will stay above this, as far as can be told
     std::function<void()> on_step;  ///< called before each iteration; may throw to stop
+    std::function<bool(int steps)> in_vain;  ///< asked after each of them, `uv` being as it is
+                                             ///< then: true stops
 };
 
 /// Least squares conformal map (Lévy et al. 2002) of a disk by CGAL, scaled to the
