@@ -20,6 +20,8 @@ bool beside(int texel) { return texel % 29 == 7; }
 
 /// Conductances as of a stretched, sheared chart with a hole in it.
 void fill(Geometry& g, std::uint64_t seed) {
+    for (int k = 0; k < kField; ++k) g.room[static_cast<std::size_t>(k)] = static_cast<std::uint16_t>((0.4f + 0.8f * chance(seed + 9, k)) / kRoomUnit);
+    g.blocks = 0xf7ff;
     g.valid.fill((1u << (kSide + 2)) - 1);
     if (seed % 2) g.gd = std::make_unique<Geometry::Diagonals>();
     const bool upwards = seed % 100 < 51, downwards = seed % 200 > 1;
@@ -70,7 +72,8 @@ int main() {
         }
         Geometry g;
         fill(g, 50 * round + (round & 1));
-        const Step step{.flow = 0.02f, .levelling = 0.01f, .limit = 0.06f, .threshold = 0.1f, .pin = 1, .mixing = 0.02f, .grip = 0.5f,
+        const Step step{.flow = 0.02f, .levelling = 0.01f, .limit = 0.06f,
+                        .most = round & 16 ? 0.02f * kRoomUnit : 0.0f, .most_of_link = 0.03f, .threshold = 0.1f, .pin = 1, .mixing = 0.02f, .grip = 0.5f,
                         .soak = 0.01f, .pores = round & 4 ? 3.0f : 0.0f, .passing = round & 8 ? 0.2f : 1.0f,
                         .evaporation = 0.004f, .rim = 0.002f,
                         .hold = 1, .relief = 0.015f, .ridge = 0.4f};
@@ -81,11 +84,18 @@ int main() {
         gather(work.z, z_at);
         work.on_relief = round % 3 == 2;
         fluxes(work, g, step);
+        if (step.most > 0) {
+            Beside beside{.blocks = {0xffff, 0xffff, 0xffff, 0xffff}, .here = g.blocks};
+            beside.liquid = {w_at[3], w_at[5], w_at[1], w_at[7]};
+            film_block_flow(work, g, beside, step);
+            beside.liquid = {s_at[3], s_at[5], s_at[1], s_at[7]};
+            pore_block_flow(work, g, beside, step);
+        }
         std::array<SeamLanes, 2> seams;
         for (std::size_t lane = 0; lane < 2 * kSide; ++lane) {
             SeamLanes& l = seams[lane / kSide];
             const auto x = lane % kSide;
-            l.weight[x] = 0.7f, l.apart[x] = 0.05f * static_cast<float>(lane);
+            l.weight[x] = 0.7f, l.room[x] = 0.5f, l.apart[x] = 0.05f * static_cast<float>(lane);
             for (std::size_t end = 0; end < 2; ++end) {
                 l.w[end][x] = w[end][4 * lane], l.s[end][x] = s[end][4 * lane], l.z[end][x] = z[end][4 * lane];
                 l.grain[end][x] = end ? 1.1f : 0.9f;
@@ -93,7 +103,10 @@ int main() {
         }
         seam_fluxes(seams, step);
         for (const SeamLanes& l : seams) {
-            for (const auto* lane : {&l.through_w, &l.through_s, &l.a, &l.b}) add(*lane);
+            for (SeamLanes::Lane lane : {l.through_w, l.through_s, l.a, l.b}) {
+                for (float& v : lane) v += 0.0f;  // no zero's sign counts
+                add(lane);
+            }
             for (std::size_t x = 0; x < kSide; ++x) {
                 work.dw[x] -= l.through_w[x];
                 work.dp[x] -= l.a[x] * p[0][4 * x] + l.b[x] * p[1][4 * x];

@@ -25,6 +25,12 @@ constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
 // (k + kSeamStiffness) leaves it, 0.92 at most.
 constexpr double kSeamStiffness = 2;
 static_assert(kFlowPart * (4 + kSeamPart) < 4 + kSeamStiffness);
+// The same where flows are held back: texels inside charts have 4 sides and 4 corners through which half as much goes,
+// those at seams 0.4 of that and the rest over links. Together with mixing no more than all.
+constexpr double kHeldPart = 0.75, kFaces = 6, kHeldPartOfLinks = 0.5;
+// Of the shortest step: ink runs off ridges at once; no blocks lie over seams; fronts run fast while there is liquid on
+// the surface.
+constexpr double kStepOnRelief = 0.2, kStepAtSeams = 0.4, kStepOfFilm = 0.5;
 constexpr double kBeadStep = 0.05;     // seconds: a bead goes a texel or a few
 constexpr double kLeastMixing = 2e-10; // m²/s
 constexpr double kStirring = 0.02;     // film units: mixing over mobility
@@ -50,10 +56,11 @@ struct Crossing {
         texels.resize(n);
         beyond.resize(n * static_cast<std::size_t>(n_pigments));
     }
-    void add(const atlas::SeamLink& link, const std::array<float, 2>& w, const std::array<float, 2>& s) {
+    void add(const atlas::SeamLink& link, float room, const std::array<float, 2>& w, const std::array<float, 2>& s) {
         SeamLanes& l = lanes[size / kSide];
         const std::size_t lane = size % kSide;
         l.weight[lane] = link.weight;
+        l.room[lane] = room;
         l.apart[lane] = static_cast<float>(link.apart) / 64;
         for (int end = 0; end < 2; ++end) l.w[end][lane] = w[end], l.s[end][lane] = s[end];
         texels[size++] = link.texel;
@@ -234,7 +241,9 @@ struct WetFilm::State : TileList {
         const double area = map.texel_size * map.texel_size;
         const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
         double stiffness = 4, most_w = 0, most_s = 0;
+        bool at_seams = false;
         for (const Active& tile : list) {
+            at_seams = at_seams || (tile.seam_wet && !tile.links.empty());
             stiffness = std::max(stiffness, static_cast<double>(tile.stiffness));
             if (!tile.links.empty()) stiffness = std::max(stiffness, std::max(4.0, static_cast<double>(tile.stiffness)) + kSeamStiffness);
             most_w = std::max(most_w, static_cast<double>(tile.outcome.most_w));
@@ -249,11 +258,15 @@ struct WetFilm::State : TileList {
         if (flow > 0) dt = std::min(dt, kFlowPart / flow);
         const double mixing = p.mixing / area * stiffness;
         if (mixing > 0) dt = std::min(dt, kMixingPart / mixing);
-        dt = std::max(dt, p.shortest_step);
+        const double shortest = p.shortest_step * (any_relief ? kStepOnRelief : at_seams ? kStepAtSeams : most_w > 0 ? kStepOfFilm : 1);
+        const bool held = dt < shortest;
+        dt = std::max(dt, shortest);
         dt = left / std::ceil(left / dt * (1 - 1e-12));
         step.flow = static_cast<float>(p.mobility * dt / area);
         step.levelling = static_cast<float>(levelling * dt / area);
         step.limit = static_cast<float>(kFlowPart / stiffness);
+        step.most = held ? static_cast<float>(kHeldPart / kFaces) * kRoomUnit : 0;
+        step.most_of_link = static_cast<float>(kHeldPartOfLinks);
         step.threshold = static_cast<float>(p.threshold);
         step.pin = static_cast<float>(p.pin);
         step.mixing = static_cast<float>(std::min(p.mixing * dt / area, kMixingPart / stiffness));
@@ -292,7 +305,7 @@ struct WetFilm::State : TileList {
             lanes.grain[1][lane] = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
             lanes.z[0][lane] = at(sources[index].relief, l.texel);
             lanes.z[1][lane] = at(sources[other].relief, l.other_texel);
-            crossing.add(l, {here[0], there[0]}, {here[1], there[1]});
+            crossing.add(l, tile.link_rooms[i], {here[0], there[0]}, {here[1], there[1]});
         }
         wet::seam_fluxes(std::span(crossing.lanes).first((crossing.size + kSide - 1) / kSide), step);
         for (std::size_t i = 0; i < crossing.size; ++i) {
@@ -345,6 +358,23 @@ struct WetFilm::State : TileList {
         }
     }
 
+    /// On relief the liquid's own surface levels, and not its depth.
+    Beside beside(const Active& tile, const Near& near, Liquid kind) const {
+        const auto blocks = [kind](const Active& a, const Sources& s) {
+            return kind == Liquid::film && s.relief ? std::uint16_t{0} : a.geometry->blocks;
+        };
+        Beside out{.here = blocks(tile, *near[4])};
+        constexpr std::array kSides{3, 5, 1, 7};
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Sources& from = *near[kSides[i]];
+            const Plane* plane = from.liquid[static_cast<std::size_t>(kind)];
+            if (!plane) continue;
+            out.liquid[i] = plane->data();
+            out.blocks[i] = blocks(list[tile.around[kSides[i]]], from);
+        }
+        return out;
+    }
+
     void compute(std::size_t index, int pigments, const Step& step, std::uint64_t number, Worker& worker) {
         Active& tile = list[index];
         Work& work = worker.work;
@@ -360,6 +390,8 @@ struct WetFilm::State : TileList {
         Ahead& ahead = worker.ahead;
         ahead.fetch(kLines);
         const bool thin = fluxes(work, g, step);
+        if (step.most > 0 && any_w) film_block_flow(work, g, beside(tile, near, Liquid::film), step);
+        if (step.most > 0 && any_s) pore_block_flow(work, g, beside(tile, near, Liquid::pores), step);
         ahead.fetch(2 * kLines);
         cross_seams(index, pigments, step, thin, work, worker.crossing);
         ahead.fetch(kLines);

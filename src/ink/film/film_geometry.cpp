@@ -12,6 +12,8 @@ constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of t
 constexpr double kMostConductance = 4; // over the smaller of the two areas
 constexpr double kNoShear = 0.05;     // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
 constexpr double kLeastDiagonal = 0.02; // beside seams: less is left out, as it costs as much as more
+constexpr double kRoomAtSeams = 0.4;   // of the area
+constexpr double kLeastInBlock = 0.5;  // of the mean area
 constexpr double kGrainDepth = 0.4;   // of the mean
 constexpr double kFlocsRms = 0.437;    // of the octaves' sum
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
@@ -173,6 +175,15 @@ std::uint16_t packed(double g) {
     return static_cast<std::uint16_t>(std::min(std::round(g / static_cast<double>(kConductanceUnit)), 65535.0));
 }
 
+/// Whether a block of 4 × 4 texels is all of one piece, away from seams and tape.
+bool whole(const Neighbourhood& n, int block, double least_area) {
+    for (int i = 0; i < kBlock * kBlock; ++i) {
+        const Spot& s = n.at(block % kBlocks * kBlock + i % kBlock, block / kBlocks * kBlock + i / kBlock);
+        if (!s.valid || s.border || s.free < 255 || s.area < least_area) return false;
+    }
+    return true;
+}
+
 /// Σ conductances of a texel.
 float sum_at(const Geometry& g, int t) {
     const int column = t % kSide, row = t / kSide;
@@ -210,6 +221,8 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
             if (!s.valid) continue;
             g.valid[row + 1] |= 1u << (column + 1);
             g.grain[field_at(column, row)] = static_cast<float>(s.grain);
+            g.room[static_cast<std::size_t>(field_at(column, row))] = static_cast<std::uint16_t>(
+                std::min((s.border ? kRoomAtSeams : 1) * s.area / (mean * static_cast<double>(kRoomUnit)), 65535.0));
             if (row >= 0 && row < kSide && column >= 0 && column < kSide)
                 g.inverse[row * kSide + column] = static_cast<float>(mean / s.area);
         }
@@ -231,6 +244,7 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
             g.ups |= m > 0 && units > 0;
             g.downs |= m < 0 && units > 0;
         }
+    for (int block = 0; block < kBlocks * kBlocks; ++block) g.blocks |= static_cast<std::uint16_t>(whole(n, block, kLeastInBlock * mean) << block);
     if (any) g.gd = std::make_unique<Geometry::Diagonals>(diagonals);
     for (int t = 0; t < kTexels; ++t) g.stiffness = std::max(g.stiffness, g.inverse[t] * sum_at(g, t));
     return g;

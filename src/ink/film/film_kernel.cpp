@@ -20,36 +20,50 @@ constexpr float kMostNear = 8;       // of what smears between two texels, over 
 
 TUFT_INLINE float larger(float a, float b) { return a > b ? a : b; }
 TUFT_INLINE float smaller(float a, float b) { return a < b ? a : b; }
+TUFT_INLINE std::uint16_t smaller_of(std::uint16_t a, std::uint16_t b) { return a < b ? a : b; }
 TUFT_INLINE float positive(float a) { return a > 0 ? a : 0; }
 TUFT_INLINE float rate_of(float total, float grip) { return total > 0 ? 1 / larger(larger(total, grip), kLeast) : 0; }
 
 /// One end of a face: what is there, and what of it counts.
 struct End {
     float w, s, t, rate, grain, above, free, carrying, z;
+    std::uint16_t room;
 };
 /// Rows of them.
 struct Ends {
     const float *w, *s, *t, *rate, *grain, *above, *free, *carrying, *z;
+    const std::uint16_t* room;
 
-    TUFT_INLINE End at(int x) const { return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x], z[x]}; }
+    TUFT_INLINE End at(int x) const { return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x], z[x], room[x]}; }
 };
 TUFT_INLINE Ends ends(const Work& o, const Geometry& g, int k) {
-    return {&o.w[k], &o.s[k], &o.total[k], &o.rate[k], &g.grain[k], &o.above[k], &o.free[k], &o.carrying[k], &o.z[k]};
+    return {&o.w[k], &o.s[k], &o.total[k], &o.rate[k], &g.grain[k], &o.above[k], &o.free[k], &o.carrying[k], &o.z[k], &g.room[static_cast<std::size_t>(k)]};
 }
 /// Fibres hold grains back from what seeps.
 TUFT_INLINE float passing_of(const Step& p) { return p.pores > 0 ? p.passing : 1; }
 TUFT_INLINE End end_of(float w, float s, float grain, float z, const Step& p) {
     const float t = w + s;
-    return {w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.hold), w + passing_of(p) * s, z};
+    return {w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.hold), w + passing_of(p) * s, z, 0};
 }
 
 /// What differs between tiles; all give the same numbers where they apply.
-template <bool kPores, bool kDry, bool kRelief>
+template <bool kPores, bool kDry, bool kRelief, bool kHeld>
 struct Law {
     static constexpr bool pores = kPores;
 
+    /// Conductance g times how much flows.
+    static TUFT_INLINE float held(float g, float flow, float most, const Step& p) {
+        if constexpr (kHeld) return smaller(g * flow, most);
+        return g * smaller(flow, p.limit);
+    }
+
+    /// At most so much of what a texel has leaves it through a face.
+    static TUFT_INLINE float most_of(const End& e0, const End& e1, float share, const Step& p) {
+        return kHeld ? share * p.most * static_cast<float>(smaller_of(e0.room, e1.room)) : 0;
+    }
+
     /// Flux of liquid on the surface between two texels, film units · mean area.
-    static TUFT_INLINE float film_flux(float g, const End& e0, const End& e1, const Step& p) {
+    static TUFT_INLINE float film_flux(float g, const End& e0, const End& e1, float most, const Step& p) {
         float above = e0.above + e1.above;  // the mean's double
         float over0 = 0, over1 = 0;  // what may leave an end on relief
         if constexpr (kRelief) over0 = positive(e0.w - p.ridge), over1 = positive(e1.w - p.ridge);
@@ -61,17 +75,18 @@ struct Law {
             if constexpr (kRelief) over0 = smaller(over0, over_held0), over1 = smaller(over1, over_held1);
         }
         const float level = (0.5f * p.levelling) * (e0.free + e1.free);
-        const float plain = g * smaller((0.5f * p.flow) * above + (above > 0 ? level : 0), p.limit) * (e0.w - e1.w);
+        const float plain = held(g, (0.5f * p.flow) * above + (above > 0 ? level : 0), most, p) * (e0.w - e1.w);
         if constexpr (!kRelief) return plain;
         // Down the liquid's own surface, and no more than its upper end has to give.
         const float drop = (e0.w + e0.z) - (e1.w + e1.z), over = drop > 0 ? over0 : over1;
-        const float run = smaller((0.5f * p.flow) * above + p.relief * over, p.limit) * drop;
-        const float most = p.limit * over;
-        return e0.z + e1.z > 0 ? g * larger(smaller(run, most), -most) : plain;
+        const float run = smaller((0.5f * p.flow) * above + p.relief * over, p.limit) * drop, all = p.limit * over;
+        float down = g * larger(smaller(run, all), -all);
+        if constexpr (kHeld) down = larger(smaller(down, most * over), -(most * over));
+        return e0.z + e1.z > 0 ? down : plain;
     }
 
-    static TUFT_INLINE float pore_flux(float g, const End& e0, const End& e1, const Step& p) {
-        return g * smaller((0.5f * p.flow) * (e0.s + e1.s), p.limit) * (e0.s - e1.s);
+    static TUFT_INLINE float pore_flux(float g, const End& e0, const End& e1, float most, const Step& p) {
+        return held(g, (0.5f * p.flow) * (e0.s + e1.s), most, p) * (e0.s - e1.s);
     }
 };
 
@@ -85,22 +100,26 @@ TUFT_INLINE Carriers carriers(float g, float flux, const End& e0, const End& e1,
 
 /// Faces' conductances as `Geometry` holds them: of sides, of diagonals that rise and that fall.
 struct Straight {
+    static constexpr float share = 1;
     static TUFT_INLINE float unpack(std::uint16_t g) { return static_cast<float>(g) * kConductanceUnit; }
 };
 struct Rising {
+    static constexpr float share = 0.5f;
     static TUFT_INLINE float unpack(std::int16_t g) { return positive(static_cast<float>(g) * kDiagonalUnit); }
 };
 struct Falling {
+    static constexpr float share = 0.5f;
     static TUFT_INLINE float unpack(std::int16_t g) { return positive(-(static_cast<float>(g) * kDiagonalUnit)); }
 };
 
 /// A face: what flows, and in `a`, `b` what it carries.
-template <class Law>
+template <class Law, class Kind>
 TUFT_INLINE void face(float g, const End& e0, const End& e1, float& w, float& s, float& a, float& b, const Step& p) {
-    const float fw = Law::film_flux(g, e0, e1, p);
+    const float most = Law::most_of(e0, e1, Kind::share, p);
+    const float fw = Law::film_flux(g, e0, e1, most, p);
     float flux = fw;
     if constexpr (Law::pores) {
-        const float fs = Law::pore_flux(g, e0, e1, p);
+        const float fs = Law::pore_flux(g, e0, e1, most, p);
         s = fs;
         flux = fw + p.passing * fs;
     }
@@ -115,7 +134,7 @@ template <class Law, class Kind, class Packed>
 TUFT_INLINE void faces(Work& o, Faces& f, int k, int at, const Packed* g, const Ends& from, const Ends& to, const Step& p) {
     float *w = &o.through[0][at], *s = &o.through[1][at], *a = &f.a[k], *b = &f.b[k];
 #pragma GCC ivdep
-    for (int x = 0; x < kLanes; ++x) face<Law>(Kind::unpack(g[x]), from.at(x), to.at(x), w[x], s[x], a[x], b[x], p);
+    for (int x = 0; x < kLanes; ++x) face<Law, Kind>(Kind::unpack(g[x]), from.at(x), to.at(x), w[x], s[x], a[x], b[x], p);
 }
 
 /// All faces' upper sides of a row, and what comes into its texels through their four sides.
@@ -130,7 +149,7 @@ TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below_
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
         float w = 0, s = 0;
-        face<Law>(Straight::unpack(conductance[x]), from.at(x), to.at(x), w, s, a[x], b[x], p);
+        face<Law, Straight>(Straight::unpack(conductance[x]), from.at(x), to.at(x), w, s, a[x], b[x], p);
         if constexpr (!kFirst) dw[x] = (x_w[x - 1] - x_w[x]) + (below_w[x] - w);
         below_w[x] = w;
         if constexpr (Law::pores) {
@@ -169,18 +188,22 @@ TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
     if (g.ups) diagonals<Law, Rising>(o, o.up, g, 0, kRow + 1, p);
     if (g.downs) diagonals<Law, Falling>(o, o.down, g, 1, kRow, p);
 }
-TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0) all_faces<Law<true, false, false>>(o, g, p);
-    else all_faces<Law<false, false, false>>(o, g, p);
+template <bool kDry, bool kRelief>
+TUFT_INLINE void faces_of(Work& o, const Geometry& g, const Step& p) {
+    if (p.pores > 0) all_faces<Law<true, kDry, kRelief, false>>(o, g, p);
+    else all_faces<Law<false, kDry, kRelief, false>>(o, g, p);
 }
-TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0) all_faces<Law<true, true, false>>(o, g, p);
-    else all_faces<Law<false, true, false>>(o, g, p);
+template <bool kDry, bool kRelief>
+TUFT_INLINE void held_faces_of(Work& o, const Geometry& g, const Step& p) {
+    if (p.pores > 0) all_faces<Law<true, kDry, kRelief, true>>(o, g, p);
+    else all_faces<Law<false, kDry, kRelief, true>>(o, g, p);
 }
-TUFT_CLONES void faces_on_relief(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0) all_faces<Law<true, true, true>>(o, g, p);
-    else all_faces<Law<false, true, true>>(o, g, p);
-}
+TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) { faces_of<false, false>(o, g, p); }
+TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) { faces_of<true, false>(o, g, p); }
+TUFT_CLONES void faces_on_relief(Work& o, const Geometry& g, const Step& p) { faces_of<true, true>(o, g, p); }
+TUFT_CLONES void held_faces_wet(Work& o, const Geometry& g, const Step& p) { held_faces_of<false, false>(o, g, p); }
+TUFT_CLONES void held_faces_dry(Work& o, const Geometry& g, const Step& p) { held_faces_of<true, false>(o, g, p); }
+TUFT_CLONES void held_faces_on_relief(Work& o, const Geometry& g, const Step& p) { held_faces_of<true, true>(o, g, p); }
 
 /// What faces need of all texels and those round them; returns the least liquid.
 TUFT_CLONES float levels(Work& o, const Step& step) {
@@ -279,11 +302,13 @@ TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work&
             w1 += over;
             const float all = evaporation + rim * o.rim_slope[i];
             const float from_w = smaller(w1, all), from_s = smaller(s1, all - from_w);
-            w1 -= from_w;
-            s1 -= from_s;
+            // What goes is what is less after it: sums are rounded.
+            const float w2 = w1 - from_w, s2 = s1 - from_s;
+            air[x] += ((w1 - w2) + (s1 - s2)) / larger(inverse[i], kLeast);
+            w1 = w2;
+            s1 = s2;
             w[i] = w1;
             s[i] = s1;
-            air[x] += (from_w + from_s) / larger(inverse[i], kLeast);
             const float total = w1 + s1;
             least[x] = smaller(least[x], total);
             most_w[x] = larger(most_w[x], w1);
@@ -353,16 +378,16 @@ TUFT_INLINE void carry_all(float* __restrict out, const Work& o, const Geometry&
 TUFT_CLONES void carry_inside(float* out, const Work& o, const Geometry& g, const float* noise) { carry_all<false>(out, o, g, noise); }
 TUFT_CLONES void carry_over_seams(float* out, const Work& o, const Geometry& g, const float* noise) { carry_all<true>(out, o, g, noise); }
 
-template <bool kPores, bool kRelief>
+template <bool kPores, bool kHeld>
 TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
-    using Here = Law<kPores, true, kRelief>;
+    using Here = Law<kPores, true, true, kHeld>;
     const Step p = step;
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
         const End e0 = end_of(l.w[0][x], l.s[0][x], l.grain[0][x], l.z[0][x], p), e1 = end_of(l.w[1][x], l.s[1][x], l.grain[1][x], l.z[1][x], p);
-        const float g = l.weight[x], w = Here::film_flux(g, e0, e1, p);
+        const float g = l.weight[x], most = p.most_of_link * l.room[x], w = Here::film_flux(g, e0, e1, most, p);
         float s = 0;
-        if constexpr (kPores) s = Here::pore_flux(g, e0, e1, p);
+        if constexpr (kPores) s = Here::pore_flux(g, e0, e1, most, p);
         const float flux = w + p.passing * s;
         const Carriers c = carriers(g, flux, e0, e1, p);
         // Nearer cells' middles lie farther apart than their texels, by whose distance their amounts differ: they mix more,
@@ -376,6 +401,10 @@ TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
     }
 }
 TUFT_CLONES void sixteen_seams(SeamLanes& l, const Step& p) {
+    if (p.pores > 0) seam_faces<true, false>(l, p);
+    else seam_faces<false, false>(l, p);
+}
+TUFT_CLONES void sixteen_held_seams(SeamLanes& l, const Step& p) {
     if (p.pores > 0) seam_faces<true, true>(l, p);
     else seam_faces<false, true>(l, p);
 }
@@ -401,7 +430,8 @@ void gather(Field& field, const std::array<const float*, 9>& planes) { gather_ro
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
     const float depth = step.rim > 0 ? step.rim_depth : 0, least = levels(work, step);
     const Least rims = least > 0 && least >= depth ? Least{} : look_for_rims(work, g, depth);
-    (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
+    if (step.most > 0) (work.on_relief ? held_faces_on_relief : rims.dry ? held_faces_dry : held_faces_wet)(work, g, step);
+    else (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
     if (!(step.pores > 0)) work.ds.fill(0);
     if (rims.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
     else if (work.sloping) work.rim_slope.fill(0);
@@ -459,7 +489,7 @@ const float* dither(std::uint64_t seed) {
 }
 
 void seam_fluxes(std::span<SeamLanes> lanes, const Step& step) {
-    for (SeamLanes& l : lanes) sixteen_seams(l, step);
+    for (SeamLanes& l : lanes) (step.most > 0 ? sixteen_held_seams : sixteen_seams)(l, step);
 }
 
 }  // namespace tuft::ink::wet

@@ -49,6 +49,7 @@ TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
     for (const atlas::SeamLink& l : seams.links) weights_.push_back(l.weight);
     taps_ = seams.taps;
     find_near();
+    find_rooms();
     limit_links();
 }
 
@@ -74,6 +75,21 @@ void TileList::find_near() {
         }
         near_start_.push_back(static_cast<std::uint32_t>(near_.size()));
     }
+}
+
+/// Of each texel its links share the area; a link takes the smaller of its ends' parts, so that both hold the same.
+void TileList::find_rooms() {
+    const double mean = map.texel_size * map.texel_size;
+    std::vector<std::array<std::uint16_t, kTexels>> n_links(map.n_slots());
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (const atlas::SeamLink& l : links_of(slot)) ++n_links[slot][l.texel];
+    const auto part = [&](std::uint32_t slot, std::uint8_t texel) {
+        return static_cast<double>(map.tiles[slot].area[texel]) / (mean * n_links[slot][texel]);
+    };
+    link_rooms_.clear();
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (const atlas::SeamLink& l : links_of(slot))
+            link_rooms_.push_back(static_cast<float>(std::min(part(slot, l.texel), part(l.other_slot, l.other_texel))));
 }
 
 void TileList::set_unevenness(double unevenness) {
@@ -201,6 +217,7 @@ void TileList::spread() {
         next[i].slot = wanted[i];
         next[i].links = links_of(wanted[i]);
         next[i].link_others = std::span<const std::uint16_t>(link_near_).subspan(seams.start[wanted[i]], next[i].links.size());
+        next[i].link_rooms = std::span<const float>(link_rooms_).subspan(seams.start[wanted[i]], next[i].links.size());
         next[i].taps = std::span(seams.taps).subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
         place_[wanted[i]] = static_cast<std::uint32_t>(i);
         mark_[wanted[i]] = 0;

@@ -44,6 +44,7 @@ struct Active {
     std::span<const Beyond> others;         ///< ascending slots
     std::span<const atlas::SeamLink> links;
     std::span<const std::uint16_t> link_others;  ///< of the links: places in `others`
+    std::span<const float> link_rooms;      ///< of the links: area over the mean that each may empty
     std::span<const atlas::SeamTap> taps;
     Outcome outcome;
     float stiffness = 0;
@@ -106,6 +107,7 @@ struct TileList {
     std::vector<std::uint32_t> near_start_;  ///< [n_slots + 1]
     std::vector<Beyond> near_;          ///< over seams, by slot; places unknown
     std::vector<std::uint16_t> link_near_;   ///< of the links: which of the slot's `near_`
+    std::vector<float> link_rooms_;     ///< of the links
     std::vector<Beyond> others_;        ///< of the list
     std::vector<std::uint8_t> wanted_;  ///< of the list: scratch
     std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch
@@ -114,6 +116,7 @@ struct TileList {
     void find_near();
     void look_anew();
     void limit_links();
+    void find_rooms();
     void close_taps();
     std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const;
     std::array<std::uint32_t, 9> around(std::uint32_t slot) const;

@@ -17,6 +17,7 @@ namespace tuft::ink::wet {
 inline constexpr int kTexels = atlas::kTileTexels;
 inline constexpr int kSide = atlas::kTile;
 inline constexpr int kRow = kSide + 2;
+inline constexpr int kBlock = 4, kBlocks = kSide / kBlock;  ///< texels, blocks along a side
 inline constexpr int kSquares = 20 * kSide;  ///< 17 rows of them, in whole sixteens
 inline constexpr int kField = 22 * kSide;    ///< and the ends of those squares' diagonals
 static_assert(kSquares > (kSide + 1) * kRow - 2 && kField >= kSquares + kRow + 1);
@@ -25,6 +26,9 @@ struct alignas(64) Field : std::array<float, kField> {};
 
 /// Conductances in 16 bits: half the memory, which is what steps wait for. 1 is exact.
 inline constexpr float kConductanceUnit = 0x1p-14f, kDiagonalUnit = 0x1p-13f;
+
+/// Room at faces, as `Geometry` holds it.
+inline constexpr float kRoomUnit = 0x1p-14f;
 
 inline constexpr double kGrainLength = 1.2e-3;  ///< metres over which the pin of a place varies
 
@@ -52,6 +56,9 @@ struct alignas(64) Geometry {
     std::unique_ptr<Diagonals> gd;
     bool ups = false, downs = false;       ///< whether there are any > 0, < 0
     Field grain{};                         ///< pin of the place, over the mean
+    /// Of texels and those round them, over kRoomUnit: area over the mean, less beside seams, where links take their part.
+    std::array<std::uint16_t, kField> room{};
+    std::uint16_t blocks = 0;              ///< bits: blocks of 4 × 4 texels, row by row, of one piece, away from seams
 
     static constexpr int right_of(int column, int row) { return field_at(column, row) - kRow; }
     static constexpr int corner_of(int column, int row) { return field_at(column, row); }
@@ -73,6 +80,8 @@ struct Step {
     float flow = 0;        ///< D dt / A per film unit
     float levelling = 0;   ///< L dt / A per film unit above hold
     float limit = 0;       ///< of flow × thickness, so that nothing gets negative
+    float most = 0;        ///< of flow × thickness × conductance over the room at the face, instead; 0: `limit` holds
+    float most_of_link = 0;  ///< the same for links
     float threshold = 0, pin = 0;
     float mixing = 0;      ///< D_p dt / A
     float grip = 0;
@@ -115,6 +124,18 @@ void gather(Field& field, const std::array<const float*, 9>& planes);
 /// on some texel.
 bool fluxes(Work& work, const Geometry& g, const Step& step);
 
+/// A kind of liquid on the tiles to the left, to the right, below and above [256], null: none; and in which of this and
+/// their blocks it may flow from block to block.
+struct Beside {
+    std::array<const float*, 4> liquid{};
+    std::array<std::uint16_t, 4> blocks{};
+    std::uint16_t here = 0;
+};
+/// Where `most` holds flows back inside wide wet places: the rest of what flows on the surface, or through the pores,
+/// between blocks of 4 × 4 texels, which is stable for steps 16 times as long. Adds to dw or ds and to what carries pigments.
+void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& step);
+void pore_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& step);
+
 /// What a texel's liquid became.
 struct Outcome {
     float most_w = 0, most_s = 0;
@@ -142,6 +163,7 @@ struct alignas(64) SeamLanes {
     using Lane = std::array<float, kSide>;
     Lane weight{};
     Lane apart{};                                    ///< their distance, texels. What comes from upstream smears as over a whole texel
+    Lane room{};                                     ///< as `Geometry`'s, for one of a texel's links
     std::array<Lane, 2> w{}, s{}, grain{}, z{};      ///< liquid, pin of the place, relief
     Lane through_w, through_s;
     Lane a, b;                                       ///< pigment: a p1 + b p2
