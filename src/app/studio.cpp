@@ -24,6 +24,7 @@ constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015; 
 constexpr double kInkWait = 0.02, kInkPart = 0.2;  // seconds, and part of a frame's time, that the newest ink is waited for
 constexpr float kLeastView = 240;      // pixels at scale 1, of the model's view beside both panels
 constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
+constexpr double kPictureWait = 3;     // seconds that leaving waits at most for the newest ink on it
 
 // Micrometres.
 double highest_of(std::span<const std::array<std::uint8_t, 4>> texels) {
@@ -77,9 +78,18 @@ void Studio::make_graphics() {
 }
 
 void Studio::finish() {
-    if (hand_ && session_.painter) post(hand_->lift(), now_);
+    Session& s = session_;
+    if (hand_ && s.painter) post(hand_->lift(), now_);
     hand_.reset();
-    close_model(session_);
+    if (s.painter && (picture_due_ != 0 || s.strokes.size() != strokes_seen_)) {
+        s.painter->wait_idle(kPictureWait);
+        poll_painter(s);
+        take_model();
+        draw_scene(framebuffer_, height_);
+        picture_due_ = now_;
+        keep_picture();
+    }
+    close_model(s);
 }
 
 double Studio::patience() const {
@@ -293,6 +303,8 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     Session& s = session_;
     const double dt = std::max(1e-3, now - now_);
     now_ = now;
+    framebuffer_ = framebuffer;
+    height_ = height;
     if (s.restyle) {
         s.restyle = false;
         if (const std::string missing = s.ui.prepare(s.wanted); !missing.empty()) say(s, missing);

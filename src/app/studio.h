@@ -32,7 +32,8 @@ class Studio {
     /// The OpenGL context is gone, or goes; then there is a new one.
     void drop_graphics();
     void make_graphics();
-    /// Ends the stroke in hand and keeps everything.
+    /// Ends the stroke in hand and keeps everything; the project's picture is made once more where it is
+    /// older than the strokes.
     void finish();
     /// Changes a setting by its name in scripts. Throws `Error` for a name or value that is unknown.
     void set(const std::string& name, const std::string& value);
@@ -118,6 +119,8 @@ class Studio {
     ModelView colours_shown_ = ModelView::glaze;
     double now_ = 0, last_event_ = 0, last_turn_ = -1, picture_due_ = 0;
     std::size_t strokes_seen_ = 0, frames_ = 0, draw_every_ = 1;
+    unsigned framebuffer_ = 0;  ///< of the newest frame
+    int height_ = 0;
     std::vector<double> delays_;
     std::filesystem::path pictured_;          ///< project whose picture is due, or kept
     std::deque<double> asked_;                ///< when each sample was taken whose ink is not shown yet

@@ -88,6 +88,20 @@ TEST_F(StudioProgram, PaintsToTheBitWhatAReplayPaints) {
     for (const auto& left : fs::directory_iterator(path("state") + "/tuft/sessions")) EXPECT_NE(left.path().extension(), ".tuft") << "the file of the work before it had a name";
 }
 
+TEST_F(StudioProgram, TheProjectsPictureShowsTheNewestInkHoweverSoonOneLeaves) {
+    const Ran ran = studio(kBowl + "save work.tuft\nwait-ready\n" + kTwoStrokes);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    int pictures = 0, red = 0;
+    for (const auto& file : fs::directory_iterator(path("state") + "/tuft/pictures")) {
+        const io::Image8 image = io::read_image8(file.path(), std::size_t{1} << 22);
+        ++pictures;
+        for (std::size_t i = 0; i + 2 < image.pixels.size(); i += static_cast<std::size_t>(image.channels))
+            red += image.pixels[i] > image.pixels[i + 1] + 60;
+    }
+    EXPECT_EQ(pictures, 1);
+    EXPECT_GT(red, 20);  // of the second stroke; the bowl and its ground are grey
+}
+
 TEST_F(StudioProgram, SymmetricCopiesAreStrokesOfTheirOwnAndUndoneTogether) {
     const Ran ran = studio(kBowl + "set radial 3\nset mirror x\nstroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 6\n"
                                    "undo\nwait-ready\nexpect strokes 0\nredo\nwait-ready\nexpect strokes 6\nsave work.tuft\nwait-ready\n");
