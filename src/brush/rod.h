@@ -73,6 +73,14 @@ struct Obstacle {
     bool at_edge() const { return beyond_normal != Vec3{0}; }
 };
 
+/// What a node meets beside its own plane, one-sided too: with `share` of the law's stiffness, closer than `radius`.
+struct Wall {
+    int node = 0;
+    Vec3 origin{0}, normal{0, 0, 1};
+    double radius = 0;
+    double share = 0;                  ///< 0: nothing
+};
+
 /// Contact law of all nodes.
 struct Law {
     int points_per_segment = 1; ///< contact points: the nodes, and this less one between them,
@@ -138,7 +146,7 @@ struct Memory {
     double moved = 0;                  ///< of the clamp in the last solve
     std::vector<Vec3> node;            ///< [n+1]
     std::vector<JointMemory> joint;    ///< [n]
-    std::vector<ContactMemory> contact;///< [points_per_segment n + 1]
+    std::vector<ContactMemory> contact;///< [points_per_segment n + 1], and one for each wall
 };
 
 struct Result {
@@ -150,7 +158,8 @@ struct Result {
     double dissipation = 0;            ///< by yielding, slip and damping, this solve
     std::vector<double> moment;        ///< [n] |m| at the joints
     std::vector<double> normal_force;  ///< [n+1], shares of the points beside each node
-    std::vector<Vec3> contact_force;   ///< [n+1] on the rod, with friction
+    std::vector<Vec3> contact_force;   ///< [n+1] on the rod, with friction, of walls too
+    std::vector<Vec3> wall_force;      ///< [n+1] of it, what walls push; none without walls
     std::vector<Vec3> slip;            ///< [n+1] way of the slipping hair over the surface, mean by friction
     std::vector<Obstacle> met;         ///< [n+1] the one plane that each node meets where it came to
                                        ///< lie, or none
@@ -171,10 +180,12 @@ void turn_about_clamp(Memory& memory, double angle);
 /// Nodes of the rod: root + Σ l_j t_j. [n+1]
 std::vector<Vec3> nodes(const Rod& rod, const Memory& memory);
 
-/// Carries the rod to `clamp`, then solves. `obstacles`: [n+1], or empty for none.
+/// Carries the rod to `clamp`, then solves. `obstacles`: [n+1], or empty for none. `walls` come in the same
+/// order from solve to solve, and only where there are obstacles; out of reach they change no bit.
 /// Bounded work; when it stops early the best state is kept and `converged` is false.
 Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
-             std::span<const Obstacle> obstacles, const Law& law, const Load& load = {});
+             std::span<const Obstacle> obstacles, const Law& law, const Load& load = {},
+             std::span<const Wall> walls = {});
 
 /// Value and derivatives of Π for frozen friction, for tests: x holds 2n steps along each
 /// segment's two normals from the state in `memory`.

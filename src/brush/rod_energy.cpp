@@ -249,6 +249,9 @@ double add_contacts(const Frozen& frozen, bool derivatives, Evaluation& out) {
             for (int p = range.begin; p < range.end; ++p) value += add_contact(frozen, p, out);
         }
     }
+    for (std::size_t p = frozen.walls_from; p < frozen.obstacles.size(); ++p) {
+        value += add_contact(frozen, static_cast<int>(p), out);
+    }
     return value;
 }
 

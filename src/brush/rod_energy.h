@@ -109,6 +109,7 @@ struct Frozen {
     std::vector<double> laid_length;  ///< segments for which place and stencil were laid,
     int laid_per = 0;                 ///< points per segment,
     bool laid_round = false;          ///< and whether rounded
+    std::size_t walls_from = 0;       ///< contact points of walls are those from here on
     std::vector<Crease> crease;       ///< of the contact points
     std::vector<double> weight;       ///< of the contact points, tributary lengths
     const Law* law = nullptr;

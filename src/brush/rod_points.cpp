@@ -137,11 +137,16 @@ struct Layer {
     }
 
     void lay_places(int per) {
-        if (frozen.laid_length == rod.length && frozen.laid_per == per && frozen.laid_round == rounded(law)) return;
+        if (frozen.laid_length == rod.length && frozen.laid_per == per && frozen.laid_round == rounded(law)) {
+            frozen.place.resize(frozen.walls_from);
+            frozen.stencil.resize(frozen.walls_from);
+            return;
+        }
         frozen.laid_length = rod.length;
         frozen.laid_per = per;
         frozen.laid_round = rounded(law);
         frozen.place.clear();
+        frozen.walls_from = static_cast<std::size_t>(n()) * per + 1;
         for (int j = 0; j < n(); ++j) {
             for (int t = 0; t < per; ++t) frozen.place.push_back({j, static_cast<double>(t) / per});
         }
@@ -175,6 +180,21 @@ struct Layer {
             if (window <= 0) break;
             frozen.give[p] = soft * window * window / frozen.weight[p];
             from_tip += rod.length[frozen.place[p - 1].node] / law.points_per_segment;
+        }
+    }
+
+    /// Points of their own on the nodes.
+    void lay_walls(std::span<const Wall> walls) {
+        if (fine.empty() || law.hard) return;
+        for (const Wall& w : walls) {
+            const PointPlace at = w.node < n() ? PointPlace{w.node, 0} : PointPlace{n() - 1, 1};
+            frozen.place.push_back(at);
+            frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
+            frozen.crease.push_back({});
+            frozen.give.push_back(0);
+            frozen.weight.push_back(w.share * rod.weight[w.node]);
+            constexpr double kNowhere = -1e6;  // lengths
+            fine.push_back({w.origin, w.normal, w.share > 0 ? w.radius : kNowhere});
         }
     }
 };
@@ -212,11 +232,12 @@ std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node) {
 }
 
 void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
-                std::vector<Obstacle>& fine) {
+                std::vector<Obstacle>& fine, std::span<const Wall> walls) {
     fine.clear();
     Layer layer{*frozen.rod, *frozen.law, obstacles, node, frozen, fine};
     layer.lay_points();
     layer.lay_give();
+    layer.lay_walls(walls);
 }
 
 }  // namespace tuft::brush::rod

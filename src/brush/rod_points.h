@@ -22,8 +22,8 @@ std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node);
 /// Planes and radii of the contact points, interpolated between those of the nodes; over creases,
 /// where a node has two planes or neighbours' planes part, both. `obstacles`: [n+1], or none;
 /// `node`: [n+1], where the nodes are. Fills place, stencil, crease, weight and give of `frozen`, whose rod and law
-/// are set. `fine`: [points], or none.
+/// are set. `fine`: [points], or none; those of walls come last, one for each.
 void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
-                std::vector<Obstacle>& fine);
+                std::vector<Obstacle>& fine, std::span<const Wall> walls = {});
 
 }  // namespace tuft::brush::rod

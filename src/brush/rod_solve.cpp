@@ -86,6 +86,7 @@ struct Solver {
     const Rod& rod;
     Memory& memory;
     std::span<const Obstacle> obstacles;   ///< of the nodes
+    std::span<const Wall> walls;
     const Law& law;
     Buffers& buffers;
     double moved = 0;                      ///< of the clamp since the last solve
@@ -117,7 +118,7 @@ struct Solver {
         frozen.law = &law;
         frozen.load = load;
         frozen.clamp = memory.clamp;
-        lay_points(obstacles, memory.node, frozen, fine);
+        lay_points(obstacles, memory.node, frozen, fine, walls);
         frozen.obstacles = fine;
         lay_patches(frozen);
         const std::size_t points = fine.size();
@@ -130,7 +131,7 @@ struct Solver {
         const double part = stands() ? 0 : onward();
         double carried = 0;
         for (const ContactMemory& c : memory.contact) carried += c.force;
-        memory.contact.resize(static_cast<std::size_t>(law.points_per_segment) * n() + 1);
+        memory.contact.resize(std::max(static_cast<std::size_t>(law.points_per_segment) * n() + 1, points));
         for (std::size_t p = 1; p < points; ++p) {
             const ContactMemory& c = memory.contact[p];
             const Vec3 x = point(memory.node, p);
@@ -186,7 +187,7 @@ struct Solver {
             const Vec3 at_point = point(x, p), plane = normal_at(p, x);
             if (tangent != hair.tangent || plane != hair.plane) hair = hair_over(tangent, plane);
             Friction f = friction_of(law, hair, frozen.weight[p], normal[p], anchor[p], at_point);
-            const bool tip = p + 1 == fine.size();
+            const bool tip = p + 1 == frozen.walls_from;
             const double c = std::min(0.0, glm::dot(tangent, plane));
             if (law.end_friction < 1) f.cap *= tip ? std::max(law.end_friction, 1 - c * c) : 1 - c * c;
             if (tip) {
@@ -303,6 +304,7 @@ struct Solver {
         out.normal_force.assign(n() + 1, 0);
         out.contact_force.assign(n() + 1, Vec3{0});
         out.slip.assign(n() + 1, Vec3{0});
+        if (fine.size() > frozen.walls_from) out.wall_force.assign(n() + 1, Vec3{0});
         out.contact_energy = at.contact;
         buffers.friction_sum.assign(n() + 1, 0);
         for (int j = 0; j < n(); ++j) {
@@ -323,7 +325,7 @@ struct Solver {
         for (std::size_t p = 0; p < memory.contact.size(); ++p) finish_contact(p, out);
         for (int i = 0; i <= n(); ++i) out.slip[i] /= std::max(buffers.friction_sum[i], 1e-300);
         out.met.reserve(memory.node.size());
-        for (std::size_t p = 0; p < fine.size(); p += law.points_per_segment) out.met.push_back(met_at(p, at.node));
+        for (std::size_t p = 0; p < std::min(fine.size(), frozen.walls_from); p += law.points_per_segment) out.met.push_back(met_at(p, at.node));
         const Mat3 back = glm::transpose(clamp_frame(memory.clamp));
         memory.turn.resize(shape.tangent.size());
         for (std::size_t j = 0; j < shape.tangent.size(); ++j) {
@@ -346,7 +348,11 @@ struct Solver {
         c.growth = c.force > 0 ? 0.5 * (c.growth + ws.at.normal[p] - c.force) : 0;
         c.force = ws.at.normal[p];
         c.multiplier = law.hard ? c.force : 0;
-        for (int k = 0; k < at.count; ++k) out.normal_force[at.first + k] += at.w[k] * c.force;
+        const bool own = p < frozen.walls_from;
+        for (int k = 0; k < at.count; ++k) {
+            if (own) out.normal_force[at.first + k] += at.w[k] * c.force;
+            else out.wall_force[at.first + k] += at.w[k] * c.force * fine[p].normal;
+        }
         const Vec3 x = point(ws.at.node, p);
         const Friction& f = frozen.friction[p];
         const bool sticks = f.cap > 0 && f.stick > 0;
@@ -364,21 +370,22 @@ struct Solver {
         if (q > reach) {
             out.dissipation += f.cap * (q - reach);
             c.anchor = x - d * (reach / q);
-            for (int k = 0; k < at.count; ++k) out.slip[at.first + k] += at.w[k] * f.cap * (1 - reach / q) * d;
+            for (int k = 0; own && k < at.count; ++k) out.slip[at.first + k] += at.w[k] * f.cap * (1 - reach / q) * d;
         }
-        for (int k = 0; k < at.count; ++k) buffers.friction_sum[at.first + k] += at.w[k] * f.cap;
+        for (int k = 0; own && k < at.count; ++k) buffers.friction_sum[at.first + k] += at.w[k] * f.cap;
     }
 };
 
 }  // namespace
 
 Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
-             std::span<const Obstacle> obstacles, const Law& law, const Load& load) {
+             std::span<const Obstacle> obstacles, const Law& law, const Load& load,
+             std::span<const Wall> walls) {
     thread_local Buffers buffers;
     buffers.before = memory.node;
     const double moved = clamp_distance(memory.clamp, clamp);
     carry(memory, clamp);
-    Solver solver{rod, memory, obstacles, law, buffers, moved};
+    Solver solver{rod, memory, obstacles, walls, law, buffers, moved};
     solver.begin(load, buffers.before);
     return solver.run();
 }
@@ -388,7 +395,7 @@ Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacl
     Buffers buffers;
     Workspace& ws = buffers.newton;
     Memory copy = memory;
-    Solver solver{rod, copy, obstacles, law, buffers};
+    Solver solver{rod, copy, obstacles, {}, law, buffers};
     solver.begin(load, memory.node);
     for (std::size_t i = 0; i < solver.fine.size() && i < memory.contact.size(); ++i) {
         solver.normal[i] = memory.contact[i].force;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/flanks.h"
 #include "brush/rod_points.h"
 #include "brush/splay.h"
 #include "brush/tuft_sections.h"
@@ -142,6 +143,7 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, std::spa
     const std::span<const rod::Obstacle> met = out.result.met.empty() ? obstacles : out.result.met;
     SectionOutput sections = make_sections({p, spine, out.result, met, node, turn, wetness, share, walls});
     spine.side = std::move(sections.sides);
+    spine.flank = std::move(sections.flank);
     spine.wide = sections.wide;
     spine.aside = std::move(sections.aside);
     spine.slips = std::move(sections.slips);
@@ -159,7 +161,8 @@ Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const
                    double dt, std::span<const ContactPlane> walls, const Passed& passed) {
     const rod::Law law = law_of(p, wetness, share, dt);
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
-    rod::Result result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law);
+    rod::Result result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law, {},
+                                    flank_walls(p, spine, turn, walls, wetness));
     spine.pressed = result.contact_energy;
     result.dissipation += passed.dissipation;
     for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
@@ -184,7 +187,7 @@ Pose between(const Pose& a, const Pose& b, double t) {
 }  // namespace
 
 Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
-              std::span<const ContactPlane> planes, double wetness, double& dt) {
+                std::span<const ContactPlane> planes, std::span<const ContactPlane> walls, double wetness, double& dt) {
     rod::Law law = law_of(p, wetness, 1, 0);
     Passed passed;
     if (planes.empty()) return passed;
@@ -204,7 +207,8 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
         turn_with_splay(p, spine, last, pose, planes);
         break_symmetry(p, spine, last, pose, planes);
-        const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes), law);
+        const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes), law,
+                                         {}, flank_walls(p, spine, pose.rotation, walls, wetness));
         spine.pressed = r.contact_energy;
         passed.dissipation += r.dissipation;
         passed.slip.resize(r.slip.size(), Vec3{0});

@@ -30,7 +30,7 @@ Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& cl
 /// hair that stands upright fall behind the motion. `dt`: in, seconds of the whole way; out,
 /// of the part that is left.
 Passed approach(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
-              std::span<const ContactPlane> planes, double wetness, double& dt);
+                std::span<const ContactPlane> planes, std::span<const ContactPlane> walls, double wetness, double& dt);
 
 /// The spine bent by the rod solver over `dt` seconds; `turn` is the ferrule's rotation, `planes` and `walls` tip first.
 /// What `passed` before in this step is added to the result's.

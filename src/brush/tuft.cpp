@@ -112,7 +112,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
     double part = std::isfinite(dt) ? std::max(0.0, dt) : 0;
     Passed passed;
-    if (p.spine == SpineMethod::rod) passed = approach(p, tuft.spine, tuft.pose, pose, main_planes, tuft.wetness, part);
+    if (p.spine == SpineMethod::rod) passed = approach(p, tuft.spine, tuft.pose, pose, main_planes, walls, tuft.wetness, part);
     Solved solved = p.spine == SpineMethod::table
                         ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness)
                         : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part, walls, passed);
@@ -161,6 +161,7 @@ void reset(Tuft& tuft) {
 void reshape(Tuft& tuft) {
     const rod::Clamp clamp = tuft.spine.memory.clamp;
     tuft.spine.side.clear();
+    tuft.spine.flank.clear();
     tuft.spine.aside.clear();
     tuft.spine.slips.clear();
     tuft.spine.aside_energy = 0;

@@ -34,6 +34,7 @@ struct Spine {
     Vec2 one_sided{0};              ///< mean direction of splayed hair, across the clamp; see splay.h
     std::vector<Vec3> side;         ///< side nodes of the last step, metres from the root, ferrule
                                     ///< frame, tip first, two to a node; or none
+    std::vector<double> flank;      ///< m, half-widths as those side nodes have them where no wall is; or none
     std::vector<double> aside;      ///< [n+1] m, how far friction has shifted the side nodes along e, or none
     std::vector<signed char> slips; ///< [n+1] which of them slipped in the last step, or none
     double aside_energy = 0;        ///< J, that their springs hold by this
@@ -72,7 +73,8 @@ std::vector<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose);
 
 /// Moves the ferrule to `pose` and bends the tuft against the planes: one for each node
 /// of `predicted_nodes`, in that order; or one that serves all; or none (free in air).
-/// `walls`: what the side nodes meet beside the spine, one for each of `predicted_sides`, or none.
+/// `walls`: what the side nodes meet beside the spine, one for each of `predicted_sides`, or none; they hold the
+/// sides and push the spine.
 /// `dt` in seconds since the last step. Always finite and in bounded time: `converged`
 /// is false where it stopped early. Cost: 20–60 µs at 16 segments.
 /// Throws nothing but `Error`: the number of planes or walls fits none of these cases, or the pose

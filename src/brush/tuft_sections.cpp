@@ -104,6 +104,7 @@ std::vector<double> squash(const SectionInput& in, const std::vector<Vec3>& t) {
 
 constexpr double kDry = 0.7;   ///< stretch springs of dry hair over those of wet hair
 constexpr double kReach = 0.045; ///< of the length, λ of the side nodes
+constexpr double kWall = 100;    ///< stiffness of a wall over that of the springs
 constexpr double kFinest = 1e-5; ///< m, radius of a tuft's point at least
 constexpr double kSides = 0.03;    ///< of k_c, the stretch springs: water holds hair together by some 0.3 N/m a millimetre
 constexpr double kSideDrag = 1.0;  ///< of kSides: share of the friction across a section that its side nodes take
@@ -157,6 +158,7 @@ namespace {
 /// Half-widths of the sections to the side of e and to the other, metres, root first.
 struct Widths {
     std::vector<double> plus, minus;
+    std::vector<double> free_plus, free_minus;  ///< without walls
     LateralShift shift;
     double spread_energy = 0;
 };
@@ -183,7 +185,8 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
     const double wet = kSides * p.transverse_stiffness;
     LateralSprings springs{.stretch = wet * (kDry + (1 - kDry) * in.wetness),
                            .bend = wet,
-                           .reach = kReach * p.length};
+                           .reach = kReach * p.length,
+                           .wall = kWall};
     for (const double r : in.spine.rest_radius) springs.taper.push_back(std::max(r, kFinest));
     std::vector<double> at(count, 0);
     LateralSide plus{std::vector<double>(count, 0),
@@ -200,7 +203,8 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
         const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
         const double widen = held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
                                      p.flatten_contact * squashed[i]);
-        friction.most[i] = kSides * kSideDrag * std::abs(glm::dot(in.result.contact_force[i], e[i])) * newton /
+        const Vec3 wall = in.result.wall_force.empty() ? Vec3{0} : in.result.wall_force[i];
+        friction.most[i] = kSides * kSideDrag * std::abs(glm::dot(in.result.contact_force[i] - wall, e[i])) * newton /
                            (in.spine.rod.weight[i] * p.length);
         if (i < in.spine.aside.size()) friction.stuck[i] = in.spine.aside[i];
         if (i < in.result.slip.size()) friction.stuck[i] -= p.length * glm::dot(in.result.slip[i], e[i]);
@@ -219,11 +223,17 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
         plus.clear[i] -= shift[i];
         minus.clear[i] += shift[i];
     }
-    out.plus = solve_lateral(row, plus);
+    LateralSide free = plus;
+    free.clear.assign(count, std::numeric_limits<double>::infinity());
+    out.free_plus = solve_lateral(row, free);
+    out.free_minus = out.free_plus;
+    out.plus = in.walls.empty() ? out.free_plus : solve_lateral(row, plus);
     out.minus = in.walls.empty() ? out.plus : solve_lateral(row, minus);
     out.spread_energy = stored_at_rest(at, springs, plus, out.plus) + stored_at_rest(at, springs, minus, out.minus);
     for (std::size_t i = 0; i < count; ++i) {
         const double r = in.spine.rest_radius[i];
+        out.free_plus[i] = half_width(r, out.free_plus[i] + shift[i], p.flatten_max);
+        out.free_minus[i] = half_width(r, out.free_minus[i] - shift[i], p.flatten_max);
         out.plus[i] = half_width(r, out.plus[i] + shift[i], p.flatten_max);
         out.minus[i] = half_width(r, out.minus[i] - shift[i], p.flatten_max);
     }
@@ -231,6 +241,8 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
 }
 
 }  // namespace
+
+double side_stiffness(double wetness) { return kSides * (kDry + (1 - kDry) * wetness) * kWall / (1 + kWall); }
 
 SectionOutput make_sections(const SectionInput& in) {
     const Preset& p = in.preset;
@@ -273,6 +285,8 @@ SectionOutput make_sections(const SectionInput& in) {
         const Vec3 x = (in.node[i] - in.node[0]) * p.length;
         out.sides.push_back(back * (x + widths.plus[i] * e[i]));
         out.sides.push_back(back * (x - widths.minus[i] * e[i]));
+        out.flank.push_back(widths.free_plus[i]);
+        out.flank.push_back(widths.free_minus[i]);
     }
     out.wide = back * e[0];
     return out;

@@ -29,7 +29,12 @@ struct SectionOutput {
     double aside_energy = 0, spread_energy = 0;  ///< J
     std::vector<Vec3> sides;          ///< side nodes from the root, metres, ferrule frame, tip
                                       ///< first: that of the side of e, that of the other
+    std::vector<double> flank;        ///< as in Spine
 };
+
+/// Stiffness against a wall of a side node and the springs that draw it in, one behind the other, over that of the
+/// contact; 0 dry … 1 wet.
+double side_stiffness(double wetness);
 
 /// Half-widths to both sides from the side nodes (lateral.h), pushed by the bending moment, the
 /// force and the squash of the contact and dragged by its friction; a is their mean, the centre
@@ -43,7 +48,8 @@ struct SectionOutput {
 /// (`drag_lateral`); two sides that are pushed alike and shifted alike pull alike at the spine, and
 /// the force that drags them is of the friction that the rod has. The hand has worked for it on the
 /// way of the slip: δ grows by no more than the slip along e, and the slip loses so much less.
-/// A wall beside the tuft is the exception: it holds the side nodes, and the spine does not feel it.
+/// A wall beside the tuft holds the side nodes by what their springs push, and that passes on to the spine:
+/// the rod has it as the springs' potential in the free half-width of the step before (flanks.h).
 /// The wide axis e lies in the contact plane where the spine presses
 /// most, else along the axis of bending, else where it was; from there it is carried along
 /// the spine without spin.

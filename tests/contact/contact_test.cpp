@@ -310,6 +310,35 @@ TEST(Contact, SidesThatMeetAWallStopThere) {
     EXPECT_LT(walled, 3.0e-3);  // the wall gives by the push over a hundred springs, and a step's lag
 }
 
+TEST(Contact, ALedgeBesideTheTuftPushesIt) {
+    // 5 mm high, so that it meets the spread hair and not the belly over it.
+    struct Pushed {
+        Vec3 tip, force;
+    };
+    const auto drawn = [](double ledge) {
+        constexpr double kHigh = 5e-3;
+        const mesh::TriangleMesh m = shapes::surface(240, 60, [&](double u, double v) {
+            const double s = 0.12 * u - 0.08, up = std::clamp(s - ledge, 0.0, kHigh);
+            return Vec3{s - up, 0.2 * (v - 0.5), up};
+        });
+        const mesh::SurfaceQuery surface(m);
+        Hand hand(surface, "goat");
+        Pushed out{};
+        for (int i = 0; i <= 240; ++i) {
+            const Result r = hand.move({0, -0.02 + 2e-4 * i, -0.012 * std::min(1.0, i / 100.0)});
+            out = {spine(r).front().centre, r.tuft.force};
+        }
+        return out;
+    };
+    const Pushed free = drawn(0.03), near = drawn(3.3e-3), nearer = drawn(2.7e-3);
+    // The mesh is a mirror image of itself but for its diagonals: to the solver's tolerance nothing goes aside.
+    EXPECT_NEAR(free.tip.x, 0, 2e-5);
+    EXPECT_LT(near.tip.x, free.tip.x - 1e-4);
+    EXPECT_LT(nearer.tip.x, near.tip.x - 1e-4);
+    EXPECT_LT(near.force.x, free.force.x - 1e-4);
+    EXPECT_LT(nearer.force.x, free.force.x - 1e-4);
+}
+
 TEST(Contact, HoverFeelsTheSurfaceWithinTheTolerance) {
     const mesh::TriangleMesh m = shapes::sheet();
     const mesh::SurfaceQuery surface(m);
