@@ -12,6 +12,8 @@
 namespace tuft::stroke {
 namespace {
 
+constexpr double kLeap = 0.5;  // of a patch's size: beyond, single marks would part
+
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteStep = 1e-4, kPasteCell = 4e-5;
 
@@ -308,7 +310,10 @@ void Painting::draw_poses() {
         }
         ++h.report.stamps;
         // The hand's way, not the frame's: the patch also grows and shrinks. Hair that lies by itself may swing round.
-        stamp.motion.shift = glm::mix(shift, drawn, static_cast<double>(stamp.apart));
+        // And a patch that leaps by more than it is long, as a tip does that springs back while it is lifted, leaves its
+        // line along its own way.
+        const double leap = smooth_step(glm::length(drawn - shift) / std::sqrt(std::max(area, 1e-30)) / kLeap);
+        stamp.motion.shift = glm::mix(shift, drawn, std::max(leap, static_cast<double>(stamp.apart)));
         h.was_touching = true;
         h.last_position = pose.position;
         const ink::StampContact touch{
