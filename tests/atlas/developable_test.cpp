@@ -2,23 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-
 #include "atlas/charts/charts.h"
 #include "core/parallel.h"
-#include "test_mesh.h"
+#include "shapes.h"
 
 namespace tuft::atlas {
 namespace {
-
-mesh::TriangleMesh fine_torus(int n) {
-    return test::grid_mesh(2 * n, n, true, true, [](double u, double v) {
-        const double r = 0.05 + 0.02 * std::cos(2 * std::numbers::pi * v);
-        return Vec3(r * std::cos(2 * std::numbers::pi * u), r * std::sin(2 * std::numbers::pi * u),
-                    0.02 * std::sin(2 * std::numbers::pi * v));
-    });
-}
 
 /// Corners less edges plus faces: 1 for a disk.
 int euler(const Patch& patch) {
@@ -29,7 +18,7 @@ int euler(const Patch& patch) {
 }
 
 TEST(SmallCharts, AreDisksOfFewTrianglesAndTheSameForAnyNumberOfThreads) {
-    const mesh::TriangleMesh mesh = fine_torus(360);
+    const mesh::TriangleMesh mesh = test::torus(720, 360);
     ASSERT_GE(mesh.n_triangles(), kDearMesh);
     const std::vector<std::uint32_t> twin = twin_half_edges(mesh);
     GluingLimits limits;
@@ -58,7 +47,7 @@ TEST(SmallCharts, AreDisksOfFewTrianglesAndTheSameForAnyNumberOfThreads) {
 }
 
 TEST(SmallCharts, OfAMeshThatIsGluedQuicklyAreItsTriangles) {
-    const mesh::TriangleMesh mesh = fine_torus(64);
+    const mesh::TriangleMesh mesh = test::torus();
     EXPECT_TRUE(small_chart_seams(mesh, twin_half_edges(mesh), 0.1, {}, {}).empty());
 }
 

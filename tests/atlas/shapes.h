@@ -26,8 +26,8 @@ inline mesh::TriangleMesh cone() {
     });
 }
 
-inline mesh::TriangleMesh torus() {
-    return grid_mesh(96, 48, true, true, [](double u, double v) {
+inline mesh::TriangleMesh torus(int round = 96, int across = 48) {
+    return grid_mesh(round, across, true, true, [](double u, double v) {
         const double r = 0.05 + 0.02 * std::cos(2 * std::numbers::pi * v);
         return Vec3(r * std::cos(2 * std::numbers::pi * u), r * std::sin(2 * std::numbers::pi * u),
                     0.02 * std::sin(2 * std::numbers::pi * v));
