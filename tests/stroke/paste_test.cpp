@@ -122,6 +122,46 @@ TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
     EXPECT_EQ(painting.hash(), after);
 }
 
+Stroke wash_over(double depth) {
+    Stroke s = line(kBrush, depth, make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0}));
+    s.settings.film = "wet";
+    return s;
+}
+
+TEST(PasteStroke, AWashTakesOfItsSurfaceAndLeavesItsBodyStanding) {
+    const Model model = sheet();
+    Painting painting(model);
+    Stroke paste = stroke_of(kWhite, {});
+    paste.settings.film = "wet";
+    painting.paint(paste);
+    const std::vector<double> before = heights_across(painting, 0);
+    const auto white = [&] { return painting.canvas().total(model.texels, 0); };
+    const double all = white();
+    painting.paint(wash_over(8e-3));
+    const std::uint64_t hash = painting.hash();
+    const ink::Reservoir& brush = painting.held(kBrush)->reservoir;
+    EXPECT_GT(brush.pigment(0), 0) << "it tints itself";
+    EXPECT_NEAR((white() + brush.pigment(0)) / all, 1, 1e-6) << "floats";
+    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + brush.pigment(1)) / capacity(), 1,
+                1e-6);
+    const std::vector<double> after = heights_across(painting, 0);
+    double lost = 0, n = 0;
+    for (std::size_t row = 0; row < kSize; ++row) {
+        if (before[row] < 60) continue;
+        // 5 µm of dry white a film unit, of which less than two come loose. Ink of 2 film
+        // units, 2.5 µm each, runs off the ridges and stands up to four times as deep in furrows.
+        EXPECT_GT(after[row], before[row] - 10) << row;
+        EXPECT_LT(after[row], before[row] + 20) << row;
+        lost += before[row] - after[row], n += 1;
+    }
+    ASSERT_GT(n, 60);
+    EXPECT_LT(std::abs(lost) / n, 3);
+    painting.undo();
+    EXPECT_EQ(white(), all);
+    painting.redo();
+    EXPECT_EQ(painting.hash(), hash);
+}
+
 TEST(PasteStroke, ItReplaysAndIsTakenBackToTheBit) {
     const Model model = sheet();
     std::uint64_t hash = 0;

@@ -62,11 +62,13 @@ struct Tile {
         for (int film = kFirstDryFilm + 1; film + 1 < kOpenFilm; ++film) put(film, t, at(film + 1, t));
         put(kOpenFilm - 1, t, {});
     }
-    void close(int t) {
-        Amounts amounts = at(kOpenFilm, t);
+    void close(int t, float part = 1) {
+        Amounts amounts = at(kOpenFilm, t), rest{};
+        for (int p = 0; p < kMaxPigments && part < 1; ++p)
+            rest[p] = (1 - part) * amounts[p], amounts[p] -= rest[p];
         const float sum = sum_of(amounts);
         if (!(sum > 0)) return;
-        put(kOpenFilm, t, {});
+        put(kOpenFilm, t, rest);
         int film = top(t);
         if (film == kSoakedFilm && stain > 0) {
             Amounts in;
@@ -104,6 +106,14 @@ void close_films(Canvas& canvas, std::uint32_t slot, std::span<const std::uint8_
     Tile tile{canvas, slot, stain};
     for (int t = 0; t < kN; ++t)
         if (closing[t]) tile.close(t);
+    tile.drop_empty_planes();
+}
+
+void close_parts(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> part) {
+    if (!canvas.has_film(slot, kOpenFilm)) return;
+    Tile tile{canvas, slot, 0};
+    for (int t = 0; t < kN; ++t)
+        if (part[t] > 0) tile.close(t, part[t]);
     tile.drop_empty_planes();
 }
 

@@ -20,6 +20,11 @@ namespace tuft::ink {
 void close_films(Canvas& canvas, std::uint32_t slot,
                  std::span<const std::uint8_t, atlas::kTileTexels> closing, float stain = 0);
 
+/// The same for a part of what lies there: of each texel's open film `part` [256], 0–1, in its
+/// composition, becomes the next dry film below the rest of it. Nothing goes into the soaked film.
+void close_parts(Canvas& canvas, std::uint32_t slot,
+                 std::span<const float, atlas::kTileTexels> part);
+
 /// Lets everything dry at once: liquid goes without moving anything, every open film is
 /// closed. Returns the liquid that went, film·m².
 double dry_all(Canvas& canvas, const atlas::TexelMap& map);

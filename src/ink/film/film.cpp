@@ -11,6 +11,7 @@
 #include "ink/film/drying.h"
 #include "ink/film/film_list.h"
 #include "ink/film/film_step.h"
+#include "ink/film/paste.h"
 #include "ink/film/pool.h"
 
 namespace tuft::ink {
@@ -144,6 +145,7 @@ struct WetFilm::State : TileList {
     std::vector<std::uint8_t> told;
     /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
     std::vector<std::unique_ptr<Plane>> relief;
+    std::vector<std::unique_ptr<Plane>> paste;  ///< [n_slots] what is paste; null: none
     std::vector<std::uint8_t> felt;  ///< [n_slots] whether that was looked for
     bool any_relief = false;
     std::unique_ptr<Drips> drips;
@@ -194,6 +196,8 @@ struct WetFilm::State : TileList {
     void forget_relief() {
         if (any_relief) relief.clear();
         relief.resize(map.n_slots());
+        paste.clear();
+        paste.resize(map.n_slots());
         felt.assign(map.n_slots(), 0);
         any_relief = false;
     }
@@ -202,9 +206,28 @@ struct WetFilm::State : TileList {
         if (felt[slot]) return;
         felt[slot] = 1;
         Plane z = dry_relief(canvas, slot);
+        const Plane stands = paste_height(canvas, slot);
+        paste[slot] = greatest(stands.data()) > 0 ? std::make_unique<Plane>(stands) : nullptr;
+        for (int t = 0; t < kTexels && paste[slot]; ++t) z[t] += stands[t];
         float most = 0;
         for (float& v : z) most = std::max(most, v = std::max(0.0f, v - static_cast<float>(kPlain)) * kFilmsPerMicrometre);
-        if (most > 0) relief[slot] = std::make_unique<Plane>(z);
+        relief[slot] = most > 0 ? std::make_unique<Plane>(z) : nullptr;
+    }
+
+    /// Paste that liquid has come to in the step lies below it from now on. Whether there was any.
+    bool bed_flooded(Canvas& canvas) {
+        bool any = false;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const std::uint32_t slot = list[i].slot;
+            if (!paste[slot]) continue;
+            std::array<float, kTexels> liquid;
+            for (int t = 0; t < kTexels; ++t)
+                liquid[t] = at(sources[i].liquid[0], t) + at(sources[i].liquid[1], t);
+            if (!bed_paste(canvas, slot, *paste[slot], liquid, 0)) continue;
+            felt[slot] = 0;
+            any = true;
+        }
+        return any;
     }
 
     void prepare(const Canvas& canvas) {
@@ -528,8 +551,10 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         Step step;
         const double dt = choose_step(params, s.list, s.map.texel_size, s.any_relief, running, left, step);
         s.step(canvas, params, step, report);
+        const bool bedded = s.bed_flooded(canvas);
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
         if (s.changed()) s.spread(), s.sources.clear();
+        if (bedded) s.sources.clear();
         beads += dt;
         if (beads > 0.9 * kBeadStep || left == 0) {
             running = s.run_beads(canvas, params, beads, before);

@@ -54,37 +54,40 @@ struct FilmReport {
 ///
 ///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − hold⟩) ∇w) − soak − e
 ///     ∂s/∂t = ∇·(D s ∇s) + soak,                           soak = a w (1 − s / pores)
-///     ∂p/∂t = ∇·((p/H)↑ j + D_p M ∇(p/H)),                 j: the flux of w and of s (1 − retention)
+///     ∂p/∂t = ∇·((p/H)↑ j + D_p M ∇(p/H)),                 j: the flux of w and of s (1 −
+///     retention)
 ///
-/// M = w + s (1 − retention): fibres sieve grains out of what seeps between them, so that water runs ahead
-/// of the ink and a line has a dark core. ↑: of the texel the liquid comes from. H = max(T, grip): what liquid
-/// gets thin over stays there, so that a drop dries as it stood and does not draw its pigments into its middle.
-/// On relief of dry paint (z, film units, `dry_relief` less kPlain) the liquid's own surface levels, at any slope: there
-/// (D ⟨w − w_c⟩ + L ⟨w − ridge⟩) ∇(w + z), ⟨w − ridge⟩ of the higher texel and no more than that, so that ink leaves
-/// the ridges and stands in the furrows.
-/// Liquid goes onto a dry texel only from one that has more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over
-/// about a millimetre, as surfaces are not clean). With a direction of weight
-/// contact lines keep mounds as they are (L = 0), and what is more than they hold runs down in beads
-/// (drips.h), 256 at once at most. The rim evaporates faster, by
-/// `rim_evaporation` |∇ min(T, rim_depth)| / rim_depth, as much per metre of rim whatever the texels, so that
-/// liquid, and pigment with it, is drawn there: dark edges.
-/// A texel with nothing wet any more is closed (drying.h).
+/// M = w + s (1 − retention): fibres sieve grains out of what seeps between them, so that water
+/// runs ahead of the ink and a line has a dark core. ↑: of the texel the liquid comes from. H =
+/// max(T, grip): what liquid gets thin over stays there, so that a drop dries as it stood and does
+/// not draw its pigments into its middle. On relief of dry paint and of paste (z, film units,
+/// `dry_relief` and `paste_height` less kPlain) the liquid's own surface levels, at any slope:
+/// there (D ⟨w − w_c⟩ + L ⟨w − ridge⟩) ∇(w + z), ⟨w − ridge⟩ of the higher texel and no more than
+/// that, so that ink leaves the ridges and stands in the furrows. Paste that liquid comes to is
+/// bedded (`bed_paste`): it stirs none of it. Liquid goes onto a dry texel only from one that has
+/// more than w_c + pin (rims stay where they are; pin varies by ± 40 % with the place, over about a
+/// millimetre, as surfaces are not clean). With a direction of weight contact lines keep mounds as
+/// they are (L = 0), and what is more than they hold runs down in beads (drips.h), 256 at once at
+/// most. The rim evaporates faster, by `rim_evaporation` |∇ min(T, rim_depth)| / rim_depth, as much
+/// per metre of rim whatever the texels, so that liquid, and pigment with it, is drawn there: dark
+/// edges. A texel with nothing wet any more is closed (drying.h).
 ///
-/// Where fibres and pores lie in clouds (`unevenness`) D varies with the place over a millimetre or so, and
-/// fronts are crinkled.
+/// Where fibres and pores lie in clouds (`unevenness`) D varies with the place over a millimetre or
+/// so, and fronts are crinkled.
 ///
-/// Beside seams texels are cells that tile the surface together with those of the other chart (border_cells.h).
-/// The fluxes through a face are the same numbers on both its sides, over seams too, so each
-/// amount is kept to rounding. Explicit steps, as many as stability needs (never negative, the
-/// pores never beyond their capacity) for any `seconds`; but none shorter than `shortest_step`: there no face passes more
-/// than an eighth of a texel, and what pores would pass beyond that goes, where they are wet all
-/// over, between blocks of 4 × 4 texels, for which the same step is 16 times less (writing on rice
-/// paper with texels of 0.05 mm: steps of 25 and 50 ms, where stability asks for 2, change amounts
-/// by 0.2 % of the greatest, rms); only tiles that are wet or next to wet
-/// ones are looked at; the same bits for any number of threads and on every instruction set.
-/// Conductances: 1/√g (g22, −g12; −g12, g11), the mixed term by diagonal faces (Selling's
-/// decomposition), made when a tile first gets wet (some 4 KiB a tile). 10 to 16 ns per texel and
-/// step with four pigments, by how much of it is sheared and lies beside seams: two thirds are sums in the first cache.
+/// Beside seams texels are cells that tile the surface together with those of the other chart
+/// (border_cells.h). The fluxes through a face are the same numbers on both its sides, over seams
+/// too, so each amount is kept to rounding. Explicit steps, as many as stability needs (never
+/// negative, the pores never beyond their capacity) for any `seconds`; but none shorter than
+/// `shortest_step`: there no face passes more than an eighth of a texel, and what pores would pass
+/// beyond that goes, where they are wet all over, between blocks of 4 × 4 texels, for which the
+/// same step is 16 times less (writing on rice paper with texels of 0.05 mm: steps of 25 and 50 ms,
+/// where stability asks for 2, change amounts by 0.2 % of the greatest, rms); only tiles that are
+/// wet or next to wet ones are looked at; the same bits for any number of threads and on every
+/// instruction set. Conductances: 1/√g (g22, −g12; −g12, g11), the mixed term by diagonal faces
+/// (Selling's decomposition), made when a tile first gets wet (some 4 KiB a tile). 10 to 16 ns per
+/// texel and step with four pigments, by how much of it is sheared and lies beside seams: two
+/// thirds are sums in the first cache.
 class WetFilm {
   public:
     /// The map must outlive it.

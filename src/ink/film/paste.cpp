@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ink/film/drying.h"
+#include "ink/film/pool.h"
 #include "ink/simd.h"
 
 namespace tuft::ink {
@@ -18,6 +20,10 @@ constexpr double kRimWidth = 1.5;    // of what is pushed out, over the film's t
 constexpr double kHeld = 0.02;       // of its height: finer waves than those held so far are rounded off
 constexpr double kLeastFilm = 0.15;  // of the mean: hair never scrapes to the ground
 constexpr double kRub = 0.6;         // of what bundles rub goes by where they lie, the rest is the liquid's
+
+constexpr double kWear = 1e-3;  // part of what hair slides over that comes off
+constexpr double kPunch =
+    2 + 3.14159265358979324;  // what bears over what shears, under a flat punch
 
 using Texels = std::array<float, kN>;
 
@@ -157,6 +163,42 @@ Plane open_pigment(const Canvas& canvas, std::uint32_t slot) {
     for (int p = 0; p < kMaxPigments; ++p)
         if (const Plane* w = canvas.plane(slot, p)) add(sum.data(), w->data());
     return sum;
+}
+
+double loosened(const Rub& rub) {
+    return rub.yield > 0 ? kWear * std::max(rub.pressure, 0.0) * std::max(rub.length, 0.0) /
+                               (kPunch * rub.yield) / kFilmUnit
+                         : 0;
+}
+
+Plane paste_height(const Canvas& canvas, std::uint32_t slot) {
+    Plane height;
+    height.fill(0);
+    for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+        if (const Plane* w = canvas.plane(slot, p))
+            for (int t = 0; t < kN; ++t)
+                height[t] += (*w)[t] * (1e6f * canvas.pigments()[p].height);
+    const Plane *film = canvas.liquid(slot, Liquid::film),
+                *pores = canvas.liquid(slot, Liquid::pores);
+    for (int t = 0; t < kN; ++t) {
+        const float liquid = (film ? (*film)[t] : 0) + (pores ? (*pores)[t] : 0);
+        if (liquid > 0 || !(height[t] > static_cast<float>(kPlain))) height[t] = 0;
+    }
+    return height;
+}
+
+bool bed_paste(Canvas& canvas, std::uint32_t slot, const Plane& height,
+               std::span<const float, kN> flooded, double loose) {
+    const Plane all = open_pigment(canvas, slot);
+    Texels part;
+    bool any = false;
+    for (int t = 0; t < kN; ++t) {
+        const bool lies = flooded[t] > 0 && height[t] > 0;
+        part[t] = lies ? positive(1 - static_cast<float>(loose) / all[t]) : 0;
+        any = any || lies;
+    }
+    if (any) close_parts(canvas, slot, part);
+    return any;
 }
 
 void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,

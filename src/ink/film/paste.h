@@ -75,4 +75,34 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas:
 /// Pigment in the open film of a tile, film units: `before` of the above.
 Plane open_pigment(const Canvas& canvas, std::uint32_t slot);
 
+/// A tuft that goes over paste with thinner ink.
+struct Rub {
+    double pressure = 0;  ///< Pa, of the tuft on its patch in the mean
+    double length = 0;    ///< metres of the patch that go over a place
+    double yield = 400;   ///< Pa, of the paste; of heavy body colour where it is not known
+};
+
+/// Film units of paste that come loose under it. Hair lies on what yields at τ with so much of
+/// itself that the weight rests on the pressure (2 + π) τ at which a flat punch sinks in (Prandtl
+/// 1920), and of what it slides over a part K comes off (Archard 1953, equation 3):
+///
+///     h = K p L / ((2 + π) τ),   K = 1e-3
+///
+/// (brass on steel 6e-4, mild steel on itself 7e-3: Archard and Hirst 1956; for hair on paint a
+/// choice between them). A soft brush of 1.4 kPa so takes 5 to 11 µm along, however thick the paste
+/// is.
+double loosened(const Rub& rub);
+
+/// What of a tile is paste: micrometres that its open film will stand dry, where that is more than
+/// kPlain and no liquid has come to it; elsewhere 0.
+Plane paste_height(const Canvas& canvas, std::uint32_t slot);
+
+/// Liquid comes to the texels with `flooded` [256] > 0: of what was paste there (`height`, as
+/// `paste_height` gave it before) it stirs no more than `loose` film units, which stay in the open
+/// film; what stands below becomes the texel's next dry film, in the same composition, so that its
+/// look and each pigment stay as they are. Whether there was any. Different slots may be done by
+/// different threads.
+bool bed_paste(Canvas& canvas, std::uint32_t slot, const Plane& height,
+               std::span<const float, atlas::kTileTexels> flooded, double loose);
+
 }  // namespace tuft::ink

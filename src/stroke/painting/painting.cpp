@@ -333,8 +333,10 @@ void Painting::draw_poses() {
             continue;
         }
         if (h.wet) {
-            h.report.ink_given += h.wet->lay(h.stamper, stamp, h.reservoir, h.touched, h.nodes, h.comb(), touch.moment_factor,
-                                                h.drain(pose, contact.frame.origin));
+            h.report.ink_given += h.wet->lay(
+                h.stamper, stamp, h.reservoir, h.touched, h.nodes, h.comb(),
+                {touch.moment_factor, std::abs(glm::dot(contact.tuft.force, contact.frame.n))},
+                h.drain(pose, contact.frame.origin));
             continue;
         }
         if (h.mixed) {

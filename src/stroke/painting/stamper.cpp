@@ -210,8 +210,10 @@ ink::NodeContents Stamper::act_on_exposed(F act) {
     return given;
 }
 
-ink::NodeContents Stamper::exchange(const ink::TransferParams& params, double ds) {
+ink::NodeContents Stamper::exchange(const ink::TransferParams& params, double ds, double loose) {
     return act_on_exposed([&](Exposed& e, const ink::Tents& tents) {
+        if (canvas_.has_film(e.slot, ink::kOpenFilm))
+            ink::bed_paste(canvas_, e.slot, ink::paste_height(canvas_, e.slot), e.exposure, loose);
         ink::transfer(canvas_, e.slot, e.exposure, e.places, tents, model_.texels.tiles[e.slot].area, ds, params, e.given);
     });
 }

@@ -79,8 +79,9 @@ class Stamper {
     /// For wet and for mixed ink, one stamp at a time: where it touches, and how much surface lies
     /// under each node of its grid.
     ink::NodeAreas expose(const Stamp& stamp);
-    /// Lets ink go both ways there. Returns what was given less what was taken, by node.
-    ink::NodeContents exchange(const ink::TransferParams& params, double ds);
+    /// Lets ink go both ways there; of paste no more than `loose` film units. Returns what was
+    /// given less what was taken, by node.
+    ink::NodeContents exchange(const ink::TransferParams& params, double ds, double loose);
     /// Lays ink down there that differs from node to node. Returns what was given.
     ink::NodeContents lay(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds);
 

@@ -17,10 +17,15 @@ class WetHand {
 
     /// Time goes by, touching or not.
     void pass(Stamper& stamper, double seconds, const ProgressFn& progress);
-    /// One stamp of a tuft whose bundles lie at `tines`, pressed by `stress` (0–1): ink goes both ways, and what the hair does not hold runs
-    /// down. Returns the liquid given less what was taken, film·m².
+    /// How a tuft is pressed: 0–1, and newtons on the surface.
+    struct Press {
+        double stress = 0, force = 0;
+    };
+    /// One stamp of a tuft whose bundles lie at `tines`: ink goes both ways, and what the hair does
+    /// not hold runs down. Returns the liquid given less what was taken, film·m².
     double lay(Stamper& stamper, const Stamp& stamp, ink::Reservoir& tuft, const ink::Touch& touch,
-               const ink::NodeTouch& nodes, std::span<const ink::Tine> tines, double stress, const ink::Drain& drain);
+               const ink::NodeTouch& nodes, std::span<const ink::Tine> tines, const Press& press,
+               const ink::Drain& drain);
     /// The tuft is lifted for good: what is on the hair goes into it.
     void end(Stamper& stamper, ink::Reservoir& tuft, const ink::Touch& touch, const ink::NodeTouch& nodes,
              const ProgressFn& progress);
