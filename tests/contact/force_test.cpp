@@ -165,6 +165,13 @@ Recording drag_along(const mesh::SurfaceQuery& surface, const std::string& brush
     return curve;
 }
 
+/// How many changes in a millisecond above `most` of the peak a force makes that hair lets go of: from `share` of the
+/// peak to nothing, no faster than the hair springs back, e^(-t/τ) with its joints' damping τ.
+int steps_of_release(double share, double damping, double most) {
+    const double tau = damping / 1e-3, first = share * -std::expm1(-1 / tau);
+    return first > most ? 1 + static_cast<int>(tau * std::log(first / most)) : 0;
+}
+
 TEST(Force, HairDraggedOverARimComesOffItEvenly) {
     // At 50 mm/s the rim passes from one contact point to the next in 5 ms: steps used to be 35 %.
     const Block block;
@@ -178,8 +185,12 @@ TEST(Force, HairDraggedOverARimComesOffItEvenly) {
                                         [&](int i) { return block.beside_rim(0.015 - 5e-5 * i, 7e-4, 0.004); });
             EXPECT_LT(out.felt.step(), kNoKnock) << brush << " lean " << lean;
             EXPECT_LT(in.felt.step(), kNoKnock) << brush << " lean " << lean;
-            // Upright it trails, and its tip leaves the rim while it is still bent: within 4 ms, at the end.
-            EXPECT_LE(out.surface.steps_above(0.045), lean == 0 ? 5 : 0) << brush << " lean " << lean;
+            // Upright the splayed hair turns behind the hand, which sets its damped joints going: one step. It
+            // trails then, steadily, and its tip leaves the rim while it is still bent.
+            const std::vector<double>& force = out.surface.force;
+            const double trailing = force[force.size() / 3] / out.surface.peak;
+            const int allowed = 1 + steps_of_release(trailing, brush::load_preset(brush).damping, 0.045);
+            EXPECT_LE(out.surface.steps_above(0.045), lean == 0 ? allowed : 0) << brush << " lean " << lean;
             EXPECT_LT(in.surface.step(), 0.045) << brush << " lean " << lean;
             EXPECT_LT(out.surface.step(0.98), lean == 0 ? 0.03 : 0.02) << brush << " lean " << lean;
             EXPECT_LT(in.surface.step(0.98), 0.02) << brush << " lean " << lean;

@@ -133,18 +133,56 @@ double half_tone(const Painting& p, const ink::Ink& ink) {
     return half / all;
 }
 
+/// Ink and none on the sheet: the area that shows at least half of the full tone, and the length of its edge, metres,
+/// by how often rows and columns of texels meet it (Crofton: π/4 of the crossings' sum, times their distance).
+struct Streaks {
+    double area = 0, edge = 0;
+};
+
+Streaks streaks_of(const Painting& p, const ink::Ink& ink) {
+    const double extinction = ink::extinction_of(ink), texel = p.model().texels.texel_size;
+    const auto n = static_cast<int>(std::ceil(kSide / texel));
+    std::vector<char> inked(static_cast<std::size_t>(n) * n, 0);
+    for (const std::uint32_t slot : p.canvas().touched_slots()) {
+        const ink::Plane* plane = p.canvas().plane(slot, 0);
+        for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
+            if (-std::expm1(-extinction * static_cast<double>((*plane)[t])) < 0.5) continue;
+            const Vec3 at(p.model().texels.position(slot, t));
+            const auto i = std::clamp(static_cast<int>(at.x / texel + 0.5 * n), 0, n - 1);
+            const auto j = std::clamp(static_cast<int>(at.y / texel + 0.5 * n), 0, n - 1);
+            inked[static_cast<std::size_t>(j) * n + i] = 1;
+        }
+    }
+    double crossings = 0, area = 0;
+    for (int j = 1; j < n; ++j)
+        for (int i = 1; i < n; ++i) {
+            const char here = inked[static_cast<std::size_t>(j) * n + i];
+            area += here;
+            crossings += here != inked[static_cast<std::size_t>(j) * n + i - 1];
+            crossings += here != inked[static_cast<std::size_t>(j - 1) * n + i];
+        }
+    return {area * texel * texel, std::numbers::pi / 4 * crossings * texel};
+}
+
 TEST(DryBrush, HairLeavesInkOrNone) {
-    // Half tone is a density of streaks. What is left of it are the edges of streaks, a texel that is covered in part on either
-    // side, which get fewer as texels get finer than hair; 0.05 of thinning threads and ends beside.
+    // Half tone is a density of streaks. What is left of it are the edges of streaks: pictures of hair are soft over a
+    // texel (`sweep_over`), and no wider a band beside each edge may be half tone. It gets less as texels get finer
+    // than hair; 0.05 of thinning threads and ends beside.
     const ink::Ink ink = ink::load_ink("carbon");
     const double left = 0.2;
     const Model coarse = sheet(), fine = sheet({}, 2 * kSize);
-    double at_coarse = 0;
-    constexpr int kSeeds = 8;  // one by itself has 0.19 to 0.28
-    for (int seed = 1; seed <= kSeeds; ++seed) at_coarse += half_tone(dry_stroke(coarse, left, seed), ink) / kSeeds;
-    const double at_fine = half_tone(dry_stroke(fine, left, 3), ink);
-    EXPECT_LT(at_coarse, 0.25);
-    EXPECT_LT(at_fine, 0.05 + 0.6 * at_coarse);
+    for (const int seed : {3, 1, 2, 4}) {
+        double part[2];
+        int k = 0;
+        for (const Model* model : {&coarse, &fine}) {
+            const Painting p = dry_stroke(*model, left, seed);
+            const Streaks streaks = streaks_of(p, ink);
+            part[k] = half_tone(p, ink);
+            EXPECT_LT(part[k] / (1 - part[k]) * streaks.area, streaks.edge * model->texels.texel_size) << seed;
+            ++k;
+        }
+        EXPECT_LT(part[1], 0.05 + 0.6 * part[0]) << seed;
+    }
 }
 
 /// Part of each square of `side` metres that is covered, over the sheet.

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "ink/colour/composite.h"
+#include "ink/film/paste.h"
 #include "sheet.h"
 
 namespace tuft::stroke {
@@ -43,8 +44,12 @@ TEST(PasteStroke, ItLeavesFurrowsAlongTheHairAndSmoothOnes) {
     painting.paint(stroke_of(kWhite, {}));
     const std::vector<double> across = heights_across(painting, 0), further = heights_across(painting, 0.003);
     std::vector<double> inside, beside;
-    for (std::size_t i = 3; i + 3 < kSize; ++i)
-        if (further[i] > 60 && *std::min_element(&across[i - 3], &across[i + 4]) > 60) {  // within the flanks of its edges
+    // Within the flanks of its edges, which surface tension rounds over 1/k (Orchard).
+    const ink::Ink white = ink::load_ink(kWhite);
+    const double rounded = ink::levelling_length(white.yield, white.film * ink::kFilmUnit);
+    const auto flank = static_cast<std::size_t>(std::ceil(rounded / model.texels.texel_size));
+    for (std::size_t i = flank; i + flank < kSize; ++i)
+        if (further[i] > 60 && *std::min_element(&across[i - flank], &across[i + flank + 1]) > 60) {
             inside.push_back(across[i]);
             beside.push_back(further[i]);
         }
