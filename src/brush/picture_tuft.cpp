@@ -242,6 +242,53 @@ void draw_brush(Canvas& canvas, const Tuft& tuft, const TuftState& state, const 
     }
 }
 
+namespace {
+
+/// How far a section's outline reaches over its centre and under it.
+double reach_of(const Section& s) { return std::hypot(s.a * s.e.z, s.b * s.m.z); }
+
+bool meets_sheet(const Section& s) {
+    const double reach = reach_of(s);
+    return reach > 0 && std::abs(s.centre.z) <= reach;
+}
+
+Section between(const Section& p, const Section& q, double f) {
+    Section s = p;
+    s.centre = glm::mix(p.centre, q.centre, f);
+    s.e = glm::normalize(glm::mix(p.e, q.e, f));
+    s.m = glm::normalize(glm::mix(p.m, q.m, f));
+    s.a = std::lerp(p.a, q.a, f);
+    s.b = std::lerp(p.b, q.b, f);
+    return s;
+}
+
+/// Those of the sections that meet the sheet, and more up to where the tuft only just does: there
+/// the patch is round, as wide as the root of the way from its end.
+std::vector<Section> touching(const std::vector<Section>& sections) {
+    constexpr int kRound = 12;
+    std::vector<Section> out;
+    const auto add_end = [&](const Section& in, const Section& off, bool towards) {
+        double meets = 0, misses = 1;
+        for (int i = 0; i < 30; ++i) {
+            const double f = 0.5 * (meets + misses);
+            (meets_sheet(between(in, off, f)) ? meets : misses) = f;
+        }
+        for (int k = 1; k <= kRound; ++k) {
+            const double part = static_cast<double>(towards ? kRound + 1 - k : k) / kRound;
+            out.push_back(between(in, off, meets * part * (2 - part)));
+        }
+    };
+    for (std::size_t i = 0; i < sections.size(); ++i) {
+        const bool now = meets_sheet(sections[i]), before = i > 0 && meets_sheet(sections[i - 1]);
+        if (i > 0 && now && !before) add_end(sections[i], sections[i - 1], true);
+        if (now) out.push_back(sections[i]);
+        if (i > 0 && before && !now) add_end(sections[i - 1], sections[i], false);
+    }
+    return out;
+}
+
+}  // namespace
+
 void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view,
                 double y, const TuftLook& look) {
     const Vec3 ink = srgb(24, 22, 24);
@@ -274,10 +321,10 @@ void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const 
     }
     for (const Branch& branch : state.branches) {
         std::vector<Vec2> left, right;
-        for (const Section& s : refine_sections(branch.sections, kBetween)) {
-            const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = std::hypot(ne, nm);
-            if (reach <= 0 || std::abs(s.centre.z) > reach) continue;
-            const double middle = std::atan2(nm, ne), half = std::acos(-s.centre.z / reach);
+        for (const Section& s : touching(refine_sections(branch.sections, kBetween))) {
+            const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = reach_of(s);
+            const double middle = std::atan2(nm, ne),
+                         half = std::acos(std::clamp(-s.centre.z / reach, -1.0, 1.0));
             Vec3 q[2];
             for (int k = 0; k < 2; ++k) {
                 const double w = middle + (k == 0 ? -half : half);
