@@ -314,6 +314,9 @@ void Painting::draw_poses() {
         // line along its own way.
         const double leap = smooth_step(glm::length(drawn - shift) / std::sqrt(std::max(area, 1e-30)) / kLeap);
         stamp.motion.shift = glm::mix(shift, drawn, std::max(leap, static_cast<double>(stamp.apart)));
+        // Dry hair leaves ink by the way it is drawn: where it only comes to touch a tip that leans would print a speck
+        // that its stroke, which begins where it has been pressed aside, does not reach.
+        stamp.ds = h.was_touching ? h.step : (1 - static_cast<double>(stamp.apart)) * h.step;
         h.was_touching = true;
         h.last_position = pose.position;
         const ink::StampContact touch{
@@ -326,7 +329,6 @@ void Painting::draw_poses() {
             .touch = h.touched};
         stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
         stamp.ink.capacity = std::max(h.substrate->capacity, static_cast<float>(ink::standing_film(h.ink.yield)));
-        stamp.ds = h.step;
         if (h.stroke.trace.erases) stamp.erases = 2 + 2 * touch.moment_factor;  // sooner than ink is given: tips rub off what tips left
         if (h.paste) {
             h.report.ink_given += h.lay_paste(stamp, touch.moment_factor);
