@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "core/random.h"
 #include "wet_stage.h"
 
 namespace tuft::ink {
@@ -149,13 +150,35 @@ TEST(WetFilm, LongStepsKeepEveryPigmentAndAllWaterAndAreTheSameOnAnyNumberOfThre
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST(WetFilm, WhereFlowsAreHeldBackASeamHoldsThemBackLittleMore) {
-    // Steps of 40 ms, twice what stability allows here: blocks of texels end at seams.
+TEST(WetFilm, WhereFlowsAreHeldBackASeamDoesNotHoldThemBackMore) {
+    // Steps of 50 ms, 2.5 times what stability allows here: blocks of texels end at seams.
     const double degree = std::numbers::pi / 180;
     for (const auto& [left, right] : {std::pair{Lie{{8.21, 8.13}, 0}, Lie{{200.87, 8.21}, 0}}, {{{140.3, 8.4}, 0}, {{420.7, 10.2}, 30 * degree}}}) {
         const BlotError e = error_of_seam(left, right, 0.1);
-        EXPECT_LT(e.worst, 0.02);
-        EXPECT_LT(e.rms, 0.0025);
+        EXPECT_LT(e.worst, 0.01);
+        EXPECT_LT(e.rms, 0.0015) << "of steps in two parts, where they meet";
+    }
+}
+
+TEST(WetFilm, ABlotIsTheSameOverRandomSeams) {
+    // At the steps in use, where flows are hardly held back, and twice as long. A cut cell has the
+    // mean of what lies in it, and its middle is up to 0.14 texels beside its texel's: at the rim,
+    // where ink thins out by 7 % of the peak in a texel, that is a third of a percent to the whole
+    // one that differs in a few layouts of a hundred.
+    const double degree = std::numbers::pi / 180;
+    for (const double shortest : {FilmParams{}.shortest_step, 2 * FilmParams{}.shortest_step}) {
+        int n = 0, within = 0;
+        for (const std::uint64_t seed : {1, 2, 3})
+            for (std::uint64_t i = 0; i < 8; ++i, ++n) {
+                const auto at = [&](std::uint64_t k) { return uniform(seed, 10 * i + k); };
+                const Lie left{{140.3 + at(0), 8.4 + at(1)}, 45 * at(2) * degree},
+                    right{{420.7 + at(3), 10.2 + at(4)}, 45 * at(5) * degree};
+                const BlotError e = error_of_seam(left, right, shortest);
+                EXPECT_LT(e.worst, 0.012) << seed << ' ' << i;
+                EXPECT_LT(e.rms, 0.0015) << seed << ' ' << i;
+                within += e.worst < 0.01;
+            }
+        EXPECT_GE(within, n - 1) << "of " << n;
     }
 }
 

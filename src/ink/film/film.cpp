@@ -141,6 +141,9 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     return p;
 }
 
+/// The faces that a step goes over: all; or those among tiles beside seams, and all others.
+enum class Part : std::uint8_t { whole, inside, outside };
+
 struct WetFilm::State : TileList {
     std::vector<std::uint8_t> told;
     /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
@@ -150,6 +153,8 @@ struct WetFilm::State : TileList {
     bool any_relief = false;
     std::unique_ptr<Drips> drips;
     std::vector<Sources> sources;  ///< of the list; empty: not looked up yet
+    Part part = Part::whole;       ///< of the step in work
+    std::vector<std::uint32_t> beside_order;  ///< of `order` what lies beside seams
     std::mutex mutex;
     std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
 
@@ -230,6 +235,13 @@ struct WetFilm::State : TileList {
         return any;
     }
 
+    const Geometry& faces_of(const Active& tile) const {
+        const SplitGeometry* split = split_geometry[tile.slot].get();
+        return part == Part::whole || !split ? *geometry[tile.slot]
+               : part == Part::inside        ? split->inside
+                                             : split->outside;
+    }
+
     void prepare(const Canvas& canvas) {
         sources.resize(list.size());
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -257,7 +269,7 @@ struct WetFilm::State : TileList {
             const std::array<float, 2> here = liquid_at(index, l.texel), there = liquid_at(other, l.other_texel);
             const float t = here[0] + here[1], u = there[0] + there[1];
             thin = thin || u < step.rim_depth;
-            if (!(t + u > 0) || other == kNone) continue;
+            if (!(t + u > 0) || other == kNone || part == Part::outside) continue;
             for (int p = 0; p < pigments; ++p)
                 crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] = at(sources[other].open[p], l.other_texel);
             for (int p = 0; p < pigments; ++p) crossing.pigments |= static_cast<std::uint32_t>(sources[other].open[p] != nullptr) << p;
@@ -288,7 +300,7 @@ struct WetFilm::State : TileList {
     /// `rim_slope` of the texels whose neighbours lie over a seam.
     void slopes_over_seams(std::size_t index, const Step& step, Work& work) const {
         const Active& tile = list[index];
-        const Geometry& g = *geometry[tile.slot];
+        const Geometry& g = faces_of(tile);
         const Beyond* other = tile.others.data();
         work.sloping = true;
         for (std::size_t i = 0; i < tile.taps.size();) {
@@ -341,7 +353,7 @@ struct WetFilm::State : TileList {
     void compute(std::size_t index, int pigments, const Step& step, std::uint64_t number, Worker& worker) {
         Active& tile = list[index];
         Work& work = worker.work;
-        const Geometry& g = *geometry[tile.slot];
+        const Geometry& g = faces_of(tile);
         static constexpr Sources kNothing{};
         Near near;
         for (int i = 0; i < 9; ++i) near[i] = tile.around[i] == kNone ? &kNothing : &sources[tile.around[i]];
@@ -380,7 +392,9 @@ struct WetFilm::State : TileList {
         tile.seam_wet = false;
         for (const atlas::SeamLink& l : tile.links)
             tile.seam_wet = tile.seam_wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
-        tile.spreads = before.sides != tile.outcome.sides || seam_was != tile.seam_wet ||
+        // Until the list is looked at: a step may have parts.
+        tile.spreads = tile.spreads || before.sides != tile.outcome.sides ||
+                       seam_was != tile.seam_wet ||
                        (before.most_w + before.most_s > 0) != tile.wet();
         for (int p = 0; p < pigments; ++p) compute_pigment(index, near, p, seed + 1 + static_cast<std::uint64_t>(p), worker);
     }
@@ -388,7 +402,7 @@ struct WetFilm::State : TileList {
     void compute_pigment(std::size_t index, const Near& near, int p, std::uint64_t seed, Worker& worker) {
         Active& tile = list[index];
         Work& work = worker.work;
-        const Geometry& g = *geometry[tile.slot];
+        const Geometry& g = faces_of(tile);
         bool any = load(work.p, near, [p](const Sources& a) { return a.open[p]; });
         if (!any) work.p.fill(0);
         const Crossing& crossing = worker.crossing;
@@ -493,23 +507,52 @@ struct WetFilm::State : TileList {
         return left == 0;
     }
 
-    void step(Canvas& canvas, const FilmParams& params, const Step& rates, FilmReport& report) {
+    /// Counts who reads a tile's planes among those that a step goes through, the others stay as
+    /// they are.
+    std::span<const std::uint32_t> going() {
+        const auto set = [&](std::uint32_t i, std::uint32_t n) {
+            readers[i].store(n, std::memory_order_relaxed);
+        };
+        if (part != Part::inside) {
+            for (std::uint32_t i = 0; i < list.size(); ++i) set(i, n_readers[i]);
+            return order;
+        }
+        beside_order.clear();
+        for (const std::uint32_t i : order)
+            if (beside_seam(list[i].slot)) beside_order.push_back(i);
+        for (std::uint32_t i = 0; i < list.size(); ++i) {
+            set(i, 0);
+            list[i].idle = true;
+        }
+        for (const std::uint32_t i : beside_order)
+            each_read(i, [&](std::uint32_t read) {
+                set(read, readers[read].load(std::memory_order_relaxed) + 1);
+            });
+        return beside_order;
+    }
+
+    /// `number`: of the step, another one for each of its parts.
+    void step(Canvas& canvas, const FilmParams& params, const Step& rates, std::uint64_t number,
+              FilmReport& report) {
         const bool alone = thread_count() == 1;
-        for (std::size_t i = 0; i < list.size(); ++i) readers[i].store(n_readers[i], std::memory_order_relaxed);
+        const std::span<const std::uint32_t> tiles = going();
         const int pigments = static_cast<int>(canvas.pigments().size());
-        parallel_for(list.size(), 16, [&](std::size_t begin, std::size_t end) {
+        parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
             std::unique_ptr<Worker> worker = take_worker();
             worker->ahead.clear();
             for (std::size_t i = begin; i < end; ++i) {
                 // The tile after the next: the next one's side is read already with this one.
-                if (i + 2 < end) look_ahead(order[i + 2], worker->ahead);
-                else worker->ahead.clear();
-                if (i + 4 < end) look_far_ahead(order[i + 4]);
-                each_read(order[i], [&](std::uint32_t read) {
-                    if (readers[read].load(std::memory_order_relaxed) == 1) canvas.expect(list[read].slot);
+                if (i + 2 < end)
+                    look_ahead(tiles[i + 2], worker->ahead);
+                else
+                    worker->ahead.clear();
+                if (i + 4 < end) look_far_ahead(tiles[i + 4]);
+                each_read(tiles[i], [&](std::uint32_t read) {
+                    if (readers[read].load(std::memory_order_relaxed) == 1)
+                        canvas.expect(list[read].slot);
                 });
-                compute(order[i], pigments, rates, report.steps, *worker);
-                each_read(order[i], [&](std::uint32_t read) {
+                compute(tiles[i], pigments, rates, number, *worker);
+                each_read(tiles[i], [&](std::uint32_t read) {
                     if (last_reader(readers[read], alone))
                         commit(canvas, read, static_cast<float>(params.stain), worker->spare);
                 });
@@ -517,9 +560,38 @@ struct WetFilm::State : TileList {
             give_back(std::move(worker));
         });
         const double area = map.texel_size * map.texel_size;
-        for (const Active& tile : list) report.evaporated += tile.outcome.evaporated * area;
-        ++report.steps;
-        report.tile_steps += list.size();
+        for (const std::uint32_t i : tiles) report.evaporated += list[i].outcome.evaporated * area;
+        report.tile_steps += tiles.size();
+    }
+
+    /// A step over the faces of `part`, and what follows from where it spread.
+    void go(Canvas& canvas, const FilmParams& params, Part faces, const Step& rates,
+            std::uint64_t number, FilmReport& report, const BeforeFn& before) {
+        if (sources.empty()) prepare(canvas);
+        for (const Active& tile : list) tell(tile.slot, before);
+        part = faces;
+        if (part != Part::whole)
+            for (const Active& tile : list)
+                if (beside_seam(tile.slot) && !split_geometry[tile.slot]) split_faces(tile.slot);
+        step(canvas, params, rates, number, report);
+        const bool bedded = bed_flooded(canvas);
+        if (changed()) spread(), sources.clear();
+        if (bedded) sources.clear();
+    }
+
+    void step_in_parts(Canvas& canvas, const FilmParams& params, const Chosen& chosen,
+                       FilmReport& report, const BeforeFn& before) {
+        const std::uint64_t number = report.steps++;
+        const auto inside = [&](int first, int last) {
+            for (int i = first; i < last && !list.empty(); ++i)
+                go(canvas, params, Part::inside, chosen.part, number | (i + 1ull) << 40, report,
+                   before);
+        };
+        inside(0, chosen.parts / 2);
+        if (!list.empty())
+            go(canvas, params, chosen.parts ? Part::outside : Part::whole, chosen.step, number,
+               report, before);
+        inside(chosen.parts / 2, chosen.parts);
     }
 };
 
@@ -547,14 +619,10 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
             throw Cancelled();
         }
         if (s.sources.empty()) s.prepare(canvas);
-        for (const Active& tile : s.list) s.tell(tile.slot, before);
-        Step step;
-        const double dt = choose_step(params, s.list, s.map.texel_size, s.any_relief, running, left, step);
-        s.step(canvas, params, step, report);
-        const bool bedded = s.bed_flooded(canvas);
+        const Chosen chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
+        s.step_in_parts(canvas, params, chosen, report, before);
+        const double dt = chosen.dt;
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
-        if (s.changed()) s.spread(), s.sources.clear();
-        if (bedded) s.sources.clear();
         beads += dt;
         if (beads > 0.9 * kBeadStep || left == 0) {
             running = s.run_beads(canvas, params, beads, before);

@@ -34,9 +34,10 @@ struct FilmParams {
     double bead_speed = 8e-3;        ///< m/s of a bead of √2 times the radius at which it stops
     double drain = 2;                ///< 1/s: part of the liquid above `hold` near a bead that it draws in
     double trail = 0.9;              ///< film units that a bead leaves behind
-    double shortest_step = 0.05;     ///< seconds; a fifth on relief, 0.4 at seams, half under liquid. Where
+    double shortest_step = 0.05;     ///< seconds; a fifth on relief, half under liquid. Where
                                      ///< stability asked for shorter steps, the fastest flows are
-                                     ///< held back instead, or go between blocks of texels
+                                     ///< held back instead, or go between blocks of texels; beside
+                                     ///< seams, where blocks end, such steps are divided
 };
 
 /// What a surface does by its substance (`Substrate`: diffusion, threshold, edge, absorbency,
@@ -82,7 +83,9 @@ struct FilmReport {
 /// `shortest_step`: there no face passes more than an eighth of a texel, and what pores would pass
 /// beyond that goes, where they are wet all over, between blocks of 4 × 4 texels, for which the
 /// same step is 16 times less (writing on rice paper with texels of 0.05 mm: steps of 25 and 50 ms,
-/// where stability asks for 2, change amounts by 0.2 % of the greatest, rms); only tiles that are
+/// where stability asks for 2, change amounts by 0.2 % of the greatest, rms). Blocks end at seams:
+/// among the tiles beside them the same step is divided into as many as stability needs, half of
+/// them before and half after what flows elsewhere (Strang 1968). Only tiles that are
 /// wet or next to wet ones are looked at; the same bits for any number of threads and on every
 /// instruction set. Conductances: 1/√g (g22, −g12; −g12, g11), the mixed term by diagonal faces
 /// (Selling's decomposition), made when a tile first gets wet (some 4 KiB a tile). 10 to 16 ns per

@@ -250,4 +250,56 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
     return g;
 }
 
+namespace {
+
+Geometry without_faces(const Geometry& g) {
+    Geometry out;
+    out.inverse = g.inverse;
+    out.valid = g.valid;
+    out.stiffness = g.stiffness;
+    out.grain = g.grain;
+    out.room = g.room;
+    out.blocks = g.blocks;
+    if (g.gd) out.gd = std::make_unique<Geometry::Diagonals>();
+    return out;
+}
+
+}  // namespace
+
+std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9>& in_zone) {
+    auto out = std::make_unique<SplitGeometry>(without_faces(g), without_faces(g));
+    const auto side = [](int i) { return i < 0 ? 0 : i < kSide ? 1 : 2; };
+    const auto within = [&](int column, int row) {
+        return in_zone[static_cast<std::size_t>(side(row) * 3 + side(column))];
+    };
+    const auto deal = [](std::uint16_t conductance, bool both, std::uint16_t& inside,
+                         std::uint16_t& outside) {
+        inside = both ? conductance : 0;
+        outside = both ? std::min<std::uint16_t>(conductance, 1) : conductance;
+    };
+    for (int row = -1; row < kSide; ++row)
+        for (int column = -1; column < kSide; ++column) {
+            if (row >= 0) {
+                const auto k = static_cast<std::size_t>(Geometry::right_of(column, row));
+                deal(g.gx[k], within(column, row) && within(column + 1, row), out->inside.gx[k],
+                     out->outside.gx[k]);
+            }
+            if (column >= 0) {
+                const auto k = static_cast<std::size_t>((row + 1) * kSide + column);
+                deal(g.gy[k], within(column, row) && within(column, row + 1), out->inside.gy[k],
+                     out->outside.gy[k]);
+            }
+            if (!g.gd) continue;
+            const auto k = static_cast<std::size_t>(Geometry::corner_of(column, row));
+            const std::int16_t d = (*g.gd)[k];
+            const bool both = d > 0 ? within(column, row) && within(column + 1, row + 1)
+                                    : within(column + 1, row) && within(column, row + 1);
+            Geometry& to = both ? out->inside : out->outside;
+            (*to.gd)[k] = d;
+            to.ups |= d > 0;
+            to.downs |= d < 0;
+        }
+    return out;
+}
+
 }  // namespace tuft::ink::wet

@@ -45,12 +45,41 @@ float most_of_links(std::vector<float>& weights, float most) {
 }  // namespace
 
 TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
-    : map(m), seams(std::move(s)), geometry(m.n_slots()), mark_(m.n_slots(), 0), place_(m.n_slots(), kNone) {
+    : map(m),
+      seams(std::move(s)),
+      geometry(m.n_slots()),
+      split_geometry(m.n_slots()),
+      mark_(m.n_slots(), 0),
+      place_(m.n_slots(), kNone) {
     for (const atlas::SeamLink& l : seams.links) weights_.push_back(l.weight);
     taps_ = seams.taps;
     find_near();
     find_rooms();
+    find_beside();
     limit_links();
+}
+
+void TileList::find_beside() {
+    beside_.assign(map.n_slots(), 0);
+    const auto mark = [&](std::uint32_t slot, int texel) {
+        const auto reach = [](int i) { return std::array{i < kBlock, true, i >= kSide - kBlock}; };
+        const std::array<bool, 3> across = reach(texel % kSide), along = reach(texel / kSide);
+        const std::array<std::uint32_t, 9> near = around(slot);
+        for (std::size_t i = 0; i < 9; ++i)
+            if (near[i] != kNone && across[i % 3] && along[i / 3]) beside_[near[i]] = 1;
+    };
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        for (const atlas::SeamLink& l : links_of(slot)) mark(slot, l.texel);
+        for (std::uint32_t i = seams.face_start[slot]; i < seams.face_start[slot + 1]; ++i)
+            mark(slot, seams.faces[i].texel);
+    }
+}
+
+void TileList::split_faces(std::uint32_t slot) {
+    std::array<bool, 9> in_zone;
+    const std::array<std::uint32_t, 9> near = around(slot);
+    for (std::size_t i = 0; i < 9; ++i) in_zone[i] = near[i] != kNone && beside_[near[i]];
+    split_geometry[slot] = split(*geometry[slot], in_zone);
 }
 
 void TileList::find_near() {
@@ -106,6 +135,7 @@ void TileList::set_free(WetFilm::FreeFn free) {
 
 void TileList::look_anew() {
     for (auto& g : geometry) g.reset();
+    for (auto& g : split_geometry) g.reset();
     const auto root = [&](std::uint32_t slot, int texel) {
         return std::sqrt(ease_of_flow(Vec3(map.position(slot, texel)), ground_.unevenness));
     };
@@ -262,7 +292,9 @@ void TileList::put_in_order() {
 }
 
 bool TileList::changed() {
-    if (std::none_of(list.begin(), list.end(), [](const Active& tile) { return tile.spreads; })) return false;
+    bool any = false;
+    for (Active& tile : list) any |= std::exchange(tile.spreads, false);
+    if (!any) return false;
     wanted_.assign(list.size(), 0);
     bool more = false;
     for (std::size_t at = 0; at < list.size() && !more; ++at) {

@@ -51,7 +51,7 @@ struct Active {
     const Geometry* geometry = nullptr;     ///< null: not looked up yet
     const Geometry::Diagonals* diagonals = nullptr;  ///< its own; to be asked for before it is there
     bool seam_wet = false;
-    bool spreads = true;                    ///< wet in other places than before the step
+    bool spreads = true;                    ///< wet in other places than when `changed` looked
     bool idle = false;                      ///< nothing wet in sight
     PlanePtr w, s;                          ///< of the step's end, until they are in the canvas
     std::array<PlanePtr, kMaxPigments> p;
@@ -64,6 +64,9 @@ struct TileList {
     const atlas::TexelMap& map;
     atlas::SeamLinks seams;                 ///< scaled: what goes over seams stays within what a step allows
     std::vector<std::unique_ptr<Geometry>> geometry;  ///< [n_slots] null: never wet
+    /// [n_slots] of tiles beside seams: what flows among them may go in shorter steps. Null: not
+    /// looked up yet.
+    std::vector<std::unique_ptr<SplitGeometry>> split_geometry;
     std::vector<Active> list;               ///< ascending slots
     /// Places in the list as a step goes through them: strip by strip of the atlas, so that what a tile and the one
     /// below it read, and the planes that get free, are still in the second cache.
@@ -79,11 +82,17 @@ struct TileList {
     /// The same for what is free of tape.
     void set_free(WetFilm::FreeFn free);
     const Ground& ground() const { return ground_; }
+    /// Whether a tile has texels at a seam, or blocks of 4 × 4 texels beside some of the next
+    /// tile's.
+    bool beside_seam(std::uint32_t slot) const { return beside_[slot]; }
+    /// Makes `split_geometry` of a tile beside a seam.
+    void split_faces(std::uint32_t slot);
     /// The list becomes the canvas' wet tiles and those round them.
     void begin(const Canvas& canvas);
     /// The list becomes the wet tiles and those that liquid may reach in the next step.
     void spread();
-    /// Whether other tiles may be reached after this step than before it: whether `spread` would change the list.
+    /// Whether other tiles may be reached than when it was last asked: whether `spread` would
+    /// change the list.
     bool changed();
     /// Looks at slots that something else wrote to, and takes them into the list.
     void look_at(const Canvas& canvas, std::span<const std::uint32_t> slots);
@@ -109,6 +118,7 @@ struct TileList {
     std::vector<std::uint16_t> link_near_;   ///< of the links: which of the slot's `near_`
     std::vector<float> link_rooms_;     ///< of the links
     std::vector<Beyond> others_;        ///< of the list
+    std::vector<std::uint8_t> beside_;  ///< [n_slots]
     std::vector<std::uint8_t> wanted_;  ///< of the list: scratch
     std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch
     std::vector<std::uint32_t> place_;  ///< [n_slots] scratch
@@ -117,6 +127,7 @@ struct TileList {
     void look_anew();
     void limit_links();
     void find_rooms();
+    void find_beside();
     void close_taps();
     std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const;
     std::array<std::uint32_t, 9> around(std::uint32_t slot) const;

@@ -16,38 +16,66 @@ static_assert(kFlowPart * (4 + kSeamPart) < 4 + kSeamStiffness);
 // The same where flows are held back: texels inside charts have 4 sides and 4 corners through which half as much goes,
 // those at seams 0.4 of that and the rest over links. Together with mixing no more than all.
 constexpr double kHeldPart = 0.75, kFaces = 6, kHeldPartOfLinks = 0.5;
-// Of the shortest step: ink runs off ridges at once; no blocks lie over seams; fronts run fast while there is liquid on
-// the surface.
-constexpr double kStepOnRelief = 0.2, kStepAtSeams = 0.4, kStepOfFilm = 0.5;
+// Of the shortest step: ink runs off ridges at once; fronts run fast while there is liquid on the
+// surface.
+constexpr double kStepOnRelief = 0.2, kStepOfFilm = 0.5;
+constexpr int kMostParts = 64;
+
+/// What flows fastest: least seconds in which a tile's part as small as 1 / stiffness of that could
+/// flow off.
+struct Deepest {
+    double stiffness = 4, w = 0, s = 0;
+
+    void take(const Active& tile) {
+        const auto own = static_cast<double>(tile.stiffness);
+        stiffness = std::max(
+            {stiffness, own, tile.links.empty() ? 0 : std::max(4.0, own) + kSeamStiffness});
+        w = std::max(w, static_cast<double>(tile.outcome.most_w));
+        s = std::max(s, static_cast<double>(tile.outcome.most_s));
+    }
+    double rate(const FilmParams& p, double levelling, double area, bool on_relief) const {
+        const double over_ridges = on_relief ? p.levelling * std::max(0.0, w - p.ridge) : 0;
+        return stiffness / area *
+               std::max(p.mobility * (w - p.threshold) +
+                            std::max(levelling * std::max(0.0, w - p.hold), over_ridges),
+                        p.pores > 0 ? p.mobility * s : 0.0);
+    }
+};
+
+Step part_of(const Step& step, int parts, double stiffness) {
+    const float part = 1 / static_cast<float>(parts);
+    Step out = step;
+    for (float* rate : {&out.flow, &out.levelling, &out.mixing, &out.relief}) *rate *= part;
+    out.limit = static_cast<float>(kFlowPart / stiffness);
+    out.most = out.soak = out.evaporation = out.rim = 0;
+    return out;
+}
 
 }  // namespace
 
-double choose_step(const FilmParams& p, std::span<const Active> list, double texel_size, bool on_relief, bool beads,
-                   double left, Step& step) {
+Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief,
+                   bool beads, double left) {
     const double area = texel_size * texel_size;
     const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
-    double stiffness = 4, most_w = 0, most_s = 0;
-    bool at_seams = false;
-    for (const Active& tile : list) {
-        at_seams = at_seams || (tile.seam_wet && !tile.links.empty());
-        stiffness = std::max(stiffness, static_cast<double>(tile.stiffness));
-        if (!tile.links.empty()) stiffness = std::max(stiffness, std::max(4.0, static_cast<double>(tile.stiffness)) + kSeamStiffness);
-        most_w = std::max(most_w, static_cast<double>(tile.outcome.most_w));
-        most_s = std::max(most_s, static_cast<double>(tile.outcome.most_s));
+    Deepest all, beside;
+    for (const Active& tile : tiles.list) {
+        all.take(tile);
+        if (tiles.beside_seam(tile.slot)) beside.take(tile);
     }
+    const double stiffness = all.stiffness;
+    Chosen out;
     double dt = beads ? kBeadStep : kLongestStep;
-    const double free = std::max(0.0, most_w - p.hold);
-    const double over_ridges = on_relief ? p.levelling * std::max(0.0, most_w - p.ridge) : 0;
-    const double flow = stiffness / area *
-                        std::max(p.mobility * (most_w - p.threshold) + std::max(levelling * free, over_ridges),
-                                 p.pores > 0 ? p.mobility * most_s : 0.0);
+    const double flow = all.rate(p, levelling, area, on_relief);
     if (flow > 0) dt = std::min(dt, kFlowPart / flow);
     const double mixing = p.mixing / area * stiffness;
     if (mixing > 0) dt = std::min(dt, kMixingPart / mixing);
-    const double shortest = p.shortest_step * (on_relief ? kStepOnRelief : at_seams ? kStepAtSeams : most_w > 0 ? kStepOfFilm : 1);
+    const double shortest = p.shortest_step * (on_relief   ? kStepOnRelief
+                                               : all.w > 0 ? kStepOfFilm
+                                                           : 1);
     const bool held = dt < shortest;
     dt = std::max(dt, shortest);
     dt = left / std::ceil(left / dt * (1 - 1e-12));
+    Step& step = out.step;
     step.flow = static_cast<float>(p.mobility * dt / area);
     step.levelling = static_cast<float>(levelling * dt / area);
     step.limit = static_cast<float>(kFlowPart / stiffness);
@@ -66,7 +94,13 @@ double choose_step(const FilmParams& p, std::span<const Active> list, double tex
     step.hold = static_cast<float>(p.hold);
     step.relief = static_cast<float>(p.levelling * dt / area);
     step.ridge = static_cast<float>(p.ridge);
-    return dt;
+    out.dt = dt;
+    if (!held || !(beside.w + beside.s > 0)) return out;
+    const double longest =
+        std::max(beside.rate(p, levelling, area, on_relief) / kFlowPart, mixing / kMixingPart);
+    out.parts = std::clamp(static_cast<int>(std::ceil(dt * longest)), 2, kMostParts) / 2 * 2;
+    out.part = part_of(step, out.parts, beside.stiffness);
+    return out;
 }
 
 }  // namespace tuft::ink::wet

@@ -8,10 +8,18 @@ namespace tuft::ink::wet {
 
 inline constexpr double kBeadStep = 0.05;     // seconds: a bead goes a texel or a few
 
-/// The longest stable step of the listed tiles, seconds, no longer than `left` and no shorter than
-/// `FilmParams::shortest_step` says, and its rates. `texel_size` in metres; `on_relief`: any of
+/// A step, and into how many parts it is divided for what flows beside seams: blocks of texels end
+/// there, and where flows are held back texels would lag behind. 0: all goes in one.
+struct Chosen {
+    double dt = 0;  ///< seconds
+    Step step;
+    int parts = 0;
+    Step part;  ///< flow and mixing only
+};
+/// The longest stable step of the listed tiles, no longer than `left` seconds and no shorter than
+/// `FilmParams::shortest_step` says. `texel_size` in metres; `on_relief`: any of
 /// them lies on dry relief; `beads`: some run.
-double choose_step(const FilmParams& p, std::span<const Active> list, double texel_size, bool on_relief, bool beads,
-                   double left, Step& step);
+Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief,
+                   bool beads, double left);
 
 }  // namespace tuft::ink::wet

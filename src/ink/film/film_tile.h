@@ -75,6 +75,19 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
 /// 2.4 mm, −2 to 1.5. On a plane the flow in the large is that of the geometric mean, 1 (Dykhne 1971).
 double ease_of_flow(const Vec3& position, double unevenness);
 
+/// A tile's faces in two parts.
+struct SplitGeometry {
+    Geometry inside, outside;
+    static void* operator new(std::size_t bytes) { return Geometry::operator new(bytes); }
+    static void operator delete(void* split, std::size_t bytes) {
+        Geometry::operator delete(split, bytes);
+    }
+};
+/// `inside` with the faces between texels of tiles of a zone, which `in_zone` says of the tile and
+/// those round it, and `outside` with all others. There what is closed is so but for what tells
+/// that slopes may be taken over it.
+std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9>& in_zone);
+
 /// FilmParams for one step, in texels: rates times the step's length.
 struct Step {
     float flow = 0;        ///< D dt / A per film unit

@@ -84,7 +84,7 @@ struct Rub {
 
 /// Film units of paste that come loose under it. Hair lies on what yields at τ with so much of
 /// itself that the weight rests on the pressure (2 + π) τ at which a flat punch sinks in (Prandtl
-/// 1920), and of what it slides over a part K comes off (Archard 1953, equation 3):
+/// 1920), and of what it slides over a part K comes off (Archard 1953):
 ///
 ///     h = K p L / ((2 + π) τ),   K = 1e-3
 ///
