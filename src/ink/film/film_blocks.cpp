@@ -14,21 +14,14 @@ constexpr int kRound = kBlocks + 2;  // with those beside
 /// What the blocks of a tile and those beside it hold in the mean; 0: not wet all over, or at a
 /// seam.
 struct Means {
-    std::array<float, kRound * kRound> mean{}, least{};
+    std::array<float, kRound * kRound> mean{}, least{}, flow{};
 
     static constexpr std::size_t at(int column, int row) {
         return static_cast<std::size_t>((row + 1) * kRound + column + 1);
     }
-    /// The same bits for the tile itself and for those beside it.
-    void set(int column, int row, const float* s, int stride) {
-        std::array<float, kBlock> sum{}, low{};
-        for (int x = 0; x < kBlock; ++x) sum[x] = low[x] = s[x];
-        for (int y = 1; y < kBlock; ++y)
-            for (int x = 0; x < kBlock; ++x) {
-                const float v = s[y * stride + x];
-                sum[x] += v;
-                low[x] = v < low[x] ? v : low[x];
-            }
+    /// Of a block whose columns hold `sum` and `low`: the same bits for the tile itself and for
+    /// those beside it.
+    void set(int column, int row, const float* sum, const float* low) {
         const float lowest = std::min(std::min(low[0], low[1]), std::min(low[2], low[3]));
         if (!(lowest > 0)) return;
         mean[at(column, row)] = ((sum[0] + sum[1]) + (sum[2] + sum[3])) / (kBlock * kBlock);
@@ -36,24 +29,51 @@ struct Means {
     }
 };
 
+inline __attribute__((always_inline)) float smaller(float a, float b) {
+    return a < b ? a : b;
+}
+inline __attribute__((always_inline)) float larger(float a, float b) {
+    return a > b ? a : b;
+}
+
+/// Sums and least of four rows of `kColumns`.
+template <int kColumns>
+inline __attribute__((always_inline)) void columns_of(float* __restrict sum, float* __restrict low,
+                                                      const float* s, int stride) {
+    for (int x = 0; x < kColumns; ++x) {
+        const float a = s[x], b = s[stride + x], c = s[2 * stride + x], d = s[3 * stride + x];
+        sum[x] = ((a + b) + c) + d;
+        low[x] = smaller(d, smaller(c, smaller(b, a)));
+    }
+}
+TUFT_CLONES void columns_of_tile(float* __restrict sum, float* __restrict low, const float* s) {
+    for (int row = 0; row < kBlocks; ++row)
+        columns_of<kSide>(sum + row * kSide, low + row * kSide, s + field_at(0, row * kBlock),
+                          kRow);
+}
+
 Means means_of(const Field& liquid, const Beside& beside) {
     Means m;
     const auto whole = [](std::uint16_t blocks, int column, int row) {
         return blocks >> (row * kBlocks + column) & 1;
     };
+    alignas(64) std::array<float, kBlocks * kSide> sum, low;
+    columns_of_tile(sum.data(), low.data(), liquid.data());
     for (int row = 0; row < kBlocks; ++row)
         for (int column = 0; column < kBlocks; ++column)
             if (whole(beside.here, column, row))
-                m.set(column, row, &liquid[field_at(column * kBlock, row * kBlock)], kRow);
+                m.set(column, row, &sum[row * kSide + column * kBlock],
+                      &low[row * kSide + column * kBlock]);
     constexpr int kLast = kBlocks - 1;
     for (int i = 0; i < kBlocks; ++i) {
         const std::array<std::array<int, 4>, 4> sides{
             {{kLast, i, -1, i}, {0, i, kBlocks, i}, {i, kLast, i, -1}, {i, 0, i, kBlocks}}};
         for (std::size_t side = 0; side < 4; ++side) {
             const auto& [column, row, to_column, to_row] = sides[side];
-            if (beside.liquid[side] && whole(beside.blocks[side], column, row))
-                m.set(to_column, to_row,
-                      beside.liquid[side] + row * kBlock * kSide + column * kBlock, kSide);
+            if (!beside.liquid[side] || !whole(beside.blocks[side], column, row)) continue;
+            columns_of<kBlock>(sum.data(), low.data(),
+                               beside.liquid[side] + row * kBlock * kSide + column * kBlock, kSide);
+            m.set(to_column, to_row, sum.data(), low.data());
         }
     }
     return m;
@@ -68,62 +88,78 @@ struct Medium {
     }
 };
 
-/// Through the four texels' parts of the face between two blocks. Whether anything goes.
-bool through_face(std::array<float, kBlock>& flux, const Means& m, std::size_t from, std::size_t to,
-                  const std::array<std::uint16_t, kBlock>& conductance,
-                  const std::array<std::uint16_t, kBlock>& room, const Medium& p) {
-    const float least = std::min(m.least[from], m.least[to]);
-    if (!(least > 0)) return false;
-    const float flow = 0.5f * (p.flow_at(m.mean[from]) + p.flow_at(m.mean[to])),
-                drop = (m.mean[from] - m.mean[to]) / kBlock;
-    const float most = kLeastPart * least;
-    float any = 0;
-    for (int i = 0; i < kBlock; ++i) {
-        const float k = (static_cast<float>(conductance[i]) * kConductanceUnit) * flow;
-        float held_back = k - p.most * static_cast<float>(room[i]);
-        held_back = held_back > 0 ? held_back : 0;
-        held_back = held_back < kMostOfBlock ? held_back : kMostOfBlock;
-        float f = held_back * drop;
-        f = f < most ? f : most;
-        f = f > -most ? f : -most;
-        flux[i] = f;
-        any = held_back > any ? held_back : any;
-    }
-    return any > 0;
-}
+/// Blocks' values at the sixteen texels of a row of them.
+struct Row {
+    alignas(64) std::array<float, kSide> mean, least, flow;
+};
 
 /// Through the faces of the blocks: of rows the upright ones, of columns those that lie.
 struct Fluxes {
-    std::array<std::array<std::array<float, kBlock>, kBlocks>, kBlocks + 1> across{},
-        along{};  ///< [face][block][texel]
+    alignas(64) std::array<std::array<float, kSide>, kBlocks + 1> across, along;  ///< [face][texel]
     bool any = false;
 };
 
-Fluxes fluxes_of(const Means& m, const Geometry& g, const Medium& p) {
+/// Through the sixteen texels' parts of the faces between two rows of blocks. Returns the greatest
+/// conductance that was held back.
+TUFT_CLONES float through_faces(float* __restrict flux, const Row& from, const Row& to,
+                                const std::uint16_t* __restrict conductance,
+                                const std::uint16_t* __restrict room, float most) {
+    alignas(64) float any[kSide];
+    for (int x = 0; x < kSide; ++x) {
+        const float least = smaller(from.least[x], to.least[x]);
+        const float flow = 0.5f * (from.flow[x] + to.flow[x]),
+                    drop = (from.mean[x] - to.mean[x]) / kBlock;
+        const float k = (static_cast<float>(conductance[x]) * kConductanceUnit) * flow;
+        const float over = larger(k - most * static_cast<float>(room[x]), 0);
+        const float held_back = least > 0 ? smaller(over, kMostOfBlock) : 0,
+                    limit = kLeastPart * least;
+        const float f = larger(smaller(held_back * drop, limit), -limit);
+        flux[x] = least > 0 ? f : 0;
+        any[x] = held_back;
+    }
+    float all = 0;
+    for (int x = 0; x < kSide; ++x) all = larger(all, any[x]);
+    return all;
+}
+
+Fluxes fluxes_of(Means m, const Geometry& g, const Medium& p) {
     Fluxes f;
-    std::array<std::uint16_t, kBlock> conductance, room;
+    if (std::none_of(m.least.begin(), m.least.end(), [](float l) { return l > 0; })) return f;
+    for (std::size_t i = 0; i < m.mean.size(); ++i) m.flow[i] = p.flow_at(m.mean[i]);
+    const auto fill = [&](Row& row, int block, std::size_t at) {
+        std::fill_n(row.mean.begin() + block * kBlock, kBlock, m.mean[at]);
+        std::fill_n(row.least.begin() + block * kBlock, kBlock, m.least[at]);
+        std::fill_n(row.flow.begin() + block * kBlock, kBlock, m.flow[at]);
+    };
+    std::array<Row, 2> across, along;
+    alignas(64) std::array<std::uint16_t, kSide> conductance, room;
     const auto room_at = [&](int k, int l) {
         return std::min(g.room[static_cast<std::size_t>(k)], g.room[static_cast<std::size_t>(l)]);
     };
-    for (int face = 0; face <= kBlocks; ++face)
+    const auto fill_both = [&](int to, int line) {
         for (int block = 0; block < kBlocks; ++block) {
-            const int before = face * kBlock - 1, first = block * kBlock;
-            for (int i = 0; i < kBlock; ++i) {
-                const int k = field_at(before, first + i);
-                conductance[i] =
-                    g.gx[static_cast<std::size_t>(Geometry::right_of(before, first + i))];
-                room[i] = room_at(k, k + 1);
-            }
-            f.any |= through_face(f.across[face][block], m, Means::at(face - 1, block),
-                                  Means::at(face, block), conductance, room, p);
-            for (int i = 0; i < kBlock; ++i) {
-                const int k = field_at(first + i, before);
-                conductance[i] = g.gy[static_cast<std::size_t>((before + 1) * kSide + first + i)];
-                room[i] = room_at(k, k + kRow);
-            }
-            f.any |= through_face(f.along[face][block], m, Means::at(block, face - 1),
-                                  Means::at(block, face), conductance, room, p);
+            fill(across[static_cast<std::size_t>(to)], block, Means::at(line, block));
+            fill(along[static_cast<std::size_t>(to)], block, Means::at(block, line));
         }
+    };
+    fill_both(1, -1);
+    for (int face = 0; face <= kBlocks; ++face) {
+        const int before = face * kBlock - 1, from = (face + 1) % 2, to = face % 2;
+        fill_both(to, face);
+        for (int row = 0; row < kSide; ++row) {
+            const int k = field_at(before, row);
+            conductance[row] = g.gx[static_cast<std::size_t>(Geometry::right_of(before, row))];
+            room[row] = room_at(k, k + 1);
+        }
+        const auto at = static_cast<std::size_t>(face);
+        f.any |= through_faces(f.across[at].data(), across[from], across[to], conductance.data(),
+                               room.data(), p.most) > 0;
+        for (int column = 0; column < kSide; ++column)
+            room[column] = room_at(field_at(column, before), field_at(column, before + 1));
+        f.any |= through_faces(f.along[at].data(), along[from], along[to],
+                               &g.gy[static_cast<std::size_t>((before + 1) * kSide)], room.data(),
+                               p.most) > 0;
+    }
     return f;
 }
 
@@ -147,19 +183,18 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
     alignas(64) std::array<float, kSide> last{}, along;
     for (int row = -1; row < kSide; ++row) {
         const int face = (row + 1) / kBlock, part = (row + 1) % kBlock;
-        const float* first = f.along[face][0].data();
-        const float* second = f.along[part == 0 ? face : face + 1][0].data();
+        const float* first = f.along[face].data();
+        const float* second = f.along[part == 0 ? face : face + 1].data();
         for (int x = 0; x < kSide; ++x)
             along[x] = first[x] + (second[x] - first[x]) * (static_cast<float>(part) / kBlock);
         carry(work.y, field_at(0, row), kRow, along.data(), work.rate.data(), passing);
         if (row >= 0) {
-            const int block = row / kBlock, i = row % kBlock;
             for (int b = 0; b < kBlocks; ++b) {
-                const float from = f.across[b][block][i], change = f.across[b + 1][block][i] - from;
+                const float from = f.across[b][row], change = f.across[b + 1][row] - from;
                 for (int x = 0; x < kBlock; ++x)
                     across[b * kBlock + x] = from + change * (static_cast<float>(x) / kBlock);
             }
-            across[kSide] = f.across[kBlocks][block][i];
+            across[kSide] = f.across[kBlocks][row];
             carry(work.x, field_at(-1, row), 1, across.data(), work.rate.data(), passing);
             const int k = field_at(kSide - 1, row);
             work.x.a[k] += std::max(across[kSide] * passing, 0.0f) * work.rate[k];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ink/film/drying.h"
+#include "ink/film/film_tile.h"
 #include "ink/film/pool.h"
 #include "ink/simd.h"
 
@@ -31,6 +32,19 @@ inline float positive(float a) { return a > 0 ? a : 0; }
 
 TUFT_CLONES void add(float* __restrict sum, const float* __restrict w) {
     for (int t = 0; t < kN; ++t) sum[t] += w[t];
+}
+
+TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, float scale) {
+    for (int t = 0; t < kN; ++t) sum[t] += w[t] * scale;
+}
+
+/// Leaves the height where it counts as paste's.
+TUFT_CLONES void where_dry(float* __restrict height, const float* __restrict film,
+                           const float* __restrict pores) {
+    for (int t = 0; t < kN; ++t) {
+        const float h = height[t] > static_cast<float>(kPlain) ? height[t] : 0;
+        height[t] = film[t] + pores[t] > 0 ? 0 : h;
+    }
 }
 
 struct Volumes {
@@ -176,19 +190,21 @@ Plane paste_height(const Canvas& canvas, std::uint32_t slot) {
     height.fill(0);
     for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
         if (const Plane* w = canvas.plane(slot, p))
-            for (int t = 0; t < kN; ++t)
-                height[t] += (*w)[t] * (1e6f * canvas.pigments()[p].height);
+            add_scaled(height.data(), w->data(), 1e6f * canvas.pigments()[p].height);
+    if (!(wet::greatest(height.data()) > static_cast<float>(kPlain))) {
+        height.fill(0);
+        return height;
+    }
+    static constexpr Plane kDry{};
     const Plane *film = canvas.liquid(slot, Liquid::film),
                 *pores = canvas.liquid(slot, Liquid::pores);
-    for (int t = 0; t < kN; ++t) {
-        const float liquid = (film ? (*film)[t] : 0) + (pores ? (*pores)[t] : 0);
-        if (liquid > 0 || !(height[t] > static_cast<float>(kPlain))) height[t] = 0;
-    }
+    where_dry(height.data(), (film ? film : &kDry)->data(), (pores ? pores : &kDry)->data());
     return height;
 }
 
 bool bed_paste(Canvas& canvas, std::uint32_t slot, const Plane& height,
                std::span<const float, kN> flooded, double loose) {
+    if (!(wet::greatest(height.data()) > 0)) return false;
     const Plane all = open_pigment(canvas, slot);
     Texels part;
     bool any = false;
