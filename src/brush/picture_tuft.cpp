@@ -91,16 +91,22 @@ void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, con
     constexpr int kRound = 16;
     constexpr double kUnder =
         0.88;  // of the section: no rim where the outermost hair happens to lie further in
+    constexpr double kRoot = 0.5;
     std::vector<Vec2> before, now;
     for (std::size_t i = 0; i < strand.sections.size(); ++i) {
         // Like its hair a branch goes straight from its last section to the trunk's first.
         if (i < strand.trunk && i + kBetween + 1 > strand.trunk) continue;
         const Section& s = strand.sections[i];
         const Vec2 centre = view(s.centre);
+        // Round a branch's root it lies within the hair, which runs straight past it.
+        const double from_root =
+            std::abs(static_cast<double>(i) - static_cast<double>(strand.trunk)) / (kBetween + 1);
+        const double under =
+            strand.trunk > 0 ? std::lerp(kRoot, kUnder, smooth_step(from_root / 3)) : kUnder;
         const Vec2 e =
-            kUnder * s.a * view.scale * Vec2{glm::dot(s.e, view.right), -glm::dot(s.e, view.up)};
+            under * s.a * view.scale * Vec2{glm::dot(s.e, view.right), -glm::dot(s.e, view.up)};
         const Vec2 m =
-            kUnder * s.b * view.scale * Vec2{glm::dot(s.m, view.right), -glm::dot(s.m, view.up)};
+            under * s.b * view.scale * Vec2{glm::dot(s.m, view.right), -glm::dot(s.m, view.up)};
         std::vector<Vec2> round;
         for (int k = 0; k < kRound; ++k) {
             const double w = 2 * std::numbers::pi * k / kRound;
@@ -245,7 +251,9 @@ void draw_brush(Canvas& canvas, const Tuft& tuft, const TuftState& state, const 
 namespace {
 
 /// How far a section's outline reaches over its centre and under it.
-double reach_of(const Section& s) { return std::hypot(s.a * s.e.z, s.b * s.m.z); }
+double reach_of(const Section& s) {
+    return std::hypot(s.a * s.e.z, s.b * s.m.z);
+}
 
 bool meets_sheet(const Section& s) {
     const double reach = reach_of(s);
