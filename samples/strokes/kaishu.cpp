@@ -49,11 +49,12 @@ void run_out(Stroke& s, double w) {
 
 }  // namespace
 
+// Heads of 横 and 折 land where they are pressed: a tip that first goes a way draws a stick of its own width.
 Stroke heng(Vec2 from, Vec2 to, double w, double bow) {
     const Axis l(from, to);
     const double n = l.length, b = -bow * n;
     Stroke s{"heng", {}};
-    append(s, {l.at(0.06 * w, -0.28 * w, 0, 0.5), l.at(0.18 * w, -0.24 * w, 0.30 * w, 0.5),
+    append(s, {l.at(0.17 * w, -0.243 * w, 0, 0.5), l.at(0.18 * w, -0.24 * w, 0.30 * w, 0.5),
                l.at(0.58 * w, -0.06 * w, 0.72 * w, 0.5, 0),
                l.at(1.6 * w, 0.4 * b - 0.02 * w, 0.76 * w, 0.9), l.at(0.5 * n, b, 0.70 * w, 1.1),
                l.at(n - 1.963 * w, 0.65 * b - 0.03 * w, 0.665 * w, 0.9)});
@@ -66,7 +67,7 @@ Stroke short_heng(Vec2 from, Vec2 to, double w) {
     const double n = l.length, b = -0.02 * n;
     Stroke s{"heng", {}};
     append(s,
-           {l.at(0.1 * w, -0.1 * w, 0, 0.6), l.at(0.6 * w, 0.02 * w, 0.70 * w, 0.7),
+           {l.at(0.4 * w, -0.04 * w, 0, 0.6), l.at(0.6 * w, 0.02 * w, 0.70 * w, 0.7),
             l.at(0.5 * n, b, 0.71 * w, 1), l.at(n - 1.5 * w, 0.6 * b - 0.03 * w, 0.68 * w, 0.9)});
     shoulder(s, l, b, w);
     return s;
@@ -224,7 +225,7 @@ namespace {
 void zhe_head(Stroke& s, const Axis& l, double w) {
     const double n = l.length;
     append(s,
-           {l.at(0.06 * w, -0.28 * w, 0, 0.5), l.at(0.18 * w, -0.24 * w, 0.28 * w, 0.5),
+           {l.at(0.17 * w, -0.243 * w, 0, 0.5), l.at(0.18 * w, -0.24 * w, 0.28 * w, 0.5),
             l.at(0.56 * w, -0.06 * w, 0.70 * w, 0.5, 0), l.at(1.6 * w, -0.005 * n, 0.76 * w, 0.9),
             l.at(0.55 * n, -0.02 * n, 0.72 * w, 1), l.at(n - 1.4 * w, -0.012 * n, 0.75 * w, 0.8),
             l.at(n - 0.72 * w, -0.08 * w, 0.78 * w, 0.45, 0.01),
