@@ -31,7 +31,7 @@ build() {
   local log=build/configure.log
   mkdir -p build
   say "building (release)"
-  cmake --preset release "${cmake_options[@]}" >"$log" 2>&1 || { cat "$log" >&2; return 1; }
+  cmake --preset release -DTUFT_UNITY=ON "${cmake_options[@]}" >"$log" 2>&1 || { cat "$log" >&2; return 1; }
   cmake --build --preset release --parallel "$(jobs_for_memory)" --target "$@" >&2
 }
 

@@ -41,9 +41,9 @@ std::string pigment_text(const ink::Pigment& pigment) {
 }
 
 /// Rows of one layer, written and read.
-class Rows {
+class LayerRows {
   public:
-    Rows(SQLite::Database& db, std::uint32_t layer) : db_(db), layer_(layer) {}
+    LayerRows(SQLite::Database& db, std::uint32_t layer) : db_(db), layer_(layer) {}
 
     void store_tile(const ink::TileSnapshot& tile) {
         const std::size_t open = std::popcount(tile.planes) * atlas::kTileTexels;
@@ -201,7 +201,7 @@ StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerT
             db.exec(kLayerTables);
             raise_format(db, layer.layer == stroke::kPaletteLayer ? kPaletteFormat : kLayersFormat);
         }
-        Rows rows(db, layer.layer);
+        LayerRows rows(db, layer.layer);
         for (const std::uint32_t slot : slots) rows.store_tile(layer.canvas->snapshot(slot));
     }
     return stored;
@@ -231,7 +231,7 @@ std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::
         const ink::Ink alone = ink::parse_ink(pigment.getColumn(0).getString(), path.string());
         for (stroke::LayerCanvas& layer : layers) layer.canvas.add_pigment(alone.parts.at(0).pigment);
     }
-    for (stroke::LayerCanvas& layer : layers) Rows(db, layer.layer).load(layer.canvas, path);
+    for (stroke::LayerCanvas& layer : layers) LayerRows(db, layer.layer).load(layer.canvas, path);
     std::vector<stroke::LayerTexels> texels;
     for (const stroke::LayerCanvas& layer : layers) texels.push_back({layer.layer, &layer.canvas});
     hash = hash_of(texels, layers.front().canvas.pigments());

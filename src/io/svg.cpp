@@ -33,7 +33,7 @@ struct Drawn {
 };
 
 // What elements hand down to those within them.
-struct Style {
+struct SvgStyle {
     bool stroked = false, filled = true, blank = false;  // blank: filled with white, which is the ground
     FillRule rule = FillRule::nonzero;
     double width = 1;  // units of the drawing
@@ -89,7 +89,7 @@ class Drawing {
   public:
     Drawing(const std::string& source, const SvgOptions& options) : source_(source), options_(options) {}
 
-    void walk(const pugi::xml_node& node, Matrix matrix, Style style, int depth) {
+    void walk(const pugi::xml_node& node, Matrix matrix, SvgStyle style, int depth) {
         if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
         if (++n_elements_ > kMostElements) throw Error(source_, "there are too many elements in it");
         const std::string name = local(node.name());
@@ -130,7 +130,7 @@ class Drawing {
 
     // The lines from `before` on are outlines of one area: lines that fill it come before them where they are
     // drawn themselves, else in their place.
-    void fill(std::size_t before, const Style& style) {
+    void fill(std::size_t before, const SvgStyle& style) {
         std::vector<Line> rings;
         for (std::size_t i = before; i < lines_.size(); ++i) rings.push_back(lines_[i].line);
         std::vector<Drawn> area;
@@ -229,13 +229,13 @@ class Drawing {
                 if (const auto at = rules->second.find(name); at != rules->second.end()) value = at->second;
         return value.empty() ? node.attribute(name).value() : value;
     }
-    void children(const pugi::xml_node& node, const Matrix& matrix, const Style& style, int depth) {
+    void children(const pugi::xml_node& node, const Matrix& matrix, const SvgStyle& style, int depth) {
         for (const pugi::xml_node& child : node.children())
             if (child.type() == pugi::node_element) walk(child, matrix, style, depth + 1);
     }
     // Another element drawn here; one that is not in the file draws nothing. A symbol is its children, in the
     // frame of its viewBox.
-    void use(const pugi::xml_node& node, Matrix matrix, const Style& style, int depth) {
+    void use(const pugi::xml_node& node, Matrix matrix, const SvgStyle& style, int depth) {
         std::string target = node.attribute("href").value();
         if (target.empty()) target = node.attribute("xlink:href").value();
         const auto at = target.starts_with('#') ? by_id_.find(target.substr(1)) : by_id_.end();
