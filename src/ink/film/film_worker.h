@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ink/canvas.h"
+#include "ink/film/film_tile.h"
+
+/// What a thread has at hand while it steps the wet film tile by tile; inside `ink` only.
+namespace tuft::ink::wet {
+
+/// What goes over a tile's links.
+struct Crossing {
+    std::vector<SeamLanes> lanes;
+    std::vector<std::uint8_t> texels;  ///< [size] where links start
+    std::vector<float> beyond;         ///< [pigment][links] amounts at their other ends
+    std::size_t links = 0, size = 0;   ///< of the tile, and those with liquid at either end
+    std::uint32_t pigments = 0;        ///< bits: those that have planes there
+
+    void clear(std::size_t n, int n_pigments) {
+        links = n;
+        size = 0;
+        pigments = 0;
+        if (n == 0) return;
+        lanes.resize((n + kSide - 1) / kSide);
+        texels.resize(n);
+        beyond.resize(n * static_cast<std::size_t>(n_pigments));
+    }
+    void add(const atlas::SeamLink& link, float room, const std::array<float, 2>& w, const std::array<float, 2>& s) {
+        SeamLanes& l = lanes[size / kSide];
+        const std::size_t lane = size % kSide;
+        l.weight[lane] = link.weight;
+        l.room[lane] = room;
+        l.apart[lane] = static_cast<float>(link.apart) / 64;
+        for (int end = 0; end < 2; ++end) l.w[end][lane] = w[end], l.s[end][lane] = s[end];
+        texels[size++] = link.texel;
+    }
+};
+
+/// Memory that will be needed soon. Planes lie here and there, and the processor waits long for each line
+/// that it does not expect, but it can wait for a dozen at once: some between one loop and the next. Into the second
+/// cache: the first is full of the tile in work.
+struct Ahead {
+    static constexpr int kSecondCache = 2;
+
+    struct Piece {
+        const char *at, *end;
+    };
+    std::array<Piece, 256> pieces;
+    std::size_t n = 0, next = 0;
+
+    void clear() { n = next = 0; }
+    void add(const void* from, std::size_t begin, std::size_t end) {
+        const char* at = static_cast<const char*>(from);
+        if (from && n < pieces.size()) pieces[n++] = {at + begin, at + end};
+    }
+    void fetch(int lines) {
+        for (; lines > 0 && next < n; ++next) {
+            Piece& piece = pieces[next];
+            for (; piece.at < piece.end && lines > 0; piece.at += 64, --lines) __builtin_prefetch(piece.at, 0, kSecondCache);
+            if (piece.at < piece.end) return;
+        }
+    }
+};
+
+/// Planes that nobody reads any more, the last ones still in the cache; of each kind by itself, so that those of a tile
+/// stay side by side in memory, on few pages.
+using Spare = std::array<std::vector<PlanePtr>, 2 + kMaxPigments>;
+
+/// What a thread works with.
+struct Worker {
+    Work work;
+    Ahead ahead;
+    Crossing crossing;
+    Spare spare;
+};
+
+}  // namespace tuft::ink::wet
