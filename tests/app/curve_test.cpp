@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "app/view/texture.h"
 #include "models.h"
@@ -63,8 +64,8 @@ TEST(Curve, BreaksWhereThereIsNoModel) {
 }
 
 /// Under a holder that leans by so many radians to the right and down.
-class LeaningCurve : public testing::TestWithParam<Vec2> {};
-INSTANTIATE_TEST_SUITE_P(Curve, LeaningCurve, testing::Values(Vec2{0, 0}, Vec2{0.6, 0}, Vec2{0, -0.6}));
+class LeaningCurve : public testing::TestWithParam<std::pair<double, double>> {};
+INSTANTIATE_TEST_SUITE_P(Curve, LeaningCurve, testing::Values(std::pair(0.0, 0.0), std::pair(0.6, 0.0), std::pair(0.0, -0.6)));
 
 TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     const stroke::Model model = test::shipped_model("sheet.ply", 1024);
@@ -77,7 +78,7 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     }
     stroke::Painting painting(model);
     const brush::Preset preset = painting.brush("wolf-medium");
-    CurveHand hand{.hold = stroke::hold_options(preset, *model.mesh), .pressure = 0.4, .tilt = GetParam()};
+    CurveHand hand{.hold = stroke::hold_options(preset, *model.mesh), .pressure = 0.4, .tilt = {GetParam().first, GetParam().second}};
     hand.hold.lead = stroke::drag_lead(preset);
     stroke::LeanedLead leaned(preset);
     hand.hold.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };

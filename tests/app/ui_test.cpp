@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <ostream>
 #include <regex>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@
 #include "ink/colour/pigments.h"
 
 namespace tuft::app {
+
+static void PrintTo(Theme theme, std::ostream* out) { *out << (theme == Theme::dark ? "dark" : "light"); }
+
 namespace {
 
 // Relative luminance and contrast after WCAG 2.1, "relative luminance" and "contrast ratio".
