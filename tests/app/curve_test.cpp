@@ -9,12 +9,13 @@
 #include "app/view/texture.h"
 #include "models.h"
 #include "stroke/hand/lead.h"
+#include "paths.h"
 
 namespace tuft::app {
 namespace {
 
 TEST(Curve, TwoPointsOnASheetAreJoinedByAStraightLine) {
-    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(TUFT_SOURCE "/models/sheet.ply")).mesh;
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh;
     const mesh::SurfaceQuery query(mesh);
     const Vec3 c(mesh.bounds.centre().x, mesh.bounds.centre().y, mesh.bounds.hi.z);
     const std::vector<CurvePoint> points{{.position = c - Vec3(0.04, 0, 0)}, {.position = c + Vec3(0.04, 0.02, 0)}};
@@ -29,7 +30,7 @@ TEST(Curve, TwoPointsOnASheetAreJoinedByAStraightLine) {
 }
 
 TEST(Curve, GoesThroughItsPointsOnTheSideThatIsSeen) {
-    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(TUFT_SOURCE "/models/bowl.ply")).mesh;
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/bowl.ply")).mesh;
     const mesh::SurfaceQuery query(mesh);
     const Vec3 middle = mesh.bounds.centre();
     std::vector<CurvePoint> points;
@@ -50,7 +51,7 @@ TEST(Curve, GoesThroughItsPointsOnTheSideThatIsSeen) {
 }
 
 TEST(Curve, BreaksWhereThereIsNoModel) {
-    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(TUFT_SOURCE "/models/torus.ply")).mesh;
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/torus.ply")).mesh;
     const mesh::SurfaceQuery query(mesh);
     const Box& b = mesh.bounds;
     std::vector<CurvePoint> points;

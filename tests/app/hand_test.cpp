@@ -7,6 +7,7 @@
 
 #include "app/view/viewport.h"
 #include "models.h"
+#include "paths.h"
 
 namespace tuft::app {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 class HandOnSheet : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        mesh_ = new mesh::TriangleMesh(mesh::build_surface(io::read_model(TUFT_SOURCE "/models/sheet.ply")).mesh);
+        mesh_ = new mesh::TriangleMesh(mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh);
         query_ = new mesh::SurfaceQuery(*mesh_);
     }
     static void TearDownTestSuite() {

@@ -2,6 +2,7 @@
 
 #include "io/read_model.h"
 #include "stroke/painting/painting.h"
+#include "paths.h"
 
 namespace tuft::test {
 
@@ -9,7 +10,7 @@ namespace tuft::test {
 inline stroke::Model shipped_model(const std::string& name, std::uint32_t size) {
     stroke::ModelOptions options;
     options.unwrap.size = size;
-    return stroke::prepare_model(io::read_model(std::string(TUFT_SOURCE "/models/") + name), options);
+    return stroke::prepare_model(io::read_model(source_folder() + "/models/" + name), options);
 }
 
 /// A stroke of poses over the top of the model's middle, `length` metres along x.

@@ -7,6 +7,7 @@
 #include "app/input/imgui_feed.h"
 #include "core/units.h"
 #include "models.h"
+#include "paths.h"
 
 namespace tuft::app {
 namespace {
@@ -135,7 +136,7 @@ TEST(PenSamples, AnUnpluggedTabletIsNoticedAndItsLateReportsAreHarmless) {
 
 // A second of a pen that reports a thousand times, while the window draws fifteen pictures.
 TEST(PenSamples, OfAThousandReportsASecondNoneIsLostOnItsWayToTheBrush) {
-    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(TUFT_SOURCE "/models/sheet.ply")).mesh;
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh;
     const mesh::SurfaceQuery query(mesh);
     const brush::Preset preset = brush::load_preset("wolf-small");
     Hand hand(query, preset, {});

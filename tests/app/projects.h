@@ -14,13 +14,14 @@
 #include "core/hash.h"
 #include "io/project.h"
 #include "stroke/painting/painting.h"
+#include "paths.h"
 
 /// What the studio kept, asked of the file and of the command line.
 namespace tuft::test {
 
 /// What `tuft ARGUMENTS --json` prints; `out` is a file it may write.
 inline nlohmann::json tuft(const std::string& arguments, const std::string& out) {
-    const std::string line = "TUFT_DATA='" TUFT_SOURCE "' '" TUFT_PROGRAM "' " + arguments +
+    const std::string line = "TUFT_DATA='" + source_folder() + "' '" + tuft_program() + "' " + arguments +
                              " --json >'" + out + "' 2>/dev/null";
     EXPECT_EQ(std::system(line.c_str()), 0) << arguments;
     std::ifstream in(out);

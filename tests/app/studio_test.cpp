@@ -18,6 +18,7 @@
 #include "io/project.h"
 #include "io/read_model.h"
 #include "projects.h"
+#include "paths.h"
 
 /// The real program, played by scripts without a display.
 namespace tuft::app {
@@ -54,8 +55,8 @@ class StudioProgram : public testing::Test {
     // Arguments for exec: a shell that sets the surroundings and becomes the program.
     std::string command(const std::string& script, const std::string& options) {
         std::ofstream(path("script.txt")) << script;
-        return "cd '" + folder_.string() + "'; export TUFT_DATA='" TUFT_SOURCE "' XDG_STATE_HOME='" + path("state") +
-               "'; unset DISPLAY; exec '" TUFT_STUDIO_PROGRAM "' " + options + " --script '" + path("script.txt") + "' >'" + path(".out") +
+        return "cd '" + folder_.string() + "'; export TUFT_DATA='" + source_folder() + "' XDG_STATE_HOME='" + path("state") +
+               "'; unset DISPLAY; exec '" + studio_program() + "' " + options + " --script '" + path("script.txt") + "' >'" + path(".out") +
                "' 2>'" + path(".err") + "'";
     }
     Ran studio(const std::string& script, const std::string& options = "--headless --size 860x520") {
@@ -69,7 +70,7 @@ class StudioProgram : public testing::Test {
     fs::path folder_;
 };
 
-const std::string kBowl = "open " TUFT_SOURCE "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\nexpect model\n";
+const std::string kBowl = "open " + source_folder() + "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\nexpect model\n";
 const std::string kTwoStrokes =
     "stroke 46%,58% 50%,61% 54%,58%\nset brush goat-medium\nset ink cinnabar\nstroke 44%,57%,0.2 47%,60%,0.6 51%,58%,0.1\nwait-ready\nexpect strokes 2\n";
 
@@ -224,14 +225,14 @@ TEST_F(StudioProgram, AStrokeMovedInTheMiddleReplaysToTheSameTexels) {
 }
 
 TEST_F(StudioProgram, ARevisedModelCarriesTheStrokesAndNamesThoseThatDoNotFit) {
-    const Ran ran = studio(kBowl + kTwoStrokes + "save work.tuft\nwait-ready\nrevise " TUFT_SOURCE "/models/torus.ply\nwait-ready\nset texels 512\n"
+    const Ran ran = studio(kBowl + kTwoStrokes + "save work.tuft\nwait-ready\nrevise " + source_folder() + "/models/torus.ply\nwait-ready\nset texels 512\n"
                                                  "click \"Unwrap and repaint\"\nwait-ready\nexpect model\nexpect strokes 2\nwait 0.2\nnames\n"
                                                  "save revised.tuft\nwait-ready\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const nlohmann::json truth = tuft("replay '" + path("revised.tuft") + "'");
     EXPECT_EQ(truth["canvas_hash"], test::stored_hash(path("revised.tuft")));
     // The dialog is there exactly when a replay on that model finds a stroke that does not fit it.
-    const nlohmann::json revised = tuft("replay '" + path("work.tuft") + "' --model " TUFT_SOURCE "/models/torus.ply --atlas-size 512");
+    const nlohmann::json revised = tuft("replay '" + path("work.tuft") + "' --model " + source_folder() + "/models/torus.ply --atlas-size 512");
     EXPECT_EQ(ran.out.find("Keep them") != std::string::npos, !revised["misfits"].empty()) << revised.dump();
     EXPECT_EQ(io::Project::open(path("work.tuft")).strokes().size(), 2u);
 }
@@ -305,7 +306,7 @@ TEST_F(StudioProgram, LayersArePaintedHiddenAndUndoneLikeStrokes) {
     EXPECT_EQ(strokes[0].layer, stroke::kFirstLayer);
     EXPECT_NE(strokes[2].layer, stroke::kFirstLayer);
     // The exported strokes paint the same, on both layers, with what was done with the brush between them.
-    const nlohmann::json painted = tuft("paint " TUFT_SOURCE "/models/bowl.ply --strokes '" + path("more.inkml") + "' --atlas-size 512");
+    const nlohmann::json painted = tuft("paint " + source_folder() + "/models/bowl.ply --strokes '" + path("more.inkml") + "' --atlas-size 512");
     EXPECT_EQ(painted["strokes"].size(), 4u);
     EXPECT_EQ(painted["canvas_hash"], tuft("replay '" + path("more.tuft") + "'")["canvas_hash"]);
     tuft("export '" + path("more.tuft") + "' -o '" + path("again.inkml") + "'");

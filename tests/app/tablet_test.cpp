@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "stroke/hand/placement.h"
 #include "window.h"
+#include "paths.h"
 
 /// A Wacom tablet from its kernel events on: the real X server with the real driver reads an event device
 /// (umockdev) that the test writes to; the window gets them through XInput 2, and paints.
@@ -29,7 +30,7 @@ class Tablet : public test::Window {
             if (!fs::exists(modules / driver)) GTEST_SKIP() << "the X server has no " << driver << ": no tablet is tested";
         if (geteuid() != 0) GTEST_SKIP() << "only root may start an X server without a terminal: no tablet is tested";
         make_folder();
-        std::string config = read(TUFT_SOURCE "/tests/app/tablet/xorg.conf");
+        std::string config = read(source_folder() + "/tests/app/tablet/xorg.conf");
         for (std::size_t at; (at = config.find("@DIR@")) != std::string::npos;) config.replace(at, 5, folder_.string());
         std::ofstream(path("xorg.conf")) << config;
         ASSERT_EQ(mkfifo(path("events").c_str(), 0600), 0);
@@ -37,8 +38,8 @@ class Tablet : public test::Window {
         std::ofstream(path("server")) << "echo $$ >'" << path("server.pid") << "'; ln -sf '" << path("events")
                                       << "' \"$UMOCKDEV_DIR/dev/input/event5\"; exec Xorg -config '" << path("xorg.conf") << "' -logfile '"
                                       << path("xorg.log") << "' -displayfd 3 -noreset -nolisten tcp -novtswitch -sharevts 3>'" << path("display") << "'\n";
-        server_ = start({"umockdev-run", "-d", TUFT_SOURCE "/tests/app/tablet/pen.umockdev", "-i",
-                         "/dev/input/event5=" TUFT_SOURCE "/tests/app/tablet/pen.ioctl", "--", "bash", path("server")}, "");
+        server_ = start({"umockdev-run", "-d", source_folder() + "/tests/app/tablet/pen.umockdev", "-i",
+                         "/dev/input/event5=" + source_folder() + "/tests/app/tablet/pen.ioctl", "--", "bash", path("server")}, "");
         take_display();
         pen_ = open(path("events").c_str(), O_WRONLY | O_NONBLOCK);
         ASSERT_GE(pen_, 0) << read("xorg.log");
@@ -97,7 +98,7 @@ class Tablet : public test::Window {
 };
 
 TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
-    std::ofstream(path("script")) << "open " TUFT_SOURCE "/models/sheet.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
+    std::ofstream(path("script")) << "open " + source_folder() + "/models/sheet.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
                                      "set elevation 90\nset azimuth 0\nset string 0\nwait 0.1\nscreenshot " << path("ready.png")
                                   << "\nawait strokes 1\nwait-ready\nscreenshot " << path("one.png") << "\nawait strokes 2\nwait-ready\nscreenshot "
                                   << path("two.png") << "\nawait strokes 3\nwait-ready\nreport\nsave " << path("work.tuft") << "\nwait-ready\nexpect kept\n";

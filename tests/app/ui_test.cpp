@@ -15,6 +15,7 @@
 
 #include "brush/preset.h"
 #include "ink/colour/pigments.h"
+#include "paths.h"
 
 namespace tuft::app {
 
@@ -69,7 +70,7 @@ TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
     const std::regex shown(R"re((?:button|choice|toggle|slider|heading|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
     const std::regex words("[a-z]{3}");
     std::size_t seen = 0;
-    for (const auto& file : std::filesystem::recursive_directory_iterator(TUFT_SOURCE "/src/app")) {
+    for (const auto& file : std::filesystem::recursive_directory_iterator(source_folder() + "/src/app")) {
         if (!file.is_regular_file()) continue;
         std::ifstream in(file.path());
         const std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -18,6 +18,7 @@
 
 #include "io/project.h"
 #include "projects.h"
+#include "paths.h"
 
 namespace tuft::test {
 
@@ -86,9 +87,9 @@ class Window : public testing::Test {
     }
     void open_studio(const std::string& file, std::vector<std::string> options = {}, const std::string& out = "") {
         setenv("DISPLAY", display_.c_str(), 1);
-        setenv("TUFT_DATA", TUFT_SOURCE, 1);
+        setenv("TUFT_DATA", source_folder().c_str(), 1);
         setenv("XDG_STATE_HOME", path("state").c_str(), 1);
-        options.insert(options.begin(), {TUFT_STUDIO_PROGRAM, "--size", "1000x640"});
+        options.insert(options.begin(), {studio_program(), "--size", "1000x640"});
         if (!file.empty()) options.push_back(file);
         studio_ = start(options, out.empty() ? "" : ">'" + path(out) + "'");
         wait_for("the window", [&] { return run("xdotool search --name 'tuft studio'") == 0; });

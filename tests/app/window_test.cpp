@@ -1,5 +1,6 @@
 #include "space_daemon.h"
 #include "window.h"
+#include "paths.h"
 
 namespace tuft::app {
 namespace {
@@ -10,7 +11,7 @@ using test::Window;
 // Opens, unwraps, paints, undoes, is killed, recovers, saves and exports; the texels are those of a
 // replay, and those that `tuft paint` makes of the exported strokes, to the bit, and the exported model is valid.
 TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
-    open_studio(TUFT_SOURCE "/models/sphere.ply");
+    open_studio(source_folder() + "/models/sphere.ply");
     std::this_thread::sleep_for(std::chrono::seconds(2));
     // Enter agrees to what the dialog proposes, once it is there.
     wait_for("the model", [&] { return keys("Return"), titled("sphere"); });
@@ -62,10 +63,10 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     EXPECT_EQ(replayed["strokes"], 3);
     EXPECT_EQ(replayed["canvas_hash"], test::stored_hash(path("work.tuft")));
     const std::string size = std::to_string(io::Project::open(path("work.tuft")).model().atlas.size);
-    const nlohmann::json painted = tuft("paint " TUFT_SOURCE "/models/sphere.ply --strokes '" + path("work.inkml") + "' --atlas-size " + size);
+    const nlohmann::json painted = tuft("paint " + source_folder() + "/models/sphere.ply --strokes '" + path("work.inkml") + "' --atlas-size " + size);
     EXPECT_EQ(painted["strokes"].size(), 3u);
     EXPECT_EQ(painted["canvas_hash"], test::stored_hash(path("work.tuft")));
-    const int valid = std::system(("bash '" TUFT_SOURCE "/tests/io/validate_glb.sh' '" TUFT_SOURCE "/build/node' '" + path("work.glb") + "' >'" + path("valid") + "' 2>&1").c_str());
+    const int valid = std::system(("bash '" + source_folder() + "/tests/io/validate_glb.sh' '" + source_folder() + "/build/node' '" + path("work.glb") + "' >'" + path("valid") + "' 2>&1").c_str());
     if (WEXITSTATUS(valid) == 77) std::puts("the glTF validator is not installed: the exported file is not checked");
     else EXPECT_EQ(valid, 0) << read("valid");
 }
@@ -74,7 +75,7 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
 TEST_F(Window, ASpaceMouseTurnsTheModelAndMayBePulledOut) {
     test::SpaceDaemon daemon(path("spnav"));
     setenv("SPNAV_SOCKET", path("spnav").c_str(), 1);
-    std::ofstream(path("script")) << "open " TUFT_SOURCE "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
+    std::ofstream(path("script")) << "open " + source_folder() + "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
                                      "report\nscreenshot " << path("ready.png") << "\nawait message unplugged\nreport\n"
                                      "stroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 1\nexpect kept\n";
     open_studio("", {"--script", path("script")}, "out");

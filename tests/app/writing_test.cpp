@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "models.h"
+#include "paths.h"
 
 namespace tuft::app {
 namespace {
@@ -18,7 +19,7 @@ Writing cross() {
 }
 
 TEST(Writing, LiesWithItsMiddleAtTheCursorTurnedAndScaled) {
-    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(TUFT_SOURCE "/models/sheet.ply")).mesh;
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh;
     const mesh::SurfaceQuery query(mesh);
     Writing w = cross();
     EXPECT_NEAR(w.width, 0.040, 1e-9);
@@ -37,7 +38,7 @@ TEST(Writing, LiesWithItsMiddleAtTheCursorTurnedAndScaled) {
 }
 
 TEST(Writing, CharactersWithPlacesOfTheirOwnStandSideBySide) {
-    const Writing w = read_writing(TUFT_SOURCE "/samples/strokes/man-bu-ren-sheng.inkml");
+    const Writing w = read_writing(source_folder() + "/samples/strokes/man-bu-ren-sheng.inkml");
     EXPECT_GT(w.width, 3 * w.height);
 }
 

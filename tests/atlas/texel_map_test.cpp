@@ -20,6 +20,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "paths.h"
 
 namespace tuft::atlas {
 namespace {
@@ -179,7 +180,7 @@ TEST(TexelMap, RefusesAnAtlasOfAnotherMeshAndSurvivesBadCoordinates) {
 
 TEST(LogMap, MatchesTheReferenceTable) {
     // tests/data/physics/geodesic.csv: exact log maps, closed form or geodesic ODE (err ≤ 1e-12).
-    std::ifstream file(std::string(TUFT_TEST_DATA) + "/physics/geodesic.csv");
+    std::ifstream file(test_data() + "/physics/geodesic.csv");
     ASSERT_TRUE(file);
     std::string line;
     std::getline(file, line);

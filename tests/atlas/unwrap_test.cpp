@@ -16,6 +16,7 @@
 #include "mesh/repair.h"
 #include "shapes.h"
 #include "test_mesh.h"
+#include "paths.h"
 
 namespace tuft::atlas {
 namespace {
@@ -62,7 +63,7 @@ TEST(Unwrap, ShapesKeepTheInvariants) {
 }
 
 TriangleMesh model(const std::string& name) {
-    const std::string path = std::string(TUFT_SOURCE) + "/models/" + name;
+    const std::string path = source_folder() + "/models/" + name;
     return mesh::build_surface(mesh::read_ply(read_file(path), path)).mesh;
 }
 

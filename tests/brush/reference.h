@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "paths.h"
+
 /// Rows of a reference table in tests/data/physics, cells by column name.
 struct Row {
     std::map<std::string, std::string> cell;
@@ -15,7 +17,7 @@ struct Row {
 };
 
 inline std::vector<Row> read_rows(const std::string& name) {
-    std::ifstream file(std::string(TUFT_TEST_DATA) + "/physics/" + name);
+    std::ifstream file(test_data() + "/physics/" + name);
     if (!file) throw std::runtime_error("missing reference table " + name);
     const auto split = [](const std::string& line) {
         std::vector<std::string> cells;

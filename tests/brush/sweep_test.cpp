@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "paths.h"
 
 namespace tuft::brush {
 namespace {
@@ -64,7 +65,7 @@ void expect_within_repeatability(const Preset& p, const std::vector<SweepRow>& m
 }
 
 TEST(Sweep, Robot2020DrawsTheMeasuredLines) {
-    const std::string path = std::string(TUFT_TEST_DATA) + "/brush/brush_robot2020_even.csv";
+    const std::string path = test_data() + "/brush/brush_robot2020_even.csv";
     const std::vector<SweepRow> measured = read_sweep(path);
     const Preset p = load_preset("robot-2020");
     EXPECT_NEAR(p.length, stated_length(path).value(), 1e-9);
@@ -104,7 +105,7 @@ TEST(Sweep, ChangesEvenlyWithTheBrush) {
 }
 
 TEST(Calibrate, FindsTheMeasuredBrushFromAnother) {
-    const std::string path = std::string(TUFT_TEST_DATA) + "/brush/brush_robot2020_even.csv";
+    const std::string path = test_data() + "/brush/brush_robot2020_even.csv";
     Preset start = load_preset("mixed-medium");
     start.length = stated_length(path).value();
     CalibrateOptions options;
@@ -117,7 +118,7 @@ TEST(Calibrate, FindsTheMeasuredBrushFromAnother) {
 
 TEST(Calibrate, HoldsForDepthsThatWereHeldBack) {
     // Fitted on 0, 4, 8 and 12 mm only; the lines of 2, 6 and 10 mm must come out right.
-    const std::string path = std::string(TUFT_TEST_DATA) + "/brush/brush_robot2020_even.csv";
+    const std::string path = test_data() + "/brush/brush_robot2020_even.csv";
     std::vector<SweepRow> fitted, held;
     for (const SweepRow& row : read_sweep(path)) {
         (std::lround(row.depth / 2e-3) % 2 == 0 ? fitted : held).push_back(row);
@@ -160,7 +161,7 @@ TEST(Calibrate, HeldBackTheOtherWayItMissesNoMoreThanTheTableContradictsItself) 
     // on no curve without an inflection: even one that knew these rows would miss them by 0.77 mm,
     // more than the 1.25 x 0.5 mm of one that agrees with itself. To that comes what a law of two parameters fitted to
     // seven rows, each good to 0.5 mm, does not know elsewhere: 0.35 mm (the rows' leverage).
-    const std::string path = std::string(TUFT_TEST_DATA) + "/brush/brush_robot2020_even.csv";
+    const std::string path = test_data() + "/brush/brush_robot2020_even.csv";
     std::vector<SweepRow> fitted, held;
     for (const SweepRow& row : read_sweep(path)) {
         (std::lround(row.depth / 2e-3) % 2 == 0 ? held : fitted).push_back(row);

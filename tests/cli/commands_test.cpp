@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "program.h"
+#include "paths.h"
 
 namespace tuft::test {
 namespace {
@@ -295,7 +296,7 @@ TEST_F(Commands, EveryFinishedStrokeSurvivesAKill) {
     // Kill it in the middle: when the project has grown by some strokes, however long that takes.
     const std::string project = path("p.tuft");
     const std::string script =
-        "export TUFT_DATA='" TUFT_SOURCE "'\n'" TUFT_PROGRAM "' paint '" + model("sheet.ply") + "' --strokes '" +
+        "export TUFT_DATA='" + source_folder() + "'\n'" + tuft_program() + "' paint '" + model("sheet.ply") + "' --strokes '" +
         path("many.inkml") + "' --atlas-size 1024 --threads 1 --project '" + project + "' >/dev/null 2>&1 &\n" +
         "pid=$!; first=0\nwhile kill -0 $pid 2>/dev/null; do\n  size=$(stat -c %s '" + project +
         "' 2>/dev/null || echo 0)\n  [ $first -eq 0 ] && first=$size\n"

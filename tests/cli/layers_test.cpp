@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program.h"
+#include "paths.h"
 
 namespace tuft::test {
 namespace {
@@ -121,7 +122,7 @@ TEST_F(LayersOfAProject, AreFilledAndErased) {
 // after it loses nothing of it.
 TEST_F(LayersOfAProject, EveryFinishedChangeSurvivesAKill) {
     paint("");
-    const std::string script = "export TUFT_DATA='" TUFT_SOURCE "'\nP='" + path("p.tuft") + "'\nT='" TUFT_PROGRAM "'\n" +
+    const std::string script = "export TUFT_DATA='" + source_folder() + "'\nP='" + path("p.tuft") + "'\nT='" + tuft_program() + "'\n" +
                                "$T layer $P add gold >/dev/null || exit 1\n"
                                "$T paint $P --strokes '" + path("t.inkml") + "' --layer gold >/dev/null & pid=$!\n"
                                "sleep 0.05; kill -KILL $pid 2>/dev/null; wait $pid 2>/dev/null\n"

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "paths.h"
+
 /// Runs the real program, as a shell would.
 namespace tuft::test {
 
@@ -33,7 +35,7 @@ class Program : public testing::Test {
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    std::string model(const std::string& name) const { return std::string(TUFT_SOURCE "/models/") + name; }
+    std::string model(const std::string& name) const { return source_folder() + "/models/" + name; }
 
     std::string write(const std::string& name, const std::string& bytes) const {
         std::ofstream(path(name), std::ios::binary) << bytes;
@@ -42,7 +44,7 @@ class Program : public testing::Test {
 
     /// `prefix` goes before the program, such as "ulimit -f 8;".
     Ran tuft(const std::string& arguments, const std::string& prefix = "") const {
-        const std::string command = "export TUFT_DATA='" TUFT_SOURCE "'; " + prefix + " '" TUFT_PROGRAM "' " +
+        const std::string command = "export TUFT_DATA='" + source_folder() + "'; " + prefix + " '" + tuft_program() + "' " +
                                     arguments + " >'" + path(".out") + "' 2>'" + path(".err") + "'";
         const int raw = std::system(("bash -c \"" + escaped(command) + "\"").c_str());
         Ran ran;

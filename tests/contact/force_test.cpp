@@ -7,6 +7,7 @@
 #include "io/read_model.h"
 #include "mesh/repair.h"
 #include "shapes.h"
+#include "paths.h"
 
 namespace tuft::contact {
 namespace {
@@ -215,7 +216,7 @@ TEST(Force, HairDraggedAlongARimFeelsASteadyForce) {
 /// The clay car at 1:4, its front right wheel's arch: the flange 97 mm from the axle.
 struct Arch {
     mesh::TriangleMesh mesh =
-        mesh::build_surface(io::read_model(TUFT_SOURCE "/models/car.ply")).mesh;
+        mesh::build_surface(io::read_model(source_folder() + "/models/car.ply")).mesh;
     mesh::SurfaceQuery surface{mesh};
 
     /// On the flange, `angle` from the front; the tip of a tuft would touch here.

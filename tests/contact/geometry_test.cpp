@@ -10,6 +10,7 @@
 #include "contact/sphere.h"
 #include "core/random.h"
 #include "shapes.h"
+#include "paths.h"
 
 namespace tuft::contact {
 namespace {
@@ -49,7 +50,7 @@ std::vector<Vec3> point_set(const std::string& kind, int n, std::uint32_t seed) 
 TEST(ExpandBall, MatchesTheReferenceTableAndItsProvedBounds) {
     // Exact radii there: primal-dual certificate, error 2e-15. The iteration counts depend on ties
     // only, the radii agree to rounding.
-    std::ifstream file(std::string(TUFT_TEST_DATA) + "/contact/minsphere.csv");
+    std::ifstream file(test_data() + "/contact/minsphere.csv");
     ASSERT_TRUE(file);
     std::string line;
     std::getline(file, line);
@@ -83,7 +84,7 @@ TEST(ExpandBall, PointSetsAreThoseOfTheReference) {
     for (const auto& [name, kind, n, seed] :
          {std::tuple{"minsphere_points_brush_200_4.csv", "brush", 200, 4u},
           {"minsphere_points_cube_50_3.csv", "cube", 50, 3u}}) {
-        std::ifstream file(std::string(TUFT_TEST_DATA) + "/contact/" + name);
+        std::ifstream file(test_data() + "/contact/" + name);
         ASSERT_TRUE(file);
         std::string line;
         std::getline(file, line);

@@ -14,6 +14,7 @@
 #include "mesh/repair.h"
 #include "mesh/surface_query.h"
 #include "stage.h"
+#include "paths.h"
 
 // Stamps on meshes against exact shortest ways over their triangles.
 
@@ -49,7 +50,7 @@ struct Model {
 };
 
 Model shipped(const char* name, std::uint32_t size, std::uint32_t gutter = 4) {
-    const auto path = std::string(TUFT_SOURCE "/models/") + name + ".ply";
+    const auto path = source_folder() + "/models/" + name + ".ply";
     return {mesh::build_surface(mesh::read_polygon_file(path), {}).mesh, size, gutter};
 }
 

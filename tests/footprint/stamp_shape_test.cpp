@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "stage.h"
+#include "paths.h"
 
 // Where stamps put texels on surfaces whose log map is known.
 
@@ -123,7 +124,7 @@ Unwrapped cone(double alpha, double s0, double s1, int n, double texels_per_metr
 TEST(Stamp, UnrollsTheConesOfTheReferenceTable) {
     // A cone is flat but for its tip: (u, v) = (s sin δ, s cos δ − s0), δ = Δφ sin α. The rows of
     // tests/data/physics/geodesic.csv confirm the formula; the stamps are held against it.
-    std::ifstream file(std::string(TUFT_TEST_DATA) + "/physics/geodesic.csv");
+    std::ifstream file(test_data() + "/physics/geodesic.csv");
     ASSERT_TRUE(file);
     int rows = 0;
     for (std::string line; std::getline(file, line);) {

@@ -7,6 +7,7 @@
 
 #include "ink/colour/composite.h"
 #include "mixtures.h"
+#include "paths.h"
 
 namespace tuft::ink {
 namespace {
@@ -16,7 +17,7 @@ double delta_e(const Rgb& a, const Rgb& b) {
 }
 
 TEST(Colorimetry, ColourDifferenceMatchesThePublishedPairs) {
-    std::ifstream file(std::string(TUFT_TEST_DATA) + "/optics/ciede2000.csv");
+    std::ifstream file(test_data() + "/optics/ciede2000.csv");
     int pairs = 0;
     for (std::string line; std::getline(file, line);) {
         if (line.empty() || line[0] == '#') continue;

@@ -5,6 +5,7 @@
 #include "atlas/texels/seam_links.h"
 #include "ink/film/film.h"
 #include "mesh/repair.h"
+#include "paths.h"
 
 // The wet film on the shipped models, whose charts meet in every way that charts do.
 
@@ -15,7 +16,7 @@ TEST(WetFilm, UniformWaterStaysUniformOverEverySeamOfEveryModel) {
     for (const std::string name :
          {"bowl", "car", "cylinder", "plate", "sheet", "sphere", "thin_plate", "torus", "vase"}) {
         const mesh::TriangleMesh mesh =
-            mesh::build_surface(mesh::read_polygon_file(TUFT_SOURCE "/models/" + name + ".ply"), {}).mesh;
+            mesh::build_surface(mesh::read_polygon_file(source_folder() + "/models/" + name + ".ply"), {}).mesh;
         const atlas::Atlas atlas = atlas::unwrap(mesh, {.size = 256}).atlas;
         const atlas::TexelMap map = atlas::build_texel_map(mesh, atlas);
         const atlas::SeamLinks links = atlas::build_seam_links(mesh, atlas, map);

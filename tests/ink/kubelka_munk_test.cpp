@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "core/error.h"
+#include "paths.h"
 
 namespace tuft::ink {
 namespace {
 
 std::vector<std::vector<double>> rows_of(const std::string& name) {
-    std::ifstream file(std::string(TUFT_TEST_DATA) + "/optics/" + name);
+    std::ifstream file(test_data() + "/optics/" + name);
     EXPECT_TRUE(file) << name;
     std::vector<std::vector<double>> rows;
     std::string line;

@@ -11,6 +11,7 @@
 #include "ink/colour/colorimetry.h"
 #include "ink/colour/kubelka_munk.h"
 #include "ink/colour/upsample.h"
+#include "paths.h"
 
 /// Random mixes, thicknesses and stacks of pigments, with their colours computed in full.
 namespace tuft::ink::test {
@@ -18,7 +19,7 @@ namespace tuft::ink::test {
 /// The measured acrylics of tests/data/optics/golden_ks.csv, 380–750 nm, per film unit of
 /// `strength` of theirs; the last value is kept to 780 nm.
 inline std::map<std::string, Curves> measured_pigments(double strength) {
-    std::ifstream file(std::string(TUFT_TEST_DATA) + "/optics/golden_ks.csv");
+    std::ifstream file(test_data() + "/optics/golden_ks.csv");
     std::map<std::string, Curves> pigments;
     for (std::string line; std::getline(file, line);) {
         if (line.empty() || line[0] == '#' || line.starts_with("paint")) continue;

@@ -12,13 +12,14 @@
 #include "stroke/hand/line_width.h"
 #include "stroke/hand/placement.h"
 #include "stroke/hand/plane_ink.h"
+#include "paths.h"
 
 namespace tuft::io {
 namespace {
 
 /// The stroke files that are shipped fit the models they are written for.
 void expect_fits(const std::string& strokes, const std::string& model, std::size_t n_strokes) {
-    const std::filesystem::path source = TUFT_SOURCE;
+    const std::filesystem::path source = source_folder();
     const auto traces = read_inkml(source / "samples/strokes" / (strokes + ".inkml"));
     EXPECT_EQ(traces.size(), n_strokes);
     const auto path = source / "models" / (model + ".ply");
@@ -59,7 +60,7 @@ TEST(Samples, AHengClosesWithASlantedShoulderNotWithABall) {
     constexpr int n = 640;
     stroke::WidthTables tables;
     int found = 0;
-    for (const stroke::Trace& t : read_inkml(std::filesystem::path(TUFT_SOURCE) / "samples/strokes/stroke-sheet.inkml")) {
+    for (const stroke::Trace& t : read_inkml(std::filesystem::path(source_folder()) / "samples/strokes/stroke-sheet.inkml")) {
         if (!t.label.ends_with(" heng") || !t.before.empty()) continue;
         SCOPED_TRACE(t.label);
         ++found;

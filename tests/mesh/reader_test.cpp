@@ -11,6 +11,7 @@
 #include "mesh/polygon_soup.h"
 #include "mesh/repair.h"
 #include "mesh_checks.h"
+#include "paths.h"
 
 namespace tuft::mesh {
 namespace {
@@ -522,7 +523,7 @@ TEST(ModelFiles, ShippedModelsHaveNoDefects) {
     for (const char* name :
          {"bowl", "plate", "vase", "sheet", "sphere", "cylinder", "torus", "thin_plate"}) {
         const Surface s =
-            build_surface(read_polygon_file(std::string(TUFT_SOURCE) + "/models/" + name + ".ply"));
+            build_surface(read_polygon_file(source_folder() + "/models/" + name + ".ply"));
         EXPECT_THAT(describe_defects(s.report), ElementsAre()) << name;
         EXPECT_THAT(broken_promises(s), ElementsAre()) << name;
     }
