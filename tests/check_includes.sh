@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# Fails when a file in src/ includes a room, or a part of the studio, that does not lie below its own, or a
-# third-party header outside the room that may use it.
+# Fails when a file in src/ includes a module, or a part of the studio, that does not lie below its own, or a
+# third-party header outside the module that may use it.
 set -u
 src=$1
 declare -A level=([core]=0 [mesh]=1 [brush]=1 [atlas]=2 [contact]=2 [footprint]=3 [ink]=4 [stroke]=5 [io]=6 [render]=6 [cli]=7 [app]=7)
 bad=0
 complain() { echo "$1"; bad=1; }
 while IFS=: read -r file line; do
-  room=${file#"$src"/}; room=${room%%/*}
+  module=${file#"$src"/}; module=${module%%/*}
   target=$(sed -E 's/.*"([a-z_]+)\/.*/\1/' <<<"$line")
-  [ -n "${level[$room]:-}" ] || { complain "$file: lies in no known room"; continue; }
-  if [ "$target" != "$room" ] && [ -n "${level[$target]:-}" ] && [ "${level[$target]}" -ge "${level[$room]}" ]; then
-    complain "$file: $line: $room (level ${level[$room]}) must not include $target (level ${level[$target]})"
+  [ -n "${level[$module]:-}" ] || { complain "$file: lies in no known module"; continue; }
+  if [ "$target" != "$module" ] && [ -n "${level[$target]:-}" ] && [ "${level[$target]}" -ge "${level[$module]}" ]; then
+    complain "$file: $line: $module (level ${level[$module]}) must not include $target (level ${level[$target]})"
   fi
 done < <(grep -rE --include='*.h' --include='*.cpp' '^#include "[a-z_]+/' "$src")
 # Within the studio: hand and keys, what is seen, what is kept, and over them the panels.
