@@ -252,10 +252,17 @@ std::string name_of(const SizedName& sized) {
     return std::string_view(text) == "1" ? sized.base : sized.base + "*" + text;
 }
 
+namespace {
+
+/// A preset as a project stores it and a replay reads it, which rounds numbers to 12 digits: both paint the same.
+Preset as_stored(const Preset& preset, const std::string& source) { return parse_preset(preset_toml(preset), source); }
+
+}  // namespace
+
 Preset load_preset(const std::string& name_or_path) {
     if (name_or_path.find('*') != std::string::npos) {
         const SizedName sized = sized_name(name_or_path);
-        return scaled(load_preset(sized.base), sized.factor);
+        return as_stored(scaled(load_preset(sized.base), sized.factor), name_or_path);
     }
     fs::path path = name_or_path;
     if (name_or_path.find('/') == std::string::npos && path.extension() != ".toml") {
@@ -281,7 +288,7 @@ Preset load_preset(const std::string& name_or_path) {
         path = preset_folder() / (name + ".toml");
     }
     const std::vector<char> bytes = read_file(path, 1 << 20);
-    return parse_preset({bytes.data(), bytes.size()}, path.string());
+    return as_stored(parse_preset({bytes.data(), bytes.size()}, path.string()), path.string());
 }
 
 std::string preset_toml(const Preset& p) {

@@ -57,6 +57,16 @@ TEST(Presets, WrittenAndReadBackAreTheSame) {
     EXPECT_EQ(preset_toml(q), preset_toml(p));
 }
 
+TEST(Presets, OfAnySizeAProjectHoldsThemToTheBit) {
+    std::vector<std::string> names = list_presets();
+    for (const char* size : {"*0.39984", "*1.7321", "*0.1234"}) names.push_back("goat-small" + std::string(size));
+    for (const std::string& name : names) {
+        const Preset p = load_preset(name), q = parse_preset(preset_toml(p), "stored");
+        for (const auto member : {&Preset::length, &Preset::radius, &Preset::stiffness, &Preset::adhesion, &Preset::capacity, &Preset::end_give, &Preset::tip_radius})
+            EXPECT_EQ(p.*member, q.*member) << name;
+    }
+}
+
 TEST(Presets, MistakesAreNamedWithTheirLine) {
     EXPECT_THAT(error_of("[shape]\nlenght_mm = 20\n"), testing::AllOf(testing::HasSubstr("test.toml:2"), testing::HasSubstr("did you mean 'shape.length_mm'")));
     EXPECT_THAT(error_of("[shape]\nlength_mm = -3\n"), testing::HasSubstr("'shape.length_mm' is -3, outside 2 to 300"));
