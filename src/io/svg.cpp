@@ -12,6 +12,8 @@
 
 #include "core/error.h"
 #include "io/area_lines.h"
+#include "io/svg_losses.h"
+#include "io/svg_style.h"
 
 namespace tuft::io {
 namespace {
@@ -30,13 +32,6 @@ struct Drawn {
     double width = 0;           // of its stroke; 0: it has none
     double head = 0, tail = 0;  // lengths over which it runs out into a point
     std::vector<stroke::TapeEdge> tape = {};
-};
-
-// What elements hand down to those within them.
-struct SvgStyle {
-    bool stroked = false, filled = true, blank = false;  // blank: filled with white, which is the ground
-    FillRule rule = FillRule::nonzero;
-    double width = 1;  // units of the drawing
 };
 
 // Reads numbers, flags and words from an attribute.
@@ -94,38 +89,39 @@ class Drawing {
         if (++n_elements_ > kMostElements) throw Error(source_, "there are too many elements in it");
         const std::string name = local(node.name());
         static constexpr const char* skipped[] = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "metadata", "style", "title", "desc"};
-        if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped)) return;
-        if (property(node, "display") == "none") return;
-        if (const std::string paint = property(node, "stroke"); !paint.empty() && paint != "inherit") style.stroked = paint != "none";
-        if (const std::string width = property(node, "stroke-width"); !width.empty() && width != "inherit" && width.back() != '%')
-            style.width = std::max(0.0, length(width) / kPixel);
-        if (const std::string paint = property(node, "fill"); !paint.empty() && paint != "inherit") {
-            style.blank = is_white(paint);
-            style.filled = !style.blank && paint != "none" && paint != "transparent";
+        if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped) || is_lost(node, name)) return;
+        const Properties own(node, sheet_.declared(node, name));
+        if (own("display") == "none" || opacity(own("opacity"), 1) == 0) return;
+        inherit(style, own);
+        if (name == "text" || name == "image") {
+            if (style.visible) losses_.add(name == "text" ? SvgLoss::text : SvgLoss::image);
+            return;
         }
-        if (const std::string rule = property(node, "fill-rule"); !rule.empty() && rule != "inherit")
-            style.rule = rule == "evenodd" ? FillRule::even_odd : FillRule::nonzero;
+        count_effects(own);
+        if (name == "svg" && depth > 0 && (node.attribute("x") || node.attribute("y") || node.attribute("viewBox"))) losses_.add(SvgLoss::frame);
         if (const auto transform = node.attribute("transform")) matrix = matrix * transform_of(transform.value());
+        if (name == "use") return use(node, matrix, style, depth);
         matrix_ = matrix;
-        width_ = style.stroked ? std::min(style.width * growth(), options_.ink.max_extent) : 0;
+        width_ = style.stroked() ? std::min(style.width * growth(), options_.ink.max_extent) : 0;
         if (!std::isfinite(width_)) width_ = 0;
         const std::size_t before = lines_.size();
+        if (style.visible) shape(node, name);
+        if (lines_.size() > before) {
+            if (own("vector-effect") == "non-scaling-stroke" && style.stroked()) losses_.add(SvgLoss::scaled_width);
+            count_paints(style);
+            if (style.bare()) lines_.resize(before);
+            else if (style.filled()) fill(before, style);
+        }
+        children(node, matrix, style, depth);
+    }
+
+    void shape(const pugi::xml_node& node, const std::string& name) {
         if (name == "path") path(node.attribute("d").value());
         else if (name == "polyline" || name == "polygon") points(node.attribute("points").value(), name == "polygon");
         else if (name == "line") emit({{number(node, "x1"), number(node, "y1")}, {number(node, "x2"), number(node, "y2")}});
         else if (name == "rect") rectangle(node);
         else if (name == "circle") ellipse(number(node, "cx"), number(node, "cy"), number(node, "r"), number(node, "r"));
         else if (name == "ellipse") ellipse(number(node, "cx"), number(node, "cy"), number(node, "rx"), number(node, "ry"));
-        else if (name == "use") return use(node, matrix, style, depth);
-        else if (name == "text" || name == "image") ++(name == "text" ? n_texts_ : n_images_);
-        if (style.blank && !style.stroked) lines_.resize(before);
-        if (style.filled && lines_.size() > before) fill(before, style);
-        children(node, matrix, style, depth);
-    }
-
-    static bool is_white(const std::string& paint) {
-        static constexpr const char* names[] = {"white", "#fff", "#FFF", "#ffffff", "#FFFFFF", "rgb(255,255,255)", "rgb(255, 255, 255)"};
-        return std::find(std::begin(names), std::end(names), paint) != std::end(names);
     }
 
     // The lines from `before` on are outlines of one area: lines that fill it come before them where they are
@@ -140,7 +136,8 @@ class Drawing {
         }
         if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
         if (area.empty()) return;
-        if (!style.stroked) lines_.resize(before);
+        if (style.fill.kind == SvgPaint::Kind::flat) losses_.add_colour(style.fill.colour);
+        if (!style.stroked()) lines_.resize(before);
         lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(before), std::make_move_iterator(area.begin()), std::make_move_iterator(area.end()));
     }
 
@@ -153,19 +150,22 @@ class Drawing {
     }
 
     // Metres per unit of the drawing and the corner that becomes (0, 0).
-    Matrix frame(const pugi::xml_node& svg) const {
-        const double width = length(svg.attribute("width").value());
+    Matrix frame(const pugi::xml_node& svg) {
+        const double width = length(svg.attribute("width").value()), height = length(svg.attribute("height").value());
+        view_ = {width / kPixel, height / kPixel};
         if (const std::string box = svg.attribute("viewBox").value(); !box.empty()) {
             Reader in(box, source_);
             const double x = in.number(), y = in.number(), w = in.number();
             if (!(w > 0)) throw Error(source_, "the viewBox has no width");
-            const double scale = width > 0 ? width / w : kPixel;
+            const double h = in.number_next() ? in.number() : 0;
+            view_ = {w, h};
+            const double scale = width > 0 ? width / w : height > 0 && h > 0 ? height / h : kPixel;
             return scaling(scale, scale) * translation(-x, -y);
         }
         return scaling(kPixel, kPixel);
     }
 
-    // Rules for classes (".line, .thin { stroke-width: 2 }") from the style sheets of the file; others are passed over.
+    /// Rules of all style sheets of the file.
     void read_sheets(const pugi::xml_node& node, int depth) {
         if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
         for (const pugi::xml_node& child : node.children()) {
@@ -176,59 +176,90 @@ class Drawing {
             }
             std::string sheet;
             for (const pugi::xml_node& text : child.children()) sheet += text.value();
-            for (std::size_t at = 0, open; (open = sheet.find('{', at)) != std::string::npos;) {
-                const std::size_t close = std::min(sheet.find('}', open), sheet.size());
-                const auto rules = declarations(std::string_view(sheet).substr(open + 1, close - open - 1));
-                std::istringstream selectors(sheet.substr(at, open - at));
-                for (std::string one; std::getline(selectors, one, ',');)
-                    if (const std::string_view name = bare(one); name.size() > 1 && name.front() == '.')
-                        for (const auto& [key, value] : rules) classes_[std::string(name.substr(1))][key] = value;
-                at = std::min(close + 1, sheet.size());
-            }
+            for (std::size_t passed = sheet_.add(sheet); passed > 0; --passed) losses_.add(SvgLoss::rule);
         }
     }
 
     const std::vector<Drawn>& lines() const { return lines_; }
-    /// What a person would miss; empty: nothing.
-    std::string left_out() const {
-        std::string out;
-        if (n_texts_) out = std::to_string(n_texts_) + (n_texts_ > 1 ? " texts are" : " text is") + " left out: turn text into paths first";
-        if (n_images_) out += (out.empty() ? "" : "; ") + std::to_string(n_images_) + (n_images_ > 1 ? " images are" : " image is") + " left out";
-        return out;
-    }
+    /// What a person would miss, one line each.
+    std::vector<std::string> left_out() const { return losses_.lines(); }
     static std::string local(const char* name) {
         const char* colon = std::strchr(name, ':');
         return colon ? colon + 1 : name;
     }
 
   private:
-    // The declarations of a style, "name: value; name: value".
-    static std::map<std::string, std::string> declarations(std::string_view text) {
-        std::map<std::string, std::string> out;
-        while (!text.empty()) {
-            const std::string_view one = text.substr(0, text.find(';'));
-            text.remove_prefix(std::min(text.size(), one.size() + 1));
-            if (const std::size_t colon = one.find(':'); colon != std::string_view::npos)
-                out[std::string(bare(one.substr(0, colon)))] = bare(one.substr(colon + 1));
+    /// Properties of one element.
+    class Properties {
+      public:
+        Properties(const pugi::xml_node& node, std::map<std::string, std::string> declared) : node_(node), declared_(std::move(declared)) {}
+        /// "" where nothing says it, or where it is handed down anyway.
+        std::string operator()(const char* name) const {
+            const auto at = declared_.find(name);
+            std::string value = at != declared_.end() ? at->second : node_.attribute(name).value();
+            return value == "inherit" ? std::string() : value;
         }
-        return out;
+        bool declares(const char* name) const { return declared_.contains(name); }
+
+      private:
+        const pugi::xml_node& node_;
+        std::map<std::string, std::string> declared_;
+    };
+
+    static double opacity(const std::string& text, double otherwise) {
+        if (text.empty()) return otherwise;
+        const double value = std::strtod(text.c_str(), nullptr) / (text.back() == '%' ? 100 : 1);
+        return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
     }
-    static std::string_view bare(std::string_view s) {
-        const char* white = " \t\r\n";
-        const auto from = s.find_first_not_of(white);
-        return from == std::string_view::npos ? std::string_view() : s.substr(from, s.find_last_not_of(white) - from + 1);
+
+    void inherit(SvgStyle& style, const Properties& own) const {
+        if (const std::string paint = own("stroke"); !paint.empty()) style.stroke = svg_paint(paint, by_id_);
+        if (const std::string paint = own("fill"); !paint.empty()) style.fill = svg_paint(paint, by_id_);
+        if (const std::string width = own("stroke-width"); !width.empty() && width.back() != '%') style.width = std::max(0.0, length(width) / kPixel);
+        if (const std::string rule = own("fill-rule"); !rule.empty()) style.rule = rule == "evenodd" ? FillRule::even_odd : FillRule::nonzero;
+        if (const std::string seen = own("visibility"); !seen.empty()) style.visible = seen == "visible";
+        if (const std::string dashes = own("stroke-dasharray"); !dashes.empty()) style.dashed = dashes.find_first_of("123456789") != std::string::npos;
+        for (const char* marker : {"marker", "marker-start", "marker-mid", "marker-end"})
+            if (const std::string value = own(marker); !value.empty()) style.marked = value != "none";
+        style.fill_opacity = opacity(own("fill-opacity"), style.fill_opacity);
+        style.stroke_opacity = opacity(own("stroke-opacity"), style.stroke_opacity);
     }
-    // A property of an element itself: of its style, of its classes, as an attribute.
-    std::string property(const pugi::xml_node& node, const char* name) const {
-        const auto own = declarations(node.attribute("style").value());
-        if (const auto at = own.find(name); at != own.end()) return at->second;
-        std::istringstream classes(node.attribute("class").value());
-        std::string value;
-        for (std::string one; classes >> one;)
-            if (const auto rules = classes_.find(one); rules != classes_.end())
-                if (const auto at = rules->second.find(name); at != rules->second.end()) value = at->second;
-        return value.empty() ? node.attribute(name).value() : value;
+
+    // Elements that leave nothing; whether this is one.
+    bool is_lost(const pugi::xml_node& node, const std::string& name) {
+        if (name == "foreignObject" && local(node.parent().name()) == "switch") return true;  // another child takes its place
+        if (name == "foreignObject" || name == "video" || name == "iframe" || name == "canvas") losses_.add(SvgLoss::foreign);
+        else if (name == "animate" || name == "animateTransform" || name == "animateMotion" || name == "animateColor" || name == "set") losses_.add(SvgLoss::animation);
+        else if (name == "script") losses_.add(SvgLoss::script);
+        else return false;
+        return true;
     }
+
+    // What an element does to all within it.
+    void count_effects(const Properties& own) {
+        const auto used = [&](const char* name) { const std::string value = own(name); return !value.empty() && value != "none" && value != "normal"; };
+        if (used("clip-path")) losses_.add(SvgLoss::clip);
+        if (used("mask")) losses_.add(SvgLoss::mask);
+        if (used("filter")) losses_.add(SvgLoss::filter);
+        if (used("mix-blend-mode")) losses_.add(SvgLoss::blend);
+        if (opacity(own("opacity"), 1) < 1) losses_.add(SvgLoss::opacity);
+        if (own.declares("transform") && used("transform")) losses_.add(SvgLoss::transform);
+    }
+
+    // How the shape just drawn is painted.
+    void count_paints(const SvgStyle& style) {
+        using Kind = SvgPaint::Kind;
+        const auto either = [&](Kind kind) { return style.fill.kind == kind || style.stroke.kind == kind; };
+        if (either(Kind::white)) losses_.add(SvgLoss::white);
+        if (either(Kind::missing)) losses_.add(SvgLoss::missing_paint);
+        if (either(Kind::gradient)) losses_.add(SvgLoss::gradient);
+        if (either(Kind::pattern)) losses_.add(SvgLoss::pattern);
+        if (style.stroked() && style.dashed) losses_.add(SvgLoss::dash);
+        if (style.marked) losses_.add(SvgLoss::marker);
+        if ((style.filled() && style.fill_opacity < 1) || (style.stroked() && style.stroke_opacity < 1)) losses_.add(SvgLoss::opacity);
+        if (style.stroked() && style.stroke.kind == Kind::flat) losses_.add_colour(style.stroke.colour);
+    }
+
     void children(const pugi::xml_node& node, const Matrix& matrix, const SvgStyle& style, int depth) {
         for (const pugi::xml_node& child : node.children())
             if (child.type() == pugi::node_element) walk(child, matrix, style, depth + 1);
@@ -238,8 +269,9 @@ class Drawing {
     void use(const pugi::xml_node& node, Matrix matrix, const SvgStyle& style, int depth) {
         std::string target = node.attribute("href").value();
         if (target.empty()) target = node.attribute("xlink:href").value();
-        const auto at = target.starts_with('#') ? by_id_.find(target.substr(1)) : by_id_.end();
-        if (at == by_id_.end()) return;
+        const bool inside = target.starts_with('#');
+        const auto at = inside ? by_id_.find(target.substr(1)) : by_id_.end();
+        if (at == by_id_.end()) return losses_.add(inside || target.empty() ? SvgLoss::missing_use : SvgLoss::outside_use);
         matrix = matrix * translation(number(node, "x"), number(node, "y"));
         if (local(at->second.name()) != "symbol") return walk(at->second, matrix, style, depth + 1);
         if (const std::string box = at->second.attribute("viewBox").value(); !box.empty()) {
@@ -264,9 +296,18 @@ class Drawing {
         if (unit == "pc") return value * 0.0254 / 6;
         return value * kPixel;
     }
+    // In units of the drawing; per cent are of the page.
     double number(const pugi::xml_node& node, const char* name) const {
-        const char* text = node.attribute(name).value();
-        return *text ? Reader(text, source_).number() : 0;
+        const std::string text = node.attribute(name).value();
+        if (text.empty()) return 0;
+        Reader in(text, source_);
+        const double value = in.number();
+        if (in.peek() == '%') {
+            const std::string_view along(name);
+            const double page = along == "r" ? glm::length(view_) / std::numbers::sqrt2 : along.find('y') != along.npos || along == "height" ? view_.y : view_.x;
+            return value / 100 * page;
+        }
+        return in.word().empty() ? value : length(text) / kPixel;
     }
 
     Matrix transform_of(const char* text) const {
@@ -364,7 +405,20 @@ class Drawing {
     }
     void rectangle(const pugi::xml_node& node) {
         const double x = number(node, "x"), y = number(node, "y"), w = number(node, "width"), h = number(node, "height");
-        emit({{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}, {x, y}});
+        if (!(w > 0 && h > 0)) return;
+        // A corner without one of its radii has both alike.
+        double rx = number(node, "rx"), ry = number(node, "ry");
+        if (!node.attribute("rx")) rx = ry;
+        if (!node.attribute("ry")) ry = rx;
+        rx = std::clamp(rx, 0.0, 0.5 * w), ry = std::clamp(ry, 0.0, 0.5 * h);
+        if (rx <= 0 || ry <= 0) return emit({{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}, {x, y}});
+        Line line{{x + rx, y}, {x + w - rx, y}};
+        const auto corner = [&](const Vec2& end) { arc(line, rx, ry, 0, false, true, end); };
+        corner({x + w, y + ry}), line.emplace_back(x + w, y + h - ry);
+        corner({x + w - rx, y + h}), line.emplace_back(x + rx, y + h);
+        corner({x, y + h - ry}), line.emplace_back(x, y + ry);
+        corner({x + rx, y});
+        emit(line);
     }
     void ellipse(double x, double y, double rx, double ry) {
         if (!(rx > 0 && ry > 0)) return;
@@ -445,10 +499,12 @@ class Drawing {
     const SvgOptions& options_;
     Matrix matrix_{1};
     double width_ = 0;
-    std::map<std::string, std::map<std::string, std::string>> classes_;  // declarations of style sheets
+    SvgSheet sheet_;
+    SvgLosses losses_;
+    Vec2 view_{0};  // size of the page, units of the drawing
     std::vector<Drawn> lines_;
-    std::size_t n_points_ = 0, n_elements_ = 0, n_texts_ = 0, n_images_ = 0;
-    std::map<std::string, pugi::xml_node> by_id_;
+    std::size_t n_points_ = 0, n_elements_ = 0;
+    SvgIds by_id_;
 };
 
 constexpr double kFuller = 1.3;  // than a corner is wide: a tuft that runs into one, on tape
@@ -478,8 +534,10 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     drawing.index(svg);
     drawing.read_sheets(svg, 0);
     drawing.walk(svg, drawing.frame(svg), {}, 0);
-    if (drawing.lines().empty()) throw Error(source, "nothing is drawn in this file; text must be turned into paths first");
-    if (const std::string missed = drawing.left_out(); options.ink.note && !missed.empty()) options.ink.note(source + ": " + missed);
+    const std::vector<std::string> losses = drawing.left_out();
+    if (drawing.lines().empty()) throw Error(source, "nothing is drawn in this file; " + (losses.empty() ? "text must be turned into paths first" : losses.front()));
+    if (options.ink.note)
+        for (const std::string& loss : losses) options.ink.note(source + ": " + loss);
     std::ostringstream ink;
     ink.precision(12);
     ink << "<ink xmlns='http://www.w3.org/2003/InkML'>";
