@@ -63,7 +63,10 @@ void open_writing(Session& s, const fs::path& path) {
     if (!s.painter) return say(s, "Open a model first; then the writing can be placed on it.");
     try {
         say(s, "");
-        s.writing = read_writing(path, [&](const std::string& line) { say(s, line); });
+        s.writing = read_writing(path);
+        std::string lost;
+        for (const std::string& note : s.writing.notes) lost += (lost.empty() ? "" : "; ") + note;
+        if (!lost.empty()) say(s, path.filename().string() + ": " + lost);
         s.tool = Tool::writing;
         const double size = s.painter->model().mesh->bounds.diagonal();
         // A drawing far too large or small for the model comes at a third of it.

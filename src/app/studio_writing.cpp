@@ -14,11 +14,11 @@ std::optional<stroke::Placement> Studio::writing_placement() const {
     const auto hit = aim_at(*s.painter->model().query, aim);
     if (!hit) return std::nullopt;
     const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
-    stroke::Placement placement = place_writing(s.writing, *hit, normal, aim.view_right);
+    stroke::Placement placement = place_writing(s.writing, *s.painter->model().query, hit->position, normal, aim.view_right);
     if (s.writing.laying == stroke::Laying::project) {
         // Straight through the picture: as it is seen now it comes to lie.
         const double c = std::cos(s.writing.turn), t = std::sin(s.writing.turn);
-        placement.right = c * aim.view_right - t * aim.view_up;
+        placement.right = (s.writing.mirrored ? -1.0 : 1.0) * (c * aim.view_right - t * aim.view_up);
         placement.down = -t * aim.view_right - c * aim.view_up;
     }
     return placement;
@@ -51,14 +51,10 @@ void Studio::lay_writing() {
     Session& s = session_;
     const auto placement = writing_placement();
     if (!placement) return;
-    // Pressures in files are made up round a half.
-    std::vector<stroke::Trace> traces = placed_traces(s.writing, *placement, s.hand.pressure / 0.5);
-    for (stroke::Trace& trace : traces) {
-        if (!s.writing.own_ink || trace.brush.empty()) trace.brush = s.brush;
-        if (!s.writing.own_ink || trace.ink.empty()) trace.ink = s.ink;
-    }
-    draw_to_widths(traces);
-    s.painter->post(PaintTraces{std::move(traces), s.symmetry, s.layer, s.mask, s.wet});
+    // Pressures that are made up stay as they are while the slider is where it is at first.
+    const WritingHand hand{s.brush, s.ink, s.hand.pressure / HandSettings{}.pressure};
+    say(s, s.ui.tr("Placed:") + (" " + place_words(s.writing, *placement)));
+    s.painter->post(PaintDrawing{placed_writing(s.writing, *placement, hand), s.symmetry, s.layer, s.mask, s.wet});
 }
 
 }  // namespace tuft::app

@@ -238,6 +238,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("--place-turn", paint.place_turn_deg, "turns it anticlockwise by so many degrees")
         ->check(CLI::Range(-360.0, 360.0))
         ->type_name("DEG");
+    p->add_flag("--place-mirror", paint.place_mirror, "flips it from left to right");
+    p->add_flag("--fit-brush", paint.fit_brush, "with --brush: takes this make in the sizes that draw the line widths of a drawing");
     add_surface(p, paint.surface);
     p->add_option("--project", paint.project, "write a project file (.tuft)");
     p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");

@@ -66,6 +66,8 @@ struct Paint {
     double place_width_mm = 0;      ///< of the whole drawing placed; 0: as written
     std::string laying;             ///< drape, wrap, project; empty: see place_strokes
     double place_turn_deg = 0;      ///< anticlockwise, as seen by who stands before the surface
+    bool place_mirror = false;      ///< flips the drawing from left to right
+    bool fit_brush = false;         ///< `brush` in the sizes that the lines of a drawing need
     Surface surface;
     std::filesystem::path project, exported, preview, forces;
     View view;

@@ -8,78 +8,22 @@
 #include <string>
 #include <utility>
 
-#include "brush/preset.h"
 #include "core/units.h"
-#include "stroke/hand/line_width.h"
-#include "stroke/hand/practise.h"
+#include "stroke/hand/drawing.h"
 #include "stroke/hand/room.h"
 
 namespace tuft::cli {
 
 namespace {
 
-// Surfaces with more of the normal along z lie: they are written on and looked at from above, not from where they face.
+// Surfaces with more of the normal along z lie: they are looked at from above, not from where they face.
 constexpr double kLies = 0.8;
 
-// Right and down of a drawing at a point: upright as somebody sees it who stands before the
-// surface; on what lies, x stays to the right.
-std::pair<Vec3, Vec3> upright(const Vec3& n, double turn) {
-    const Vec3 right = std::abs(n.z) < kLies ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n)) : make_frame(Vec3{0}, n).t;
-    const Vec3 down = glm::cross(right, n);
-    return {std::cos(turn) * right - std::sin(turn) * down, std::cos(turn) * down + std::sin(turn) * right};
-}
-
-constexpr const char* kBrush = "wolf-medium";  // where nothing names one
-constexpr double kWriting = 0.06;              // metres of drawing that it suits
-
-/// Whether the hand is to press as the drawing's line widths say.
-bool has_width(const stroke::Stroke& s) {
-    return s.action == stroke::Action::stroke && s.trace.flat && !s.trace.pressed && s.trace.line_width > 0 &&
-           s.settings.pressure == "none";
-}
-
-/// Gives the drawing's brushes its scale, also for what is done with them before a stroke; the
-/// one that nobody named suits its width. Where lines have widths, brushes come in sizes that draw them.
-void size_brushes(std::vector<stroke::Stroke>& strokes, const std::vector<stroke::Trace*>& drawing, double scale, double width, stroke::WidthTables& widths) {
-    std::string own, sized;
-    for (auto s = strokes.rbegin(); s != strokes.rend(); ++s) {
-        stroke::Trace& trace = s->trace;
-        if (s->action == stroke::Action::stroke && s->layer != stroke::kPaletteLayer) {
-            own = sized = trace.brush;
-            if (std::find(drawing.begin(), drawing.end(), &trace) != drawing.end()) {
-                const brush::SizedName name = brush::sized_name(own.empty() ? kBrush : own);
-                sized = brush::name_of({name.base, own.empty() ? std::min(1.0, width / kWriting) : name.factor * scale});
-            }
-            if (has_width(*s)) sized = stroke::brush_for_width(sized, widths.of(sized), trace.line_width);
-            trace.brush = sized;
-        } else if (trace.brush == own) {
-            trace.brush = sized;
-        }
-    }
-}
-
-void press_to_widths(std::vector<stroke::Stroke>& strokes, stroke::WidthTables& tables, Console& console) {
-    double least = 1e30, most = 0;
-    const stroke::Stroke* missed = nullptr;
-    std::vector<stroke::Trace*> drawn;
-    for (stroke::Stroke& s : strokes) {
-        if (has_width(s)) {
-            const stroke::LineWidths& widths = tables.of(s.trace.brush);
-            stroke::draw_to_width(s.trace, widths);
-            drawn.push_back(&s.trace);
-            if (s.trace.line_width < widths.least() || s.trace.line_width > widths.most()) {
-                missed = &s;
-                least = std::min(least, s.trace.line_width), most = std::max(most, s.trace.line_width);
-            }
-        }
-    }
-    stroke::practise(drawn, tables);
-    for (stroke::Stroke& s : strokes) s.trace.line_width = 0;
-    if (!missed) return;
-    const stroke::LineWidths& widths = tables.of(missed->trace.brush);
-    const std::string asked = most > least ? fmt::format("{:.3g} to {:.3g}", least / kMillimetre, most / kMillimetre) : fmt::format("{:.3g}", most / kMillimetre);
-    console.note(fmt::format("the drawing has lines {} mm wide; {} draws {:.2g} to {:.2g} mm (without --brush it is made to fit)", asked, missed->trace.brush,
-                             widths.least() / kMillimetre, widths.most() / kMillimetre));
+void note_widths(const stroke::WidthMismatch& m, Console& console) {
+    if (m.brush.empty()) return;
+    const std::string asked = m.most > m.least ? fmt::format("{:.3g} to {:.3g}", m.least / kMillimetre, m.most / kMillimetre) : fmt::format("{:.3g}", m.most / kMillimetre);
+    console.note(fmt::format("the drawing has lines {} mm wide; {} draws {:.2g} to {:.2g} mm (without --brush, or with --fit-brush, it is made to fit)",
+                             asked, m.brush, m.thinnest / kMillimetre, m.widest / kMillimetre));
 }
 
 constexpr double kTooLarge = 3;  // diagonals of the model
@@ -88,31 +32,29 @@ double extent_along(const Box& box, const Vec3& direction) {
     return glm::dot(box.size(), glm::abs(direction));
 }
 
-void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, stroke::WidthTables& widths, Console& console) {
-    std::vector<stroke::Trace*> drawing;
-    Box area;
+void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths, Console& console) {
     for (stroke::Stroke& s : strokes) {
         if (s.layer == stroke::kPaletteLayer) continue;  // in its own frame
         if (!s.trace.placed) s.trace.placement.laying = stroke::Laying::drape;
         if (const auto laying = stroke::laying_named(a.laying)) s.trace.placement.laying = *laying;
-        if (!s.trace.flat || (a.place_mm.empty() && s.trace.placed)) continue;
-        drawing.push_back(&s.trace);
-        stroke::add_extent(area, s.trace);
     }
-    if (area.empty()) return;
+    const std::vector<stroke::Trace*> drawing = stroke::drawing_in(strokes, !a.place_mm.empty());
+    if (drawing.empty()) return stroke::choose_brushes(strokes, {}, 1, 0, fit, widths);
+    stroke::arrange_parts(drawing);
+    const Box area = stroke::extent_of(drawing);
     const Box& box = model.mesh->bounds;
     // What lies flat, such as a sheet or a plate, is written on from above.
     const bool lies = box.size().z < 0.25 * std::min(box.size().x, box.size().y);
     const Vec3 look = lies ? Vec3{0, 0, -1} : Vec3{0, 1, 0}, before = box.centre() - box.diagonal() * look;
-    const double turn = a.place_turn_deg * kDegree, width = std::max(area.size().x, 0.05 * area.size().y);
+    const double turn = a.place_turn_deg * kDegree, width = stroke::width_of(area);
     double scale = a.place_width_mm > 0 && width > 0 ? a.place_width_mm * kMillimetre / width : 1;
     std::optional<mesh::SurfacePoint> at;
     Vec3 normal;
     std::string note;
     if (a.place_mm.empty()) {
         const Vec2 size = std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);
-        const auto [right, down] = upright(-look, 0);
-        const double fill = std::max(size.x / extent_along(box, right), size.y / extent_along(box, down));
+        const stroke::Placement seen = stroke::upright_placement({}, -look, 0);
+        const double fill = std::max(size.x / extent_along(box, seen.right), size.y / extent_along(box, seen.down));
         if (a.place_width_mm <= 0 && fill > 0 && (fill > 1 || fill < 0.01)) scale = 0.6 / fill;
         if (const auto room = stroke::find_room(*model.query, look, scale * size)) {
             at = room->at, normal = room->normal;
@@ -128,27 +70,15 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
         at = model.query->closest_point(kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]));
         normal = at->normal;
     }
-    const auto [right, down] = upright(normal, turn);
     if (a.place_mm.empty())
         console.note(fmt::format("the strokes name no place; they go to the {} of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",
                                  lies ? "top" : "front", at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre, note));
     if (const double large = scale * std::max(area.size().x, area.size().y); large > kTooLarge * box.diagonal())
         console.note(fmt::format("the drawing is {:.4g} mm large, the model {:.4g} mm: most of it meets no surface (see --place-width, --unit)",
                                  large / kMillimetre, box.diagonal() / kMillimetre));
-    for (stroke::Trace* trace : drawing) trace->line_width *= scale;
-    if (a.brush.empty()) size_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), widths);
-    for (stroke::Trace* trace : drawing) {
-        for (stroke::TraceSample& sample : trace->samples) {
-            sample.position = scale * (sample.position - area.centre());
-            sample.time *= scale;
-        }
-        for (stroke::TapeEdge& edge : trace->tape)
-            for (Vec2* end : {&edge.from, &edge.to}) *end = scale * (*end - Vec2(area.centre()));
-        trace->placement.origin = at->position;
-        trace->placement.right = right;
-        trace->placement.down = down;
-        trace->placed = true;
-    }
+    const stroke::DrawingPlace place{stroke::upright_placement(at->position, normal, turn, a.place_mirror), Vec2(area.centre()), scale};
+    stroke::place_drawing(drawing, place);
+    stroke::choose_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), fit, widths);
 }
 
 }  // namespace
@@ -156,10 +86,9 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
 void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a,
                    Console& console) {
     stroke::WidthTables widths;
-    lay_drawing(strokes, model, a, widths, console);
-    for (stroke::Stroke& s : strokes)
-        if (s.trace.brush.empty() && stroke::has_brush(s.action)) s.trace.brush = kBrush;
-    press_to_widths(strokes, widths, console);
+    const bool chosen = !a.brush.empty();
+    lay_drawing(strokes, model, a, {.grow = !chosen, .fit = !chosen || a.fit_brush}, widths, console);
+    note_widths(stroke::press_to_widths(strokes, widths), console);
 }
 
 void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, const stroke::Model& model) {

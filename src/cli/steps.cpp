@@ -19,6 +19,7 @@
 #include "io/svg.h"
 #include "mesh/inspect.h"
 #include "stroke/hand/habit.h"
+#include "stroke/journal/entries.h"
 
 namespace fs = std::filesystem;
 
@@ -131,24 +132,6 @@ void check_extension(const fs::path& path, const std::vector<std::string>& allow
     throw UsageError(path.string() + ": the name must end in " + fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
-namespace {
-
-/// What is done with the brush before this trace; with what the command line wants done before
-/// its first stroke.
-std::vector<stroke::Care> care_before(const Paint& a, const stroke::Trace& trace,
-                                      const std::vector<stroke::Stroke>& painted) {
-    std::vector<stroke::Care> care;
-    const bool first = std::none_of(painted.begin(), painted.end(), [&](const stroke::Stroke& s) {
-        return s.trace.brush == trace.brush;
-    });
-    if ((first || a.dip == "each") && !trace.samples.empty())
-        for (const std::string& text : a.prepare) care.push_back(stroke::care_of_text(text));
-    care.insert(care.end(), trace.before.begin(), trace.before.end());
-    return care;
-}
-
-}  // namespace
-
 std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     stroke::Settings settings;
     settings.spine = a.spine;
@@ -159,43 +142,17 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     settings.stabilise = a.stabilise_mm * kMillimetre;
     settings.film = a.film;
     settings.down = {a.down[0], a.down[1], a.down[2]};
+    stroke::EntryOptions options{.settings = settings, .brush = a.brush, .ink = a.ink, .pressure = a.pressure, .erases = a.erases};
+    for (const std::string& text : a.prepare) options.prepare.push_back(stroke::care_of_text(text));
     std::optional<stroke::Habit> habit;
     if (!a.habit.empty()) habit = stroke::load_habit(a.habit);
 
     std::vector<stroke::Stroke> strokes;
+    std::set<std::string> told;  // a file that is painted twice is told of once
     for (const fs::path& file : a.strokes) {
-        std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) { console.note(line); }});
+        std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) { if (told.insert(line).second) console.note(line); }});
         if (habit) traces = stroke::undo_habit(*habit, std::move(traces));
-        for (stroke::Trace& trace : traces) {
-            if (!a.brush.empty()) trace.brush = a.brush;
-            if (trace.ink.empty() || !a.ink.empty()) trace.ink = a.ink.empty() ? "carbon" : a.ink;
-            // What is done with a brush shows in the stroke after it: that goes on with this brush.
-            const bool own = !trace.settings.empty();
-            stroke::Settings with = own ? stroke::settings_from_json(trace.settings) : settings;
-            const std::string dip = with.dip;
-            for (const stroke::Care& care : care_before(a, trace, strokes)) {
-                stroke::Stroke entry{.settings = with, .action = care.action, .seconds = care.seconds, .extent = care.extent};
-                if (stroke::has_brush(care.action)) with.dip = "carry";
-                entry.trace.flat = false;
-                entry.trace.brush = trace.brush;
-                entry.trace.seed = trace.seed;  // lays the hair of a fresh one
-                entry.trace.ink = care.ink.empty() ? trace.ink : care.ink;
-                entry.trace.layer = trace.layer;
-                entry.trace.mask = trace.mask;
-                entry.fill = care.fill;
-                if (trace.on_palette && care.action == stroke::Action::fill) entry.layer = stroke::kPaletteLayer;
-                strokes.push_back(std::move(entry));
-            }
-            trace.before.clear();
-            if (trace.samples.empty()) continue;
-            if (own) with.dip = dip;
-            stroke::Stroke s{.settings = with};
-            if (trace.flat && !trace.pressed) s.settings.pressure = a.pressure;
-            trace.erases = trace.erases || a.erases;
-            if (trace.on_palette) s.layer = stroke::kPaletteLayer;
-            s.trace = std::move(trace);
-            strokes.push_back(std::move(s));
-        }
+        stroke::append_entries(strokes, std::move(traces), options);
         if (a.dry >= 0 && !strokes.empty()) {
             stroke::Stroke entry{.settings = settings, .action = stroke::Action::dry, .seconds = a.dry};
             entry.trace.flat = false;

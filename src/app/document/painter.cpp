@@ -138,7 +138,7 @@ void Painter::perform(Command& command) {
     stop_ = false;
     std::visit(Overloaded{[this](BeginStroke& c) { begin(c); }, [this](ExtendStroke& c) { extend(c); },
                           [this](EndStroke&) { end(); },
-                          [this](CareForBrush& c) { care(c); }, [this](PaintTraces& c) { paint_traces(c); },
+                          [this](CareForBrush& c) { care(c); }, [this](PaintDrawing& c) { paint_drawing(c); },
                           [this](CancelStroke&) { cancel(); },
                           [this](UndoStroke&) { undo(); }, [this](RedoStroke&) { redo(); },
                           [this](SaveProject& c) {
@@ -290,26 +290,31 @@ void Painter::act(stroke::Stroke entry) {
     publish(true);
 }
 
-void Painter::paint_traces(PaintTraces& command) {
+void Painter::paint_drawing(PaintDrawing& command) {
     cancel();
-    std::vector<stroke::Trace> all = command.traces;
+    const ProgressFn shown = progress("Laying it down");
+    shown("", 0);
+    PlacedWriting& drawing = command.drawing;
+    stroke::choose_brushes(drawing.entries, stroke::drawing_in(drawing.entries, true), drawing.scale, drawing.extent, drawing.fit, widths_);
+    stroke::press_to_widths(drawing.entries, widths_);
+    std::vector<stroke::Stroke> all = drawing.entries;
     for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry)) {
-        if (glm::determinant(map.linear) < 0) continue;
-        for (stroke::Trace trace : command.traces) {
-            stroke::Placement& p = trace.placement;
-            p = {map.point(p.origin), map.linear * p.right, map.linear * p.down, p.laying};
-            all.push_back(std::move(trace));
+        const double reads = glm::determinant(map.linear) < 0 ? -1 : 1;
+        for (stroke::Stroke entry : drawing.entries) {
+            stroke::Placement& p = entry.trace.placement;
+            p = {map.point(p.origin), reads * (map.linear * p.right), map.linear * p.down, p.laying};
+            all.push_back(std::move(entry));
         }
     }
     undone_.clear();
     steps_.push_back({});
-    const ProgressFn shown = progress("Laying it down");
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
-        work_.keeper.prepare(*work_.painting, all[i].brush, all[i].ink);
-        stroke::Stroke entry{.trace = std::move(all[i]), .layer = command.layer, .mask = command.mask};
-        if (command.wet) entry.settings.film = "wet";
-        work_.painting->paint(std::move(entry));
+        work_.keeper.prepare(*work_.painting, all[i].trace.brush, all[i].trace.ink);
+        all[i].layer = command.layer;
+        all[i].mask = command.mask;
+        if (command.wet) all[i].settings.film = "wet";
+        work_.painting->paint(std::move(all[i]));
         work_.keeper.add(work_.painting->journal().strokes().back());
         ++steps_.back().made;
         publish(true);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/document/keeper.h"
+#include "app/document/writing.h"
 #include "app/view/texture.h"
 #include "stroke/hand/symmetry.h"
 #include "stroke/journal/fit.h"
@@ -49,10 +50,10 @@ struct ExtendStroke {
     double asked = 0;             ///< seconds on the window's clock, comes back in `Update::done`
 };
 struct EndStroke {};
-/// Paints traces that lie on the model already; undone together.
-struct PaintTraces {
-    std::vector<stroke::Trace> traces;
-    stroke::Symmetry symmetry;    ///< its turns; writing is not mirrored
+/// Paints a drawing that has been placed on the model; undone together.
+struct PaintDrawing {
+    PlacedWriting drawing;
+    stroke::Symmetry symmetry;    ///< the drawing reads the same way in each copy, also beyond a mirror plane
     std::uint32_t layer = stroke::kFirstLayer;
     std::uint32_t mask = 0;
     bool wet = false;
@@ -129,7 +130,7 @@ struct EditStroke {
     bool remove = false;
     bool joined = false;          ///< is undone together with the one before it
 };
-using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintTraces, CareForBrush, UndoStroke, RedoStroke, SaveProject,
+using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, CareForBrush, UndoStroke, RedoStroke, SaveProject,
                              ExportModel, EditStroke, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
 
 /// A stroke for the list.
@@ -246,7 +247,7 @@ class Painter {
     void publish_looks();
     void look_at_brush();
     void load_tip(const BeginStroke& command, std::size_t& made);
-    void paint_traces(PaintTraces& command);
+    void paint_drawing(PaintDrawing& command);
     void care(const CareForBrush& command);
     void undo();
     void redo();
@@ -268,6 +269,7 @@ class Painter {
     std::size_t loads_ = 0;                ///< entries that loaded the brush for the stroke in work
     std::vector<stroke::Stroke> undone_before_;  ///< them, of the journal
     std::vector<ink::Ink> own_inks_;
+    stroke::WidthTables widths_;
     stroke::PalettePicture palette_;
     std::optional<std::array<std::uint8_t, 3>> brush_colour_;
     double undo_seconds_ = 0;

@@ -1,100 +1,102 @@
 #include "app/document/writing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "brush/preset.h"
 #include "core/error.h"
+#include "core/units.h"
 #include "io/svg.h"
-#include "stroke/hand/line_width.h"
-#include "stroke/hand/practise.h"
-#include "stroke/hand/placement.h"
+#include "stroke/journal/entries.h"
 
 namespace tuft::app {
 
 namespace {
 
-bool same_place(const stroke::Placement& a, const stroke::Placement& b) {
-    return a.origin == b.origin && a.right == b.right && a.down == b.down;
+constexpr double kPlaceStep = 1000, kTurnStep = 100;  // steps in a millimetre, in a degree
+
+double rounded(double value, double steps) { return std::round(value * steps) / steps; }
+
+double width_mm(const Writing& w) { return rounded(w.scale * w.width / kMillimetre, kPlaceStep); }
+
+std::vector<stroke::Trace*> pointers(std::vector<stroke::Trace>& traces) {
+    std::vector<stroke::Trace*> all;
+    for (stroke::Trace& trace : traces) all.push_back(&trace);
+    return all;
 }
 
-// Parts that the file puts at places of their own, such as characters round a bowl, would lie over
-// each other at one place.
-void set_side_by_side(std::vector<stroke::Trace>& traces) {
-    double edge = 0;
-    for (std::size_t i = 0; i < traces.size();) {
-        std::size_t end = i;
-        Box box;
-        for (; end < traces.size() && same_place(traces[end].placement, traces[i].placement); ++end)
-            stroke::add_extent(box, traces[end]);
-        const Vec3 shift = i == 0 ? Vec3(0) : Vec3(edge - box.lo.x + 0.15 * std::max(box.size().x, box.size().y), 0, 0);
-        for (; i < end; ++i)
-            for (stroke::TraceSample& s : traces[i].samples) s.position += shift;
-        edge = box.hi.x + shift.x;
-    }
-}
+// Fills and washes are of the model and the palette, not of a drawing that is placed by hand.
+bool belongs_to_brush(const stroke::Care& care) { return stroke::has_brush(care.action) || care.action == stroke::Action::dry; }
 
 }  // namespace
 
-Writing read_writing(const std::filesystem::path& file, const std::function<void(const std::string&)>& note) {
-    Writing out{.file = file, .traces = io::read_strokes(file, {.note = note})};
-    std::erase_if(out.traces, [](const stroke::Trace& t) { return !t.flat || t.samples.empty(); });
+Writing read_writing(const std::filesystem::path& file) {
+    Writing out{.file = file};
+    const std::string prefix = file.string() + ": ";
+    const auto note = [&](const std::string& line) { out.notes.push_back(line.starts_with(prefix) ? line.substr(prefix.size()) : line); };
+    out.traces = io::read_strokes(file, {.note = note});
+    std::erase_if(out.traces, [](const stroke::Trace& t) { return !t.flat || t.on_palette || t.samples.empty(); });
     if (out.traces.empty()) throw Error(file.string(), "its strokes lie in space already; only flat writing can be placed");
-    set_side_by_side(out.traces);
-    Box box;
-    for (const stroke::Trace& trace : out.traces) stroke::add_extent(box, trace);
-    for (stroke::Trace& trace : out.traces)
-        for (stroke::TraceSample& s : trace.samples) s.position -= box.centre();
-    out.width = box.size().x;
+    const std::vector<stroke::Trace*> all = pointers(out.traces);
+    if (out.traces.front().placed) out.laying = out.traces.front().placement.laying;
+    stroke::arrange_parts(all);
+    const Box box = stroke::extent_of(all);
+    out.centre = Vec2(box.centre());
+    out.width = stroke::width_of(box);
     out.height = box.size().y;
     return out;
 }
 
-stroke::Placement place_writing(const Writing& w, const mesh::SurfacePoint& at, const Vec3& normal, const Vec3& right) {
-    Vec3 x = right - glm::dot(right, normal) * normal;
-    x = glm::length(x) > 1e-6 ? glm::normalize(x) : make_frame(at.position, normal).t;
-    const Vec3 y = glm::cross(x, normal);  // down, as seen from outside
-    const double c = std::cos(w.turn), s = std::sin(w.turn);
-    return {.origin = at.position, .right = c * x + s * y, .down = -s * x + c * y, .laying = w.laying};
+stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal, const Vec3& right) {
+    Vec3 place = at;
+    for (int k = 0; k < 3; ++k) place[k] = kMillimetre * rounded(at[k] / kMillimetre, kPlaceStep);
+    const auto on = query.closest_point(place);
+    if (!on) return {.origin = at};
+    const Vec3 n = glm::dot(on->normal, normal) < 0 ? -on->normal : on->normal;
+    const stroke::Placement seen = stroke::placement_seen(place, n, right, -w.turn, w.mirrored);
+    const double turn = kDegree * rounded(stroke::turn_of(n, seen.right, w.mirrored) / kDegree, kTurnStep);
+    stroke::Placement out = stroke::upright_placement(on->position, n, turn, w.mirrored);
+    out.laying = w.laying;
+    return out;
 }
 
-std::vector<stroke::Trace> placed_traces(const Writing& w, const stroke::Placement& placement, double pressure) {
-    std::vector<stroke::Trace> traces = w.traces;
-    for (stroke::Trace& trace : traces) {
-        trace.placement = placement;
-        trace.placed = true;
-        trace.before.clear();
-        if (!trace.brush.empty()) {
-            const brush::SizedName own = brush::sized_name(trace.brush);
-            trace.brush = brush::name_of({own.base, own.factor * w.scale});
-        }
-        for (stroke::TraceSample& s : trace.samples) {
-            s.position *= w.scale;
-            s.time *= std::max(0.2, w.scale);  // the same pace for larger letters
-            if (!trace.pressed && !(w.own_width && trace.line_width > 0)) s.pressure = std::min(1.0, s.pressure * pressure);
-        }
-        for (stroke::TapeEdge& edge : trace.tape) edge = {w.scale * edge.from, w.scale * edge.to};
-        trace.line_width = w.own_width && !trace.pressed ? w.scale * trace.line_width : 0;
-    }
-    return traces;
+double painted_scale(const Writing& w) {
+    return w.width > 0 && width_mm(w) > 0 ? width_mm(w) * kMillimetre / w.width : w.scale;
+}
+
+std::string place_words(const Writing& w, const stroke::Placement& p) {
+    const Vec3 normal = glm::normalize(w.mirrored ? glm::cross(p.right, p.down) : glm::cross(p.down, p.right));
+    const Vec3 at = p.origin / kMillimetre;
+    std::string words = fmt::format("--place {:.3f},{:.3f},{:.3f} --place-width {:.3f} --place-turn {:.2f}", at.x, at.y, at.z, width_mm(w),
+                                    stroke::turn_of(normal, p.right, w.mirrored) / kDegree);
+    if (w.mirrored) words += " --place-mirror";
+    if (w.laying != stroke::Laying::drape) words += " --laying " + std::string(stroke::laying_name(w.laying));
+    return words;
 }
 
 bool has_widths(const Writing& w) {
     return std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return t.line_width > 0 && !t.pressed; });
 }
 
-void draw_to_widths(std::vector<stroke::Trace>& traces) {
-    stroke::WidthTables widths;
-    std::vector<stroke::Trace*> drawn;
+PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement, const WritingHand& hand) {
+    std::vector<stroke::Trace> traces = w.traces;
     for (stroke::Trace& trace : traces) {
-        if (trace.line_width > 0) {
-            trace.brush = stroke::brush_for_width(trace.brush, widths.of(trace.brush), trace.line_width);
-            stroke::draw_to_width(trace, widths.of(trace.brush));
-            drawn.push_back(&trace);
-        }
+        std::erase_if(trace.before, [](const stroke::Care& care) { return !belongs_to_brush(care); });
+        trace.placement.laying = w.laying;
+        trace.layer.clear();
+        trace.mask.clear();
+        if (!w.own_width) trace.line_width = 0;
+        if (!trace.pressed && !(trace.line_width > 0))
+            for (stroke::TraceSample& s : trace.samples) s.pressure = std::min(1.0, s.pressure * hand.pressure);
     }
-    stroke::practise(drawn, widths);
-    for (stroke::Trace& trace : traces) trace.line_width = 0;
+    PlacedWriting out{.entries = {}, .scale = painted_scale(w), .extent = 0, .fit = {.grow = w.own_ink, .fit = w.own_width, .otherwise = hand.brush}};
+    stroke::append_entries(out.entries, std::move(traces), {.brush = w.own_ink ? "" : hand.brush, .ink = w.own_ink ? "" : hand.ink, .other_ink = hand.ink});
+    const std::vector<stroke::Trace*> drawing = stroke::drawing_in(out.entries, true);
+    stroke::place_drawing(drawing, {placement, w.centre, out.scale});
+    const Box box = stroke::extent_of(drawing);
+    out.extent = std::max(box.size().x, box.size().y);
+    return out;
 }
 
 std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& w, const stroke::Placement& placement, std::size_t most) {
@@ -110,7 +112,7 @@ std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query
         for (std::size_t i = 0; i < n; i += step) thin.samples.push_back(trace.samples[i]);
         if ((n - 1) % step != 0) thin.samples.push_back(trace.samples.back());
     }
-    for (stroke::TraceSample& s : thin.samples) s.position *= w.scale;
+    stroke::transform_trace(thin, w.centre, painted_scale(w));
     const std::vector<stroke::LaidSample> laid = stroke::lay(query, thin).samples;
     std::vector<std::vector<GhostPoint>> lines;
     for (std::size_t i = 0, next = 0; i < laid.size(); ++i) {

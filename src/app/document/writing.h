@@ -2,20 +2,24 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "mesh/surface_query.h"
-#include "stroke/journal/trace.h"
+#include "stroke/hand/drawing.h"
 
-/// A drawing or handwriting that waits to be laid onto the model.
+/// A drawing or handwriting that waits to be placed on the model.
 namespace tuft::app {
 
 struct Writing {
     std::filesystem::path file;
-    std::vector<stroke::Trace> traces;   ///< flat, metres, (0, 0) in their middle
-    double width = 0, height = 0;        ///< metres, as in the file
+    std::vector<stroke::Trace> traces;   ///< flat, metres, in the frame of the file
+    std::vector<std::string> notes;      ///< what of the file is left out, one line each
+    Vec2 centre{0};                      ///< metres, of the ink of all traces
+    double width = 0, height = 0;        ///< metres, likewise, as in the file
     double scale = 1;
     double turn = 0;                     ///< radians, clockwise as seen
+    bool mirrored = false;               ///< flipped from left to right
     stroke::Laying laying = stroke::Laying::drape;
     bool own_ink = false;                ///< brush and ink as the file names them
     bool own_width = true;               ///< lines as wide as the drawing has them, where it has widths
@@ -24,20 +28,37 @@ struct Writing {
 };
 
 /// Reads an InkML or SVG file. Throws `Error` also when nothing in it is flat.
-Writing read_writing(const std::filesystem::path& file, const std::function<void(const std::string&)>& note = {});
+Writing read_writing(const std::filesystem::path& file);
 
-/// Where it comes to lie with its middle at a point of the surface, seen with `right` to the right.
-stroke::Placement place_writing(const Writing& writing, const mesh::SurfacePoint& at, const Vec3& normal, const Vec3& right);
+/// The placement of its middle at a point of the surface, seen with `right` to the right; `normal` points
+/// towards the eye. Origin and turn are those of `tuft paint --place --place-turn`, to 0.001 mm and 0.01°, so that
+/// `place_words` give them exactly.
+stroke::Placement place_writing(const Writing& writing, const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal, const Vec3& right);
+
+/// The scale at which it is painted: `writing.scale`, its width to 0.001 mm.
+double painted_scale(const Writing& writing);
+
+/// "--place 1.000,2.000,3.000 --place-width 60.000 --place-turn 5.00": the options of `tuft paint` that place it so.
+std::string place_words(const Writing& writing, const stroke::Placement& placement);
 
 /// Whether its lines have widths.
 bool has_widths(const Writing& writing);
 
-/// The traces as they will be painted, pressures that were made up times `pressure`. Widths of lines grow
-/// with the rest; without `own_width` there are none.
-std::vector<stroke::Trace> placed_traces(const Writing& writing, const stroke::Placement& placement, double pressure);
+/// What a person paints it with.
+struct WritingHand {
+    std::string brush, ink;       ///< presets; with `Writing::own_ink` of what names none
+    double pressure = 1;          ///< factor of pressures that were made up, of lines without widths
+};
 
-/// Takes the brush in the sizes that the line widths need, and presses so that they come out.
-void draw_to_widths(std::vector<stroke::Trace>& traces);
+/// Its traces as journal entries at the placement, without the brushes' sizes and their pressures, which
+/// `stroke::choose_brushes` and `stroke::press_to_widths` find.
+struct PlacedWriting {
+    std::vector<stroke::Stroke> entries;
+    double scale = 1;
+    double extent = 0;            ///< metres, the larger side as painted
+    stroke::BrushFit fit;
+};
+PlacedWriting placed_writing(const Writing& writing, const stroke::Placement& placement, const WritingHand& hand);
 
 /// How it would lie: one line for each piece of a trace on the surface, with its normals, of at
 /// most `most` samples in all.

@@ -102,7 +102,7 @@ constexpr std::pair<const char*, const char*> kTexts[] = {
     {"pressed #.# mm deeper", "笔压深了 #.# mm"}, {"pressed #.# mm less deep", "笔压浅了 #.# mm"}, {"Back to the former model", "回到原来的模型"}, {"The revised one is among the recent projects then", "修订后的作品列在最近的项目中"}, {"Hide them", "全部隐藏"}, {"Keep them", "保留"}, {"The strokes are painted on the revised model; the former project is as it was.", "笔画已绘到修订后的模型上；原项目未变。"},
     {"coarser × 1.5", "稀 × 1.5"}, {"finer × 1.5", "密 × 1.5"},
     {"Place", "摆放"}, {"Lays writing or a drawing from a file where you click (T)", "把文件中的字或图摆到单击处 (T)"},
-    {"Writing or drawing...", "字或图…"}, {"Writing or drawing to place", "要摆放的字或图"}, {"Width", "宽度"}, {"Turn", "转角"},
+    {"Writing or drawing...", "字或图…"}, {"Writing or drawing to place", "要摆放的字或图"}, {"Width", "宽度"}, {"Turn", "转角"}, {"Mirrored", "左右翻转"}, {"Placed:", "已摆放："},
     {"Drape", "铺覆"}, {"Wrap", "包裹"}, {"Straight", "平投"}, {"Brush and ink of the file", "用文件中的笔与墨"}, {"Line widths of the drawing", "用图稿的线宽"}, {"Laying it down", "正在落笔"},
     {"Wheel: size    Shift + wheel: turn    Click: lay it down", "滚轮：大小    Shift+滚轮：转角    单击：落笔"},
     {"Open a model first; then the writing can be placed on it.", "请先打开模型，再摆放字或图。"},

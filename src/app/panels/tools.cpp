@@ -244,9 +244,11 @@ void writing_section(Session& s) {
     if (s.writing.empty()) return;
     Writing& w = s.writing;
     ImGui::TextUnformatted(w.file.filename().c_str());
+    for (const std::string& note : w.notes) ui.note(note.c_str());
     double width = w.width * w.scale;
     if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", "Wheel over the model", kMillimetre)) w.scale = width / w.width;
     ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
+    ui.toggle("Mirrored", w.mirrored);
     const std::tuple<stroke::Laying, const char*, const char*> layings[] = {
         {stroke::Laying::drape, "Drape", "Bent round the surface, over its grooves, relief and gaps"},
         {stroke::Laying::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
