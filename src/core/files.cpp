@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 
 #include "core/error.h"
@@ -73,7 +74,14 @@ fs::path data_folder() {
         const fs::path installed = program.parent_path().parent_path() / "share" / "tuft";
         if (fs::is_directory(installed, ec)) return installed;
     }
-    return TUFT_SOURCE_DIR;
+    const fs::path source = TUFT_SOURCE_DIR;
+    if (fs::is_directory(source / "models", ec)) return source;
+    // Another program that uses the installed libraries.
+    const char* listed = std::getenv("XDG_DATA_DIRS");
+    std::istringstream folders(listed && *listed ? listed : "/usr/local/share:/usr/share");
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (fs::is_directory(fs::path(folder) / "tuft", ec)) return fs::path(folder) / "tuft";
+    return source;
 }
 
 }  // namespace tuft

@@ -22,7 +22,8 @@ void write_atomically(const std::filesystem::path& path,
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size);
 
 /// Folder with the files tuft ships (`models`, `brushes`, `inks`): $TUFT_DATA, else the
-/// installed share/tuft beside the program, else the source tree it was built from.
+/// installed share/tuft beside the program, else the source tree it was built from while that
+/// is there, else `tuft` in one of $XDG_DATA_DIRS (/usr/local/share and /usr/share).
 std::filesystem::path data_folder();
 
 }  // namespace tuft

@@ -25,6 +25,8 @@ const ImageCodec& load_codec() {
         places.push_back(program.parent_path() / "lib" / "tuft" / kModule);
         places.push_back(program.parent_path() / TUFT_LIBDIR / "tuft" / kModule);
     }
+    const fs::path prefix = data_folder().parent_path().parent_path();  // of an installed share/tuft
+    places.push_back(prefix / TUFT_LIBDIR / "tuft" / kModule);
     places.emplace_back(TUFT_IMAGES_BUILT);
     std::string tried, fault;
     for (const fs::path& place : places) {
