@@ -3,10 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "cli/reference.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "io/export_maps.h"
 #include "stroke/journal/trace.h"
+
+// What help and manual call the value of an option that is a path.
+template <>
+constexpr const char* CLI::detail::type_name<std::filesystem::path>() {
+    return "FILE";
+}
 
 namespace tuft::cli {
 namespace {
@@ -153,11 +160,21 @@ void add_view(CLI::App* app, View& v) {
         ->type_name("X,Y,Z");
 }
 
+// Values that are names of presets.
+void name_presets(CLI::App& app) {
+    for (const char* name : {"--brush", "--ink", "--to-ink", "--substrate", "--material"})
+        for (CLI::App* command : app.get_subcommands({}))
+            if (CLI::Option* option = command->get_option_no_throw(name))
+                option->type_name(std::string_view(name) == "--brush" ? "BRUSH" : std::string_view(name).ends_with("ink") ? "INK" : "SUBSTRATE");
+}
+
 }  // namespace
 
 bool parse_arguments(int argc, const char* const* argv, Command& command, int& status) {
     CLI::App app{"tuft: ink and a bending hair brush on the surface of 3D models", "tuft"};
-    app.set_version_flag("--version", std::string("tuft ") + TUFT_VERSION);
+    bool json_version = false;
+    auto* json = app.add_flag("--json", json_version, "with --version: the libraries' versions and facts of the build, as one JSON object");
+    json->needs(app.set_version_flag("--version", [&] { return version_text(json_version); }));
     app.require_subcommand(1);
     app.footer("Run 'tuft COMMAND --help' for the options of a command.");
     app.get_formatter()->column_width(34);
@@ -356,7 +373,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
 
     Brush brush;
     auto* b = app.add_subcommand("brush", "print a brush's query table, draw it, or fit one to measurements");
-    b->add_option("NAME", brush.name, "brush name or .toml file; without it, the names are listed");
+    b->add_option("BRUSH", brush.name, "brush name or .toml file; without it, the names are listed");
     b->add_option("--picture", brush.picture, "draw the tuft at five depths and three tilts, lifted, slanted, reversed, split and dry (.png)");
     b->add_option("--sweep-depth", brush.sweep_depth, "write line width over depth (.csv)");
     auto* fit = b->add_subcommand("calibrate", "fit a brush to a table of depth against line width");
@@ -382,6 +399,12 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_store(n, bench.surface);
     add_common(n, bench.common);
 
+    name_presets(app);
+    if (argc == 3 && std::string_view(argv[1]) == "--reference") {  // when the program is built
+        write_manual(manual_of(app), argv[2]);
+        status = 0;
+        return false;
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp& help) {

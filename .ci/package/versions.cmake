@@ -1,0 +1,26 @@
+# tuft_library_versions: names and versions of the libraries that this build is compiled against, as C++ initialisers.
+set(TUFT_COMMIT "" CACHE STRING "Commit that the sources are of, for `tuft --version --json`")
+# Where a library's CMake package does not say its version, a header does.
+function(tuft_version_in header pattern variable)
+  find_file(found NAMES ${header} NO_CACHE)
+  set(version)
+  if(found)
+    file(STRINGS ${found} line REGEX ${pattern} LIMIT_COUNT 1)
+    if(line MATCHES ${pattern})
+      string(JOIN . version ${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
+    endif()
+  endif()
+  set(${variable} ${version} PARENT_SCOPE)
+endfunction()
+tuft_version_in(polyclipping/clipper.hpp "define CLIPPER_VERSION \"([0-9.]+)\"" polyclipping_VERSION)
+tuft_version_in(OpenMesh/Core/System/config.h "^#define OM_VERSION 0x([0-9]+)0([0-9])00$" OpenMesh_VERSION)
+
+set(tuft_library_versions)
+foreach(library CGAL CLI11 Eigen3 embree fmt glm nlohmann_json OpenImageIO OpenMesh polyclipping pugixml SQLite3 SQLiteCpp TBB
+    TinyGLTF tomlplusplus xxhash zstd glfw3 imgui epoxy spnav)
+  if(${library}_VERSION)
+    string(APPEND tuft_library_versions "        {\"${library}\", \"${${library}_VERSION}\"},\n")
+  elseif(${library}_FOUND)
+    message(STATUS "the version of ${library} is not known")
+  endif()
+endforeach()
