@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "ink/colour/composite.h"
 #include "sheet.h"
-#include "stroke/painting/stamper.h"
+#include "stroke/session/stamp_batch.h"
 
 namespace tuft::stroke {
 namespace {
@@ -218,7 +218,7 @@ TEST(Painting, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {
     int asked = 0;
     const StrokeReport report =
         Painting(model).paint(wide, [&](std::string_view, double) { return ++asked > 0; });
-    EXPECT_GT(asked, static_cast<int>(report.stamps + report.stamps / Stamper::kBatch))
+    EXPECT_GT(asked, static_cast<int>(report.stamps + report.stamps / StampBatch::kStamps))
         << "within batches too";
     for (int last = asked / 2; last < asked / 2 + 12; ++last) {  // a batch and more
         int n = 0;

@@ -4,46 +4,16 @@
 #include <cmath>
 #include <utility>
 
-#include "contact/contact.h"
-#include "core/ease.h"
 #include "stroke/hand/hand.h"
-#include "stroke/painting/painting_hand.h"
+#include "stroke/session/session.h"
 
 namespace tuft::stroke {
-namespace {
-
-constexpr double kLeap = 0.5;  // of a patch's size: beyond, single marks would part
-
-// Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
-constexpr double kPasteStep = 1e-4, kPasteCell = 4e-5;
-
-constexpr double kCourse = 2e-3, kSwing = 1e-3;  // metres of travel over which the hand's course is taken, and the hair's
-constexpr double kComesToLie = 2e-3;  // metres of travel after a press in which hair turns to where it is drawn
-// Parts of the hand's motion that are up or down, from one to the other of which it presses or lifts.
-constexpr double kSlants = 0.2, kPlunges = 0.5;
-
-/// Hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
-double wetness_of(const ink::Reservoir& reservoir) {
-    constexpr double kWet = 0.25;
-    const double x = std::clamp(reservoir.fullness() / kWet, 0.0, 1.0);
-    return x * (2 - x);
-}
-
-ink::Reservoir empty_reservoir(const brush::Tuft& tuft) {
-    brush::HairCells cells = brush::hair_cells(tuft.preset);
-    return ink::make_reservoir(tuft.preset.capacity * 1e6, {.bundles = tuft.bundles.place,
-                                                           .cell_ends = std::move(cells.ends),
-                                                           .cell_rooms = std::move(cells.rooms)});
-}
-
-}  // namespace
-
 Painting::Painting(const Model& model, const PaintingOptions& options)
     : model_(&model),
       options_(options),
       substrate_(ink::load_substrate(options.substrate)),
       canvas_(model.texels.n_slots()),
-      plan_rooms_(std::make_unique<PlanRooms>()) {}
+      plan_scratch_(std::make_unique<PlanScratchPool>()) {}
 
 Painting::~Painting() = default;
 Painting::Painting(Painting&&) noexcept = default;
@@ -199,10 +169,10 @@ void check_width(const brush::Preset& preset, double texel) {
 
 void Painting::begin(Stroke stroke) {
     check_layer(stroke);
-    begin_hand(std::move(stroke));
+    begin_session(std::move(stroke));
 }
 
-void Painting::begin_hand(Stroke stroke) {
+void Painting::begin_session(Stroke stroke) {
     cancel();
     settle(stroke);
     BrushInHand brush = take_up(stroke);
@@ -211,190 +181,60 @@ void Painting::begin_hand(Stroke stroke) {
     const ink::Substrate& substrate = substrate_of(stroke);
     const double texel = model.texels.texel_size;
     check_width(brush.tuft.preset, texel);
-    const bool paste = ink.yield > 0;
-    const double spacing = std::max(stroke.settings.spacing * texel, paste ? kPasteStep : 0.0);
+    const bool erases = stroke.trace.erases, on_model = &model == model_;
+    WetFilmInUse wet;
+    if (stroke.settings.film == "wet" && !erases) {
+        if (on_model) wet = {&film(stroke.mask), ink::film_params(substrate, stroke.settings.down)};
+        else wet = {plate().film.get(), plate().params};
+    }
     ink::Canvas& canvas = this->canvas(stroke.layer);
     // Masks are of the model's texels.
-    const bool masked = stroke.mask && stroke.layer != kPaletteLayer;
-    const MaskTexels* mask = masked ? &this->mask(stroke.mask) : nullptr;
-    hand_ = std::make_unique<Hand>(std::move(stroke), std::move(brush), ink, model, canvas, substrate,
-                                   *plan_rooms_, spacing, texel);
-    hand_->stamper.keep_to(mask);
-    hand_->mixed = !hand_->stroke.trace.erases && ink::is_mixed(hand_->reservoir);
-    hand_->paste = paste;
-    if (paste) hand_->cell = std::max(hand_->cell, kPasteCell);
-    const Settings& settings = hand_->stroke.settings;
-    if (settings.film != "wet" || hand_->stroke.trace.erases) return;
-    if (&model == model_) hand_->wet.emplace(film(hand_->stroke.mask), canvas, ink::film_params(substrate, settings.down));
-    else hand_->wet.emplace(*plate().film, canvas, plate().params);
+    const MaskTexels* mask = stroke.mask && on_model ? &this->mask(stroke.mask) : nullptr;
+    const SeamLinksFn links = [this, on_model]() -> const atlas::SeamLinks& { return on_model ? seams() : plate().seams; };
+    session_ = std::make_unique<StrokeSession>(SessionInput{.stroke = std::move(stroke),
+                                                            .brush = std::move(brush),
+                                                            .ink = ink,
+                                                            .model = model,
+                                                            .substrate = substrate,
+                                                            .canvas = canvas,
+                                                            .mask = mask,
+                                                            .wet = std::move(wet),
+                                                            .scratch = *plan_scratch_,
+                                                            .seams = links,
+                                                            .record_forces = options_.record_forces});
 }
 
-void Painting::extend(std::span<const brush::Pose> poses) {
-    Trace piece{.flat = false};
-    for (const brush::Pose& pose : poses)
-        piece.samples.push_back({.time = pose.time, .position = pose.position, .rotation = pose.rotation});
-    std::vector<TraceSample>& samples = hand_->stroke.trace.samples;
-    samples.insert(samples.end(), piece.samples.begin(), piece.samples.end());
-    advance(spatial_poses(piece));  // as a replay will see them, to the bit
-}
-
-void Painting::advance(std::span<const brush::Pose> poses) {
-    for (const brush::Pose& pose : poses) {
-        ++hand_->report.samples;
-        const bool as_is = hand_->stroke.trace.flat;  // then the whole trace was steadied
-        hand_->resampler.push(as_is ? pose : steady(hand_->steady, pose, hand_->stroke.settings), hand_->poses);
-    }
-    draw_poses();
-}
-
-void Painting::draw_poses() {
-    Hand& h = *hand_;
-    for (const brush::Pose& pose : h.poses) {
-        tuft::report(h.progress, "painting", h.done);
-        h.tuft.ink_left = h.reservoir.fullness();
-        h.tuft.wetness = wetness_of(h.reservoir);
-        const double dt = h.moved ? pose.time - h.last_time : 0.0;
-        ink::flow(h.reservoir, dt, h.by_hair ? ink::FlowTo::now : ink::FlowTo::whole_step);
-        // A hair that painted before comes through the air, as it sprang back.
-        if (!h.moved && h.tuft.posed) brush::step(h.tuft, pose, {}, 0);
-        contact::Result contact =
-            contact::step(h.tuft, pose, *h.model->query, h.memory, dt, h.contact_options);
-        h.force = contact.hand_force;
-        h.last_time = pose.time;
-        h.moved = true;
-        if (h.wet) h.wet->pass(h.stamper, dt, h.film_progress);
-        h.bend(contact.tuft, pose);
-        h.report.nearest = std::min(h.report.nearest, contact.distance);
-        if (options_.record_forces)
-            h.report.forces.push_back({pose, contact.tuft.force, h.force,
-                                       contact.tuft.moment, contact.tuft.root_moment});
-        if (!contact.tuft.touching || contact.triangle == kNone) {
-            h.was_touching = false;
-            continue;
-        }
-        if (!contact.tuft.converged) ++h.report.unconverged;
-
-        if (h.was_touching) h.move_on(pose, dt);
-        const Vec3 way = h.was_touching ? pose.position - h.last_position : Vec3{0};
-        const auto flat = [&](const Vec3& v) { return Vec2{glm::dot(v, contact.frame.t), glm::dot(v, contact.frame.b)}; };
-        const Vec2 shift = flat(way);
-        if (!h.was_touching) h.tracks = {};
-        // The hair's own way: hair that is lifted goes on along its track while the hand stands or turns back.
-        const Vec2 drawn = h.was_touching ? flat(contact.travel) : Vec2{0};
-        const double slid = glm::length(drawn);
-        h.slid += slid;
-        if (slid > 0) h.heading = drawn / slid;
-        const double along = glm::length(shift);
-        h.went = h.was_touching ? std::exp(-slid / kSwing) * h.went + drawn.x * contact.frame.t + drawn.y * contact.frame.b : Vec3{0};
-        const double up = std::abs(glm::dot(way, contact.frame.n));
-        const double plunges = up > 0 ? smooth_step((up / (up + along) - kSlants) / (kPlunges - kSlants)) : 0;
-        // Pressed or lifted, a tuft that is held to a line moves to take in or give back its lead:
-        // that is no course.
-        const double goes = 1 - plunges * std::min(1.0, glm::length(h.course) / kCourse);
-        h.course = h.was_touching
-                       ? std::exp(-goes * along / kCourse) * h.course +
-                             goes * (shift.x * contact.frame.t + shift.y * contact.frame.b)
-                       : Vec3{0};
-        h.lands = std::max(plunges, h.was_touching ? std::exp(-along / kComesToLie) * h.lands : 0);
-        if (h.by_hair) h.pay(h.instalment);
-        Stamp stamp = h.make_stamp(contact, dt);
-        if (stamp.footprint.empty()) {
-            h.was_touching = false;
-            continue;
-        }
-        const double area = footprint_area(stamp.footprint);
-        if (!h.tape.empty() && !(area > 0)) {  // on the tape
-            h.was_touching = true;
-            h.last_position = pose.position;
-            continue;
-        }
-        ++h.report.stamps;
-        // The hand's way, not the frame's: the patch also grows and shrinks. Hair that lies by itself may swing round.
-        // And a patch that leaps by more than it is long, as a tip does that springs back while it is lifted, leaves its
-        // line along its own way.
-        const double leap = smooth_step(glm::length(drawn - shift) / std::sqrt(std::max(area, 1e-30)) / kLeap);
-        stamp.motion.shift = glm::mix(shift, drawn, std::max(leap, static_cast<double>(stamp.apart)));
-        // Dry hair leaves ink by the way it is drawn: where it only comes to touch a tip that leans would print a speck
-        // that its stroke, which begins where it has been pressed aside, does not reach.
-        stamp.ds = h.was_touching ? h.step : (1 - static_cast<double>(stamp.apart)) * h.step;
-        h.was_touching = true;
-        h.last_position = pose.position;
-        const ink::StampContact touch{
-            .moment_factor = h.stress(contact),
-            .width = h.closed_area > 0 ? area / std::sqrt(h.closed_area) : std::sqrt(area),
-            // A batch shares what is left; mixed ink comes stamp by stamp.
-            .area = area * (h.mixed || h.paste ? 1.0 : static_cast<double>(Stamper::kBatch)),
-            .owed = h.owed,
-            .by_hair = static_cast<double>(stamp.apart),
-            .touch = h.touched};
-        stamp.ink = ink::stamp_deposit(h.reservoir, h.ink, touch, *h.substrate);
-        stamp.ink.capacity = std::max(h.substrate->capacity, static_cast<float>(ink::standing_film(h.ink.yield)));
-        if (h.stroke.trace.erases) stamp.erases = 2 + 2 * touch.moment_factor;  // sooner than ink is given: tips rub off what tips left
-        if (h.paste) {
-            h.report.ink_given += h.lay_paste(stamp, touch.moment_factor);
-            continue;
-        }
-        if (h.wet) {
-            h.report.ink_given += h.wet->lay(
-                h.stamper, stamp, h.reservoir, h.touched, h.nodes, h.comb(),
-                {touch.moment_factor, std::abs(glm::dot(contact.tuft.force, contact.frame.n))},
-                h.drain(pose, contact.frame.origin));
-            continue;
-        }
-        if (h.mixed) {
-            h.report.ink_given += h.lay_mixed(stamp);
-            continue;
-        }
-        if (h.stamper.add(std::move(stamp))) h.flush();
-    }
-    h.poses.clear();
-}
+void Painting::extend(std::span<const brush::Pose> poses) { session_->extend(poses); }
 
 // Ends the stroke in work without a word to the journal.
-StrokeReport Painting::finish_hand() {
-    Hand& h = *hand_;
-    h.resampler.finish(h.poses);
-    draw_poses();
-    h.flush();
-    h.pay(h.owed);
-    atlas::SeamLinks of_palette;
-    const auto links = [&]() -> const atlas::SeamLinks& {
-        if (h.model == model_) return seams();
-        return of_palette = atlas::build_seam_links(*h.model->mesh, h.model->atlas, h.model->texels);
-    };
-    if (h.paste) h.stamper.level(links(), ink::levelling_length(h.ink.yield, h.ink.film * ink::kFilmUnit));
-    else if (!h.wet && !h.stroke.trace.erases && h.stamper.on_relief()) h.stamper.pool(links(), h.ink.film, h.ink.strength());
-    if (h.stroke.trace.erases && this->canvas(h.stroke.layer).wet()) h.stamper.blot(links());
-    if (h.wet) h.wet->end(h.stamper, h.reservoir, h.touched, h.nodes, h.film_progress);
-    h.report.ink_left = h.reservoir.remaining();
-    if (h.report.touched()) h.report.nearest = 0;
-    h.report.removed = h.stamper.erased();
-    const std::string name = h.stroke.trace.brush;
-    if (h.stroke.trace.erases) {
-        Undo undo{.stroke_id = h.stroke.id};
-        undo.before.push_back({h.stroke.layer, h.stamper.take_before()});
+StrokeReport Painting::finish_session() {
+    SessionResult result = session_->finish();
+    const Stroke& stroke = session_->stroke();
+    LayerTiles before{stroke.layer, std::move(result.before)};
+    if (stroke.trace.erases) {
+        Undo undo{.stroke_id = stroke.id};
+        undo.before.push_back(std::move(before));
         keep_undo(std::move(undo));
-    } else
-        put_down(h.stroke.id, name, {std::move(h.tuft), h.reservoir, h.dipped, h.stroke.trace.ink},
-             {h.stroke.layer, h.stamper.take_before()});
-    StrokeReport report = std::move(h.report);
-    hand_.reset();
-    return report;
+    } else {
+        put_down(stroke.id, stroke.trace.brush, std::move(result.brush), std::move(before));
+    }
+    session_.reset();
+    return std::move(result.report);
 }
 
 StrokeReport Painting::end() {
-    Stroke stroke = hand_->stroke;
-    StrokeReport report = finish_hand();
+    Stroke stroke = session_->stroke();
+    StrokeReport report = finish_session();
     report.stroke_id = journal_.append(std::move(stroke)).id;
     undo_.back().stroke_id = report.stroke_id;
     return report;
 }
 
 void Painting::cancel() {
-    if (!hand_) return;
-    ink::Canvas& canvas = this->canvas(hand_->stroke.layer);
-    for (const ink::TileSnapshot& tile : hand_->stamper.take_before()) canvas.restore(tile);
-    hand_.reset();
+    if (!session_) return;
+    ink::Canvas& canvas = this->canvas(session_->stroke().layer);
+    for (const ink::TileSnapshot& tile : session_->take_snapshots()) canvas.restore(tile);
+    session_.reset();
     forget_pigments(known_pigments_);
 }
 
@@ -422,16 +262,12 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
     }
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     const std::vector<brush::Pose> poses = poses_of(stroke);
-    begin_hand(stroke);
-    hand_->progress = progress;
-    if (progress)
-        hand_->film_progress = [&progress, &h = *hand_](std::string_view, double) { return progress("painting", h.done); };
+    begin_session(stroke);
+    session_->set_progress(progress);
     try {
-        for (std::size_t i = 0; i < poses.size(); ++i) {
-            advance(std::span(poses).subspan(i, 1));
-            hand_->done = static_cast<double>(i + 1) / static_cast<double>(poses.size());
-        }
-        return finish_hand();
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            session_->advance(std::span(poses).subspan(i, 1), static_cast<double>(i + 1) / static_cast<double>(poses.size()));
+        return finish_session();
     } catch (...) {
         cancel();
         throw;
@@ -461,8 +297,8 @@ ink::ComposeOptions Painting::compose_options() const {
     return {.gutter = model_->atlas.gutter, .seams = gutter_.get()};
 }
 
-Vec3 Painting::hand_force() const { return hand_ ? hand_->force : Vec3{0}; }
-const brush::TuftState* Painting::tuft() const { return hand_ ? &hand_->state : nullptr; }
+Vec3 Painting::hand_force() const { return session_ ? session_->device_force() : Vec3{0}; }
+const brush::TuftState* Painting::tuft() const { return session_ ? &session_->tuft() : nullptr; }
 
 std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const ProgressFn& progress) {
     std::vector<StrokeReport> reports;

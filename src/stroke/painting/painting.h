@@ -9,54 +9,19 @@
 #include <vector>
 
 #include "brush/preset.h"
-#include "brush/tuft.h"
 #include "ink/canvas.h"
 #include "ink/colour/composite.h"
 #include "ink/colour/pigments.h"
 #include "ink/film/film.h"
-#include "ink/touch/erase.h"
-#include "ink/touch/reservoir.h"
 #include "stroke/hand/lead.h"
 #include "stroke/hand/placement.h"
 #include "stroke/journal/journal.h"
 #include "stroke/painting/model.h"
 #include "stroke/painting/palette.h"
+#include "stroke/session/report.h"
+#include "stroke/session/tuft_in_hand.h"
 
 namespace tuft::stroke {
-
-/// One pose as the hand felt it.
-struct ForceRecord {
-    brush::Pose pose;
-    Vec3 force{0};             ///< newtons, of the surface on the tuft: normal and friction
-    Vec3 hand_force{0};        ///< newtons, for a haptic device: contact::Result::hand_force (gain,
-                               ///< proximity, clamp), which has come through the mass of the wet
-                               ///< hair (brush/tuft.h), so that a tip that slips does not knock
-    Vec3 torque{0};            ///< N·m, of `force` about the ferrule's mouth
-    double moment = 0;         ///< N·m, bending moment at the ferrule
-};
-
-/// A brush between two strokes.
-struct BrushInHand {
-    brush::Tuft tuft;
-    ink::Reservoir reservoir;
-    std::string dipped;        ///< the ink it was last dipped into
-    std::string named;         ///< the ink that its last stroke named
-};
-
-/// What a stroke or a fill did.
-struct StrokeReport {
-    std::uint64_t stroke_id = 0;
-    std::size_t samples = 0;
-    std::size_t stamps = 0;          ///< poses at which the tuft touched
-    std::size_t unconverged = 0;     ///< of them, solved only to the iteration limit
-    double ink_given = 0;            ///< film·m², now on the texels
-    double ink_left = 0;             ///< film·m², in the tuft
-    ink::Amounts removed;            ///< by an eraser, of all films of its layer
-    double nearest = 0;              ///< metres: least distance of tuft and model; 0 when it touched
-    std::vector<ForceRecord> forces; ///< only when asked for
-
-    bool touched() const { return stamps > 0; }
-};
 
 struct PaintingOptions {
     std::string substrate = "porcelain";   ///< preset name; `use_substrate` takes any other
@@ -98,7 +63,8 @@ std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable ta
 /// `Error` for a mask that is not there.
 void keep_to_named_masks(std::vector<Stroke>& strokes, const MaskTable& table, const std::string& name = {});
 
-class PlanRooms;
+class PlanScratchPool;
+class StrokeSession;
 class Painting;
 
 /// Draws what the palette of a painting looks like: all of it, or only these slots anew.
@@ -139,7 +105,7 @@ class Painting {
     void extend(std::span<const brush::Pose> poses);
     StrokeReport end();
     void cancel();
-    bool in_stroke() const { return hand_ != nullptr; }
+    bool in_stroke() const { return session_ != nullptr; }
     /// The bent tuft at the last sample, for drawing it; empty between strokes.
     const brush::TuftState* tuft() const;
     /// What a haptic device shall give at the last sample, newtons; 0 between strokes.
@@ -235,7 +201,6 @@ class Painting {
     friend void refresh(PalettePicture& picture, const Painting& painting, std::span<const std::uint32_t> slots);
 
   private:
-    struct Hand;  // the stroke in work
     struct Undo {
         std::uint64_t stroke_id = 0;
         std::vector<LayerTiles> before;
@@ -249,9 +214,7 @@ class Painting {
     };
 
     StrokeReport draw(const Stroke& stroke, const ProgressFn& progress);
-    void advance(std::span<const brush::Pose> poses);
-    void draw_poses();
-    StrokeReport finish_hand();
+    StrokeReport finish_session();
     void act(const Stroke& entry, const ProgressFn& progress);
     void dry(const Stroke& entry, const ProgressFn& progress);
     void take_back(const std::vector<LayerTiles>& before);
@@ -271,7 +234,7 @@ class Painting {
     void set_layers(LayerTable table);
     void check_layer(const Stroke& entry) const;
     void touch_look(std::uint32_t layer);
-    void begin_hand(Stroke stroke);
+    void begin_session(Stroke stroke);
     void settle(Stroke& entry) const;
     BrushInHand take_up(const Stroke& entry);
     void put_down(std::uint64_t id, const std::string& brush, BrushInHand after, LayerTiles before);
@@ -304,8 +267,8 @@ class Painting {
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
     std::size_t known_pigments_ = 0;                  ///< by the entries of the journal
-    std::unique_ptr<PlanRooms> plan_rooms_;
-    std::unique_ptr<Hand> hand_;
+    std::unique_ptr<PlanScratchPool> plan_scratch_;
+    std::unique_ptr<StrokeSession> session_;          ///< the stroke in work
     std::unique_ptr<ink::WetFilm> film_;              ///< made when something is wet
     std::uint32_t film_mask_ = 0;                     ///< the mask that it keeps within
     std::unique_ptr<atlas::SeamLinks> seams_;         ///< made for it, or for paste

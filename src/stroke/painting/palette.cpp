@@ -71,7 +71,7 @@ Palette::Palette()
       substrate(palette_substrate()),
       params(palette_film()),
       canvas(model.texels.n_slots()),
-      film(std::make_unique<ink::WetFilm>(
-          model.texels, atlas::build_seam_links(*model.mesh, model.atlas, model.texels))) {}
+      seams(atlas::build_seam_links(*model.mesh, model.atlas, model.texels)),
+      film(std::make_unique<ink::WetFilm>(model.texels, seams)) {}
 
 }  // namespace tuft::stroke

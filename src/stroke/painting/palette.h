@@ -35,6 +35,7 @@ struct Palette {
     ink::Substrate substrate;
     ink::FilmParams params;
     ink::Canvas canvas;
+    atlas::SeamLinks seams;
     std::unique_ptr<ink::WetFilm> film;
 
     Palette();

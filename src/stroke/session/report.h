@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "brush/tuft_state.h"
+#include "ink/touch/erase.h"
+
+namespace tuft::stroke {
+
+/// Forces at one pose.
+struct ForceRecord {
+    brush::Pose pose;
+    Vec3 force{0};             ///< newtons, of the surface on the tuft: normal and friction
+    Vec3 hand_force{0};        ///< newtons, for a haptic device: contact::Result::hand_force (gain,
+                               ///< proximity, clamp), which has come through the mass of the wet
+                               ///< hair (brush/tuft.h), so that a tip that slips does not knock
+    Vec3 torque{0};            ///< N·m, of `force` about the ferrule's mouth
+    double moment = 0;         ///< N·m, bending moment at the ferrule
+};
+
+/// What a stroke or a fill did.
+struct StrokeReport {
+    std::uint64_t stroke_id = 0;
+    std::size_t samples = 0;
+    std::size_t stamps = 0;          ///< poses at which the tuft touched
+    std::size_t unconverged = 0;     ///< of them, solved only to the iteration limit
+    double ink_given = 0;            ///< film·m², now on the texels
+    double ink_left = 0;             ///< film·m², in the tuft
+    ink::Amounts removed;            ///< by an eraser, of all films of its layer
+    double nearest = 0;              ///< metres: least distance of tuft and model; 0 when it touched
+    std::vector<ForceRecord> forces; ///< only when asked for
+
+    bool touched() const { return stamps > 0; }
+};
+
+}  // namespace tuft::stroke

@@ -1,0 +1,166 @@
+#include "stroke/session/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/ease.h"
+#include "ink/film/paste.h"
+#include "stroke/hand/placement.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kLeap = 0.5;  // of a patch's size: beyond, single marks would part
+
+// Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
+constexpr double kPasteSpacing = 1e-4, kPasteCell = 4e-5;
+
+bool is_paste(const SessionInput& in) { return in.ink.yield > 0; }
+
+double spacing_of(const SessionInput& in) {
+    return std::max(in.stroke.settings.spacing * in.model.texels.texel_size, is_paste(in) ? kPasteSpacing : 0.0);
+}
+
+HairContactOptions hair_options(const SessionInput& in, bool mixed) {
+    const double cell = 0.5 * in.model.texels.texel_size;
+    return {.cell = is_paste(in) ? std::max(cell, kPasteCell) : cell,
+            .always_closed = in.stroke.layer == kPaletteLayer,
+            .places_nodes = in.wet.film || mixed || is_paste(in),
+            .relief = static_cast<double>(in.substrate.relief)};
+}
+
+}  // namespace
+
+StrokeSession::StrokeSession(SessionInput input)
+    : input_(std::move(input)),
+      mixed_(!input_.stroke.trace.erases && ink::is_mixed(input_.brush.reservoir)),
+      spacing_(spacing_of(input_)),
+      tuft_{.brush = std::move(input_.brush), .ink = input_.ink, .state = {}},
+      path_{.steady = {}, .resampler = Resampler({.step = spacing_, .lever = tuft_.preset().length}), .poses = {}},
+      hair_(hair_options(input_, mixed_)),
+      stencil_(*input_.model.query, input_.stroke.trace),
+      target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.scratch),
+      deposit_(make_deposit()) {
+    if (input_.stroke.settings.contact == "vertices") contact_.options.method = contact::Method::vertices;
+    report_.nearest = std::numeric_limits<double>::infinity();
+}
+
+std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
+    DepositOptions options{.wet = input_.wet};
+    if (input_.stroke.settings.footprint == "plane") options.stamp.mapping = footprint::Mapping::plane;
+    options.progress = [this](std::string_view, double) { return !progress_ || progress_("painting", done_); };
+    if (input_.stroke.trace.erases) return make_eraser(target_, options);
+    if (is_paste(input_)) return make_paste_deposit(target_, options);
+    if (input_.wet.film) return make_wet_deposit(target_, options, mixed_);
+    return mixed_ ? make_mixed_deposit(target_, options) : make_still_deposit(target_, options);
+}
+
+void StrokeSession::extend(std::span<const brush::Pose> poses) {
+    Trace piece{.flat = false};
+    for (const brush::Pose& pose : poses)
+        piece.samples.push_back({.time = pose.time, .position = pose.position, .rotation = pose.rotation});
+    std::vector<TraceSample>& samples = input_.stroke.trace.samples;
+    samples.insert(samples.end(), piece.samples.begin(), piece.samples.end());
+    advance(spatial_poses(piece));  // as a replay will see them, to the bit
+}
+
+void StrokeSession::advance(std::span<const brush::Pose> poses, double done) {
+    for (const brush::Pose& pose : poses) {
+        ++report_.samples;
+        const bool prepared = input_.stroke.trace.flat;
+        path_.resampler.push(prepared ? pose : steady(path_.steady, pose, input_.stroke.settings), path_.poses);
+    }
+    paint_poses();
+    done_ = done;
+}
+
+void StrokeSession::paint_poses() {
+    for (const brush::Pose& pose : path_.poses) step(pose);
+    path_.poses.clear();
+}
+
+// Bends the tuft on the surface at the next pose; ink spreads within the hair meanwhile.
+contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double dt) {
+    tuft_.update_wetness();
+    ink::flow(tuft_.brush.reservoir, dt, hair_.by_hair() ? ink::FlowTo::now : ink::FlowTo::whole_step);
+    // Hair that painted before comes through the air, as it sprang back.
+    if (!path_.started && tuft_.brush.tuft.posed) brush::step(tuft_.brush.tuft, pose, {}, 0);
+    contact::Result contact =
+        contact::step(tuft_.brush.tuft, pose, *input_.model.query, contact_.memory, dt, contact_.options);
+    contact_.device_force = contact.hand_force;
+    path_.time = pose.time;
+    path_.started = true;
+    deposit_->pass_time(dt);
+    tuft_.bend(contact.tuft, pose);
+    report_.nearest = std::min(report_.nearest, contact.distance);
+    if (input_.record_forces)
+        report_.forces.push_back(
+            {pose, contact.tuft.force, contact.hand_force, contact.tuft.moment, contact.tuft.root_moment});
+    return contact;
+}
+
+// The hand's displacement, not the frame's: the patch also grows and shrinks. Hair that lies by itself may swing round.
+// And a patch that leaps by more than it is long, as a tip does that springs back while it is lifted, leaves its line
+// along its own path.
+void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double area, bool continued) const {
+    const double leap =
+        smooth_step(glm::length(moved.hair - moved.hand) / std::sqrt(std::max(area, 1e-30)) / kLeap);
+    stamp.motion.shift = glm::mix(moved.hand, moved.hair, std::max(leap, static_cast<double>(stamp.separation)));
+    // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that its
+    // stroke, which begins where it has been pressed aside, does not reach.
+    stamp.ds = continued ? spacing_ : (1 - static_cast<double>(stamp.separation)) * spacing_;
+}
+
+void StrokeSession::set_ink(Stamp& stamp, double area) const {
+    const ink::StampContact touch{.moment_factor = tuft_.stress(),
+                                  .width = hair_.closed_area() > 0 ? area / std::sqrt(hair_.closed_area()) : std::sqrt(area),
+                                  .area = area * static_cast<double>(deposit_->stamps_per_batch()),
+                                  .owed = deposit_->pending(),
+                                  .by_hair = static_cast<double>(stamp.separation),
+                                  .touch = hair_.cells()};
+    stamp.ink = ink::stamp_deposit(tuft_.brush.reservoir, tuft_.ink, touch, input_.substrate);
+    stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
+}
+
+void StrokeSession::step(const brush::Pose& pose) {
+    report(progress_, "painting", done_);
+    const double dt = path_.started ? pose.time - path_.time : 0.0;
+    const contact::Result contact = bend_on_surface(pose, dt);
+    if (!contact.tuft.touching || contact.triangle == kNone) return motion_.lose_contact();
+    if (!contact.tuft.converged) ++report_.unconverged;
+
+    const bool continued = motion_.touching;
+    const ContactMotion moved = motion_.advance(pose, contact, dt);
+    deposit_->settle(tuft_, hair_.by_hair());
+    Stamp stamp = hair_.make_stamp(tuft_, contact, motion_, dt);
+    stencil_.cut_off(stamp.footprint);
+    if (stamp.footprint.empty()) return motion_.lose_contact();
+    motion_.keep_contact(pose);
+    const double area = covered_area(stamp.footprint);
+    if (!stencil_.empty() && !(area > 0)) return;
+
+    ++report_.stamps;
+    set_motion(stamp, moved, area, continued);
+    set_ink(stamp, area);
+    report_.ink_given += deposit_->deposit(
+        std::move(stamp), tuft_,
+        {.hair = hair_,
+         .motion = motion_,
+         .stress = tuft_.stress(),
+         .normal_force = std::abs(glm::dot(contact.tuft.force, contact.frame.n)),
+         .drain = tuft_.drain(pose, contact.frame.origin, input_.stroke.settings.down)});
+}
+
+SessionResult StrokeSession::finish() {
+    path_.resampler.finish(path_.poses);
+    paint_poses();
+    report_.ink_given += deposit_->finish(tuft_, hair_, input_.seams);
+    report_.ink_left = tuft_.brush.reservoir.remaining();
+    report_.removed = deposit_->removed();
+    if (report_.touched()) report_.nearest = 0;
+    tuft_.brush.named = input_.stroke.trace.ink;
+    return {std::move(report_), std::move(tuft_.brush), target_.take_snapshots()};
+}
+
+}  // namespace tuft::stroke
