@@ -1,12 +1,12 @@
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
 
-#include "atlas/flatten/dissection.h"
 #include "atlas/flatten/flatten.h"
-#include "atlas/flatten/planar_factor.h"
 #include "atlas/flatten/reference.h"
 
 namespace tuft::atlas {
@@ -75,10 +75,12 @@ Part part_of(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
     return part;
 }
 
-/// Stiffness matrix Σ half_cot over edges, rows and columns of the vertices that move; `held` is
+using Stiffness = Eigen::SparseMatrix<double>;
+
+/// Stiffness matrix Σ half_cot over edges, the lower half of the rows and columns of the vertices that move; `held` is
 /// what the others pull with.
-LowerMatrix stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& held) {
-    std::vector<LowerMatrix::Entry> entries;
+Stiffness stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& held) {
+    std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(3 * part.faces.size() + part.n_free);
     std::vector<double> diagonal(part.vertex.size(), 0);
     held.assign(part.n_free, Vec2(0));
@@ -89,31 +91,19 @@ LowerMatrix stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector
             diagonal[i] += w;
             diagonal[j] += w;
             if (j < part.n_free)
-                entries.push_back({j, i, -w});
+                entries.emplace_back(static_cast<int>(j), static_cast<int>(i), -w);
             else if (i < part.n_free)
                 held[i] += w * uv[j];
         }
-    for (std::uint32_t v = 0; v < part.n_free; ++v) entries.push_back({v, v, diagonal[v]});
-    return {part.n_free, entries};
+    for (std::uint32_t v = 0; v < part.n_free; ++v) entries.emplace_back(static_cast<int>(v), static_cast<int>(v), diagonal[v]);
+    Stiffness matrix(static_cast<Eigen::Index>(part.n_free), static_cast<Eigen::Index>(part.n_free));
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
 }
 
-/// Numbers the vertices that move by their order of elimination.
-Dissection renumber(Part& part, std::vector<Vec2>& at) {
-    Dissection dissection = dissect(std::span(at).first(part.n_free), part.faces);
-    std::vector<std::uint32_t> slot(part.vertex.size());
-    std::iota(slot.begin(), slot.end(), 0u);
-    const std::vector<std::uint32_t> vertex = part.vertex;
-    const std::vector<Vec2> before = at;
-    for (std::uint32_t i = 0; i < dissection.order.size(); ++i) {
-        const std::uint32_t v = dissection.order[i];
-        slot[v] = i;
-        part.vertex[i] = vertex[v];
-        at[i] = before[v];
-    }
-    for (auto& face : part.faces)
-        for (std::uint32_t& v : face) v = slot[v];
-    return dissection;
-}
+/// Two right hand sides at a time, the coordinates of the vertices. One thread, no pivoting, the same bits on every CPU.
+using Factor = Eigen::SimplicialLDLT<Stiffness, Eigen::Lower, Eigen::AMDOrdering<int>>;
+using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 struct Rotation {
     double c = 1, s = 0;  // cosine and sine
@@ -173,7 +163,7 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
     Part part = faces.empty() ? whole(chart) : part_of(chart, faces);
     if (part.n_free == 0) return 0;
     const double area = std::max(part.area, 1e-300);
-    PlanarFactor factor;
+    Factor factor;
     std::vector<Vec2> at(part.vertex.size()), rhs(part.vertex.size()), held;
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = uv[part.vertex[v]];
     const auto hand_out = [&] {
@@ -196,13 +186,12 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
         }
         before = energy;
         if (step == 0) {
-            const Dissection dissection = renumber(part, at);
-            if (!factor.compute(stiffness(part, at, held), dissection)) break;
-            fit_rotations(part, at, rhs);
+            factor.compute(stiffness(part, at, held));
+            if (factor.info() != Eigen::Success || !factor.vectorD().allFinite()) break;
         }
         for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += held[v];
-        factor.solve(std::span(rhs).first(part.n_free));
-        std::copy(rhs.begin(), rhs.begin() + static_cast<std::ptrdiff_t>(part.n_free), at.begin());
+        const auto n = static_cast<Eigen::Index>(part.n_free);
+        Eigen::Map<Coordinates>(&at[0].x, n, 2) = factor.solve(Eigen::Map<const Coordinates>(&rhs[0].x, n, 2));
     }
     hand_out();
     return energy;
