@@ -13,4 +13,11 @@ fi
 cmake_options=(-DTUFT_TESTS=ON)
 build all
 say "testing"
-ctest --preset release --parallel "$(nproc)" "$@"
+if [ $# -gt 0 ]; then
+  ctest --preset release --parallel "$(nproc)" "$@"
+else  # the quick ones first, and the others whatever they say
+  failed=0
+  ctest --preset release --parallel "$(nproc)" -L fast || failed=1
+  ctest --preset release --parallel "$(nproc)" -LE fast || failed=1
+  exit $failed
+fi

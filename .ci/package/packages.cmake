@@ -5,7 +5,7 @@ set(TUFT_MAINTAINER "the tuft authors <maintainers@tuft.invalid>" CACHE STRING "
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT ${TUFT_MAINTAINER})
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
@@ -23,14 +23,14 @@ set(CPACK_DEBIAN_TUFT_PACKAGE_NAME tuft)
 set(CPACK_DEBIAN_TUFT_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_TUFT_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TUFT_PACKAGE_SUGGESTS tuft-studio)
-set(CPACK_DEBIAN_TUFT_DESCRIPTION "${PROJECT_DESCRIPTION}
- tuft makes a texture atlas for a product, clay or scan mesh, lets a physically
- bending brush touch the real curved surface, leaves ink in the texels that it
- touched, and writes a textured model. Strokes are kept as motions of the hand,
- and are painted again on other models, at other resolutions, with other inks.
- .
- This package has the program for the command line, brushes, inks, models and
- samples.")
+set(CPACK_DEBIAN_TUFT_DESCRIPTION "ink and a bending hair brush on the surface of 3D models
+tuft makes a texture atlas for a product, clay or scan mesh, lets a physically
+bending brush touch the real curved surface, leaves ink in the texels that it
+touched, and writes a textured model. Strokes are kept as motions of the hand,
+and are painted again on other models, at other resolutions, with other inks.
+
+This package has the program for the command line, brushes, inks, models and
+samples.")
 
 set(CPACK_DEBIAN_STUDIO_PACKAGE_NAME tuft-studio)
 set(CPACK_DEBIAN_STUDIO_PACKAGE_SECTION graphics)
@@ -38,11 +38,11 @@ set(CPACK_DEBIAN_STUDIO_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_STUDIO_PACKAGE_DEPENDS "tuft ${same_version}, libgl1, libegl1")
 set(CPACK_DEBIAN_STUDIO_PACKAGE_RECOMMENDS "libgl1-mesa-dri, fonts-dejavu-core | fonts-noto-core")
 set(CPACK_DEBIAN_STUDIO_PACKAGE_SUGGESTS "fonts-noto-cjk, spacenavd")
-set(CPACK_DEBIAN_STUDIO_DESCRIPTION "${PROJECT_DESCRIPTION} (window)
- tuft-studio opens a 3D model, makes a texture atlas for it, and paints on its
- surface with a physically bending brush, by mouse, pen tablet or SpaceMouse:
- layers, masks, a palette to mix inks on, drawings placed from SVG and InkML,
- and a journal of strokes that can be taken back and painted again.")
+set(CPACK_DEBIAN_STUDIO_DESCRIPTION "paint on 3D models with ink and a bending hair brush
+tuft-studio opens a 3D model, makes a texture atlas for it, and paints on its
+surface with a physically bending brush, by mouse, pen tablet or SpaceMouse:
+layers, masks, a palette to mix inks on, drawings placed from SVG and InkML,
+and a journal of strokes that can be taken back and painted again.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME tuft-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
@@ -50,8 +50,8 @@ string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "tuft ${same_version}" libglm-
   libtbb-dev libfmt-dev libtinygltf-dev libsqlite3-dev libsqlitecpp-dev libzstd-dev libxxhash-dev libpugixml-dev
   libpolyclipping-dev libtomlplusplus-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "cmake, pkg-config")
-set(CPACK_DEBIAN_DEV_DESCRIPTION "${PROJECT_DESCRIPTION} (libraries)
- Headers, static libraries and the CMake package of tuft, for programs that
- unwrap meshes and paint on them from code; with an example of sixty lines.")
+set(CPACK_DEBIAN_DEV_DESCRIPTION "libraries that unwrap 3D models and paint on them
+Headers, static libraries and the CMake package of tuft, for programs that
+unwrap meshes and paint on them from code; with an example of sixty lines.")
 
 include(CPack)

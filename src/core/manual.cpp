@@ -75,7 +75,7 @@ std::string synopsis(const std::string& name, const ManualCommand& command) {
     for (const ManualOption& option : command.options)
         if (option.required && !option.names.empty())
             line += " " + bold(option.names.back()) + " " + italic(option.value);
-    return line + (command.commands.empty() ? " [" : " [") + italic("OPTION") + "]...";
+    return line + " [" + italic("OPTION") + "]...";
 }
 
 std::string heading(const Manual& manual, const std::string& name, const std::string& text) {

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-/// \file What a drawing loses on its way from an SVG file to brush strokes, for telling a person.
+/// \file
+/// What a drawing loses on its way from an SVG file to brush strokes, for telling a person.
 namespace tuft::io {
 
 /// Kinds of loss, in the order in which they are told.

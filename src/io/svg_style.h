@@ -10,7 +10,8 @@ namespace pugi {
 class xml_node;
 }
 
-/// \file Presentation properties of SVG elements: attributes, `style`, style sheets.
+/// \file
+/// Presentation properties of SVG elements: attributes, `style`, style sheets.
 namespace tuft::io {
 
 /// A paint of `fill` or `stroke`.

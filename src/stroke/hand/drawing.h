@@ -7,7 +7,8 @@
 #include "stroke/hand/line_width.h"
 #include "stroke/journal/journal.h"
 
-/// \file A flat drawing on its way from a file onto a model. `tuft paint` and the studio both place drawings
+/// \file
+/// A flat drawing on its way from a file onto a model. `tuft paint` and the studio both place drawings
 /// by these functions, so the same file at the same place gives the same journal.
 namespace tuft::stroke {
 

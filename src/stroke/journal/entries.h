@@ -5,7 +5,8 @@
 
 #include "stroke/journal/journal.h"
 
-/// \file Traces of stroke files as journal entries; used wherever a file is painted.
+/// \file
+/// Traces of stroke files as journal entries; used wherever a file is painted.
 namespace tuft::stroke {
 
 struct EntryOptions {
