@@ -177,6 +177,7 @@ bool close_dialog(Session& s) {
     if (s.files.shown()) s.files.close();
     else if (s.key_asked) s.key_asked.reset();
     else if (s.show_keys) s.show_keys = false;
+    else if (s.show_about) s.show_about = false;
     else if (s.show_misfits) s.show_misfits = false;
     else if (s.shift_stroke) s.shift_stroke = false;
     else if (s.show_settings) s.show_settings = false;

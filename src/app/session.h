@@ -165,7 +165,7 @@ struct Session {
 
     FileDialog files;
     ExportChoice export_choice;
-    bool show_export = false, show_settings = false, show_keys = false;
+    bool show_export = false, show_settings = false, show_keys = false, show_about = false;
     std::string message;
     double message_time = 0;
     bool quit = false;

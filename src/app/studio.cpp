@@ -121,7 +121,7 @@ void Studio::layout(int width, int height) {
 
 bool Studio::dialog_open() const {
     const Session& s = session_;
-    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_misfits || s.files.shown();
+    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_about || s.show_misfits || s.files.shown();
 }
 
 void Studio::panels() {
@@ -151,6 +151,7 @@ void Studio::panels() {
     export_dialog(s);
     settings_dialog(s);
     keys_dialog(s);
+    about_dialog(s);
     misfit_dialog(s);
     if (const auto path = s.files.draw(s.ui)) {
         if (s.files.purpose() == FileDialog::Purpose::open) open_path(s, *path);

@@ -218,6 +218,7 @@ void fill_turned(Canvas& canvas, const Turned& piece, const Pose& pose, const Vi
     }
     const bool top = glm::dot(up, viewer) > 0;
     std::vector<Vec2> end;
+    end.reserve(2 * kShades);
     for (int k = 0; k < 2 * kShades; ++k)
         end.push_back(rim(top ? piece.to : piece.from, top ? piece.to_radius : piece.from_radius,
                           std::numbers::pi * k / kShades));

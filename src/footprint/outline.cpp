@@ -199,6 +199,7 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
     const auto& branches = tuft.branches;
     if (planes.size() == 1) {
         std::vector<NodePlanes> same;
+        same.reserve(branches.size());
         for (const brush::Branch& b : branches) same.emplace_back(b.sections.size(), planes[0]);
         return same;
     }

@@ -9,7 +9,6 @@
 namespace tuft::footprint {
 namespace {
 
-using atlas::kTile;
 using atlas::kTileTexels;
 
 /// Neighbouring words of the picture, read at once from where they lie.

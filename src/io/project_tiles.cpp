@@ -233,6 +233,7 @@ std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::
     }
     for (stroke::LayerCanvas& layer : layers) LayerRows(db, layer.layer).load(layer.canvas, path);
     std::vector<stroke::LayerTexels> texels;
+    texels.reserve(layers.size());
     for (const stroke::LayerCanvas& layer : layers) texels.push_back({layer.layer, &layer.canvas});
     hash = hash_of(texels, layers.front().canvas.pigments());
     return layers;

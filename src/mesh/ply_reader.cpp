@@ -83,7 +83,8 @@ class PlyBody {
         const std::size_t each = is_text() ? 2 : size_of(property.type);
         if (!(n >= 0) || n != std::floor(n))
             fail("the list '" + property.name + "' has an impossible length");
-        if (n > static_cast<double>(left() / each))
+        const std::size_t most = left() / each;
+        if (n > static_cast<double>(most))
             fail("the list '" + property.name + "' is longer than the rest of the file");
         return static_cast<std::size_t>(n);
     }

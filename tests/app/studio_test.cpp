@@ -491,6 +491,13 @@ TEST_F(StudioProgram, WorkGoesOnWhereNothingCanBeKeptAndCanBeSavedElsewhere) {
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }
 
+TEST_F(StudioProgram, AboutNamesTheVersionAndIsClosed) {
+    const Ran ran = studio("click Help\nclick \"About tuft studio\"\nawait label Copy\nclick Copy\nclick Close\nwait 0.2\nnames\n");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(ran.out.find("Copy"), std::string::npos) << ran.out;
+    EXPECT_EQ(studio("quit\n", "--version --headless").out.find("tuft-studio "), 0u);
+}
+
 TEST_F(StudioProgram, WrongUseIsOneLineAndStatusTwo) {
     for (const std::string options : {"--frobnicate", "--size banana", "a.ply b.ply"}) {
         const Ran ran = studio("quit\n", options);

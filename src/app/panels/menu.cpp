@@ -81,6 +81,7 @@ void menu_bar(Session& s) {
         view_menu(s);
         if (s.ui.begin_menu("Help")) {
             if (s.ui.menu_item("Keys and mouse", name_of(s.keys.chord(Act::keys)).c_str())) s.show_keys = true;
+            if (s.ui.menu_item("About tuft studio")) s.show_about = true;
             ImGui::EndMenu();
         }
         if (s.painter) {

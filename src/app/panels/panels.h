@@ -25,6 +25,7 @@ void recovery_dialog(Session& s);
 void export_dialog(Session& s);
 void settings_dialog(Session& s);
 void keys_dialog(Session& s);
+void about_dialog(Session& s);
 /// The palette over the view, where it is shown.
 void palette_panel(Session& s);
 /// The tuft from the side with the surface under it, and what the hand feels.

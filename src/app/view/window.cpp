@@ -45,6 +45,8 @@ class Window : public Display {
         glfwSetWindowPos(window_, x, y);
     }
     void make_window(int width, int height) {
+        glfwWindowHintString(GLFW_X11_CLASS_NAME, "tuft-studio");  // as the desktop file says, for its icon
+        glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "tuft-studio");
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
