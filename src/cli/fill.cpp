@@ -41,7 +41,7 @@ stroke::Stroke entry_of(const FillWork& a, stroke::Painting& painting) {
 
 int run(const FillWork& a) {
     Console console(a.common.quiet);
-    const auto project = open_project(a.project, console);
+    const auto project = open_project(a.project, io::Access::write, console);
     stroke::Painting painting(project->model);
     restore(*project, painting, console);
     std::vector<stroke::Stroke> entries =

@@ -25,7 +25,7 @@ int inspect_point(const Inspect& a) {
     check_extension(a.save_ink, {".toml"});
     check_output(a.save_ink);
     Console console(a.common.quiet);
-    const auto project = open_project(a.file, console);
+    const auto project = open_project(a.file, io::Access::read, console);
     stroke::Painting painting(project->model);
     restore(*project, painting, console);
     console.clear();
@@ -72,7 +72,8 @@ int inspect_point(const Inspect& a) {
 
 int inspect_project(const Inspect& a) {
     if (!a.at_mm.empty()) return inspect_point(a);
-    const io::Project project = io::Project::open(a.file);
+    Console console(a.common.quiet);
+    const io::Project project = io::Project::open(a.file, open_options(io::Access::read, console));
     const io::ProjectModel model = project.model();
     const std::vector<stroke::Stroke> strokes = project.strokes();
     const stroke::LayerTable layers = stroke::layers_after(strokes);

@@ -44,7 +44,8 @@ stroke::LayerEdit edit_of(const LayerWork& a, const stroke::LayerTable& table) {
 }  // namespace
 
 int run(const LayerWork& a) {
-    io::Project project = io::Project::open(a.project);
+    Console console(a.common.quiet);
+    io::Project project = io::Project::open(a.project, open_options(io::Access::write, console));
     const std::vector<stroke::Stroke> entries = project.strokes();
     stroke::LayerTable table = stroke::layers_after(entries);
     stroke::Stroke entry = stroke::action_after(entries, stroke::Action::layer);

@@ -80,7 +80,7 @@ stroke::Mask mask_of(const MaskWork& a, const stroke::MaskTable& table, const io
 
 int run(const MaskWork& a) {
     Console console(a.common.quiet);
-    io::Project project = io::Project::open(a.project);
+    io::Project project = io::Project::open(a.project, open_options(io::Access::write, console));
     const std::vector<stroke::Stroke> entries = project.strokes();
     stroke::MaskTable table = stroke::masks_after(entries);
     stroke::Stroke entry = stroke::action_after(entries, stroke::Action::mask);
@@ -97,7 +97,7 @@ int run(const MaskWork& a) {
     double covered = 0;
     if (!a.remove) {
         // Looked at before it is kept: groups that are not there, a lasso beside the model.
-        const auto opened = open_project(a.project, console);
+        const auto opened = open_project(a.project, io::Access::read, console);
         const stroke::MaskTexels texels = stroke::evaluate(entry.mask_edit.mask, table, opened->model);
         for (std::uint32_t slot = 0; slot < opened->model.texels.n_slots(); ++slot)
             for (int t = 0; t < atlas::kTileTexels; ++t)

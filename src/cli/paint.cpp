@@ -64,9 +64,12 @@ int run(const Paint& a) {
     Console console(a.common.quiet);
     const auto start = Clock::now();
 
-    std::vector<stroke::Stroke> strokes = load_strokes(a, console);
+    std::error_code no_matter;
     const bool goes_on = is_project_file(a.model);
-    const std::unique_ptr<OpenProject> before = goes_on ? open_project(a.model, console) : nullptr;
+    const bool in_place = goes_on && (a.project.empty() || std::filesystem::equivalent(a.project, a.model, no_matter));
+    const auto reserved = in_place ? std::nullopt : reserve(a.project, console);
+    const auto before = goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
+    std::vector<stroke::Stroke> strokes = load_strokes(a, console);
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, a.surface, console);
     const stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;
@@ -85,8 +88,7 @@ int run(const Paint& a) {
     const double prepared = seconds_since(start);
     find_presets(painting, strokes);
     std::optional<io::Project> project;
-    std::error_code no_matter;
-    if (before && (a.project.empty() || std::filesystem::equivalent(a.project, a.model, no_matter))) {
+    if (in_place) {
         project = std::move(before->file);
         put_presets(*project, painting, strokes);
     } else if (!a.project.empty()) {

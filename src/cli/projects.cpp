@@ -70,7 +70,7 @@ std::string map_name(const Export& a) {
 }
 
 int write_strokes(const Export& a, Console& console) {
-    const std::vector<stroke::Stroke> entries = io::Project::open(a.project).strokes();
+    const std::vector<stroke::Stroke> entries = io::Project::open(a.project, open_options(io::Access::read, console)).strokes();
     const stroke::JournalTraces written = stroke::traces_of(entries);
     if (written.traces.empty()) throw Error(a.project.string(), "there are no strokes to write");
     io::write_inkml(a.output, written.traces, a.project.stem().string());
@@ -94,7 +94,8 @@ int run(const Replay& a) {
     Outputs outputs{a.out_project, a.exported, a.preview, a.view, {}};
     check_outputs(outputs);
     Console console(a.common.quiet);
-    const auto project = open_project(a.project, console);
+    const auto reserved = reserve(a.out_project, console);
+    const auto project = open_project(a.project, io::Access::read, console);
     outputs.frame = a.model.empty() ? project->frame : frame_of(a.surface.unit, a.surface.up, project->frame);
     std::vector<stroke::Stroke> strokes = project->file.strokes();
     const stroke::Model model = replay_model(a, *project, console);
@@ -149,7 +150,7 @@ int run(const Export& a) {
         throw UsageError("--bits: only a base-colour.png has a choice; other maps have 16 bits in PNG and floats in EXR");
     Console console(a.common.quiet);
     if (a.output.extension() == ".inkml") return write_strokes(a, console);
-    const auto project = open_project(a.project, console);
+    const auto project = open_project(a.project, io::Access::read, console);
     stroke::Painting painting(project->model);
     restore(*project, painting, console);
     show_layers(painting, a.layers);
@@ -179,7 +180,7 @@ int run(const Render& a) {
     stroke::Model bare;
     const stroke::Model* model = &bare;
     if (is_project_file(a.file)) {
-        project = open_project(a.file, console);
+        project = open_project(a.file, io::Access::read, console);
         model = &project->model;
         painting = std::make_unique<stroke::Painting>(*model);
         restore(*project, *painting, console);

@@ -282,8 +282,18 @@ void show_layers(stroke::Painting& painting, const std::vector<std::string>& nam
     if (!ids.empty()) painting.show_only(std::move(ids));
 }
 
-std::unique_ptr<OpenProject> open_project(const fs::path& path, Console& console) {
-    auto opened = std::make_unique<OpenProject>(OpenProject{.file = io::Project::open(path)});
+io::OpenOptions open_options(io::Access access, Console& console) {
+    return {.access = access, .patience = std::chrono::seconds(2), .progress = console.progress()};
+}
+
+std::optional<io::ProjectLock> reserve(const fs::path& path, Console& console) {
+    if (path.empty()) return std::nullopt;
+    const io::OpenOptions options = open_options(io::Access::write, console);
+    return io::ProjectLock(path, options.patience, options.progress);
+}
+
+std::unique_ptr<OpenProject> open_project(const fs::path& path, io::Access access, Console& console) {
+    auto opened = std::make_unique<OpenProject>(OpenProject{.file = io::Project::open(path, open_options(access, console))});
     io::ProjectModel stored = opened->file.model();
     opened->source = stored.source;
     opened->frame = stored.frame;

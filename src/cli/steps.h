@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -82,7 +83,12 @@ struct OpenProject {
     stroke::Model model;
 };
 bool is_project_file(const std::filesystem::path& path);
-std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, Console& console);
+/// How this program opens projects: another one that changes it may end within two seconds; Ctrl-C is heard.
+io::OpenOptions open_options(io::Access access, Console& console);
+/// The right to write `path`, held while it lives, so that nobody is told after long work that
+/// another program has it; empty paths are fine.
+std::optional<io::ProjectLock> reserve(const std::filesystem::path& path, Console& console);
+std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, io::Access access, Console& console);
 /// Shows the painting as the project and then the command line say; notes pigments that
 /// other inks share.
 void show_looks(const io::Project& project, stroke::Painting& painting, const Look& look, Console& console);

@@ -4,12 +4,14 @@
 #include <sqlite3.h>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <mutex>
 
 #include "core/files.h"
 #include "core/memory.h"
@@ -20,24 +22,66 @@ namespace fs = std::filesystem;
 namespace tuft::io {
 namespace {
 
-constexpr int kBusyMilliseconds = 2000;
+/// What tells one state of a file from another at a glance.
+struct FileStamp {
+    std::uintmax_t size = 0;
+    std::int64_t seconds = 0, nanoseconds = 0;  ///< of its last change
 
-constexpr const char* kSchema = R"(
-CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE model(id INTEGER PRIMARY KEY CHECK(id = 1), source TEXT NOT NULL, unit TEXT NOT NULL,
-  hash INTEGER NOT NULL, vertices INTEGER NOT NULL, triangles INTEGER NOT NULL, groups TEXT NOT NULL,
-  atlas_size INTEGER NOT NULL, gutter INTEGER NOT NULL, texel_size REAL NOT NULL,
-  charts INTEGER NOT NULL, uvs_from_file INTEGER NOT NULL);
-CREATE TABLE arrays(owner TEXT NOT NULL, name TEXT NOT NULL, count INTEGER NOT NULL, data BLOB NOT NULL,
-  PRIMARY KEY(owner, name));
-CREATE TABLE presets(kind TEXT NOT NULL, name TEXT NOT NULL, toml TEXT NOT NULL, PRIMARY KEY(kind, name));
-CREATE TABLE strokes(ordinal INTEGER PRIMARY KEY AUTOINCREMENT, id INTEGER NOT NULL UNIQUE,
-  brush TEXT NOT NULL, ink TEXT NOT NULL, seed INTEGER NOT NULL, label TEXT NOT NULL,
-  settings TEXT NOT NULL, hidden INTEGER NOT NULL, flat INTEGER NOT NULL, laying TEXT NOT NULL,
-  placement BLOB NOT NULL, sample_count INTEGER NOT NULL, samples BLOB NOT NULL);
-CREATE TABLE pigments(plane INTEGER PRIMARY KEY, name TEXT NOT NULL, toml TEXT NOT NULL);
-CREATE TABLE tiles(slot INTEGER PRIMARY KEY, planes INTEGER NOT NULL, amounts BLOB NOT NULL);
-)";
+    bool operator==(const FileStamp&) const = default;
+};
+
+FileStamp stamp_of(const fs::path& path) {
+    struct stat s {};
+    if (::stat(path.c_str(), &s) != 0) return {};
+    return {static_cast<std::uintmax_t>(s.st_size), s.st_mtim.tv_sec, s.st_mtim.tv_nsec};
+}
+
+/// The projects that this process has open, by device and inode. Whoever closes such a file in another
+/// way than SQLite does takes SQLite's locks off it (POSIX locks are the process's).
+class OpenFile {
+  public:
+    explicit OpenFile(const fs::path& path) : id_(id_of(path)) {
+        const std::lock_guard lock(mutex());
+        ++all()[id_];
+    }
+    ~OpenFile() {
+        const std::lock_guard lock(mutex());
+        if (--all()[id_] == 0) all().erase(id_);
+    }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+
+    /// Another file has its name now.
+    bool replaced(const fs::path& path) const {
+        const Id now = id_of(path);
+        return now != Id{} && now != id_;
+    }
+    static bool is_open(const fs::path& path) {
+        const std::lock_guard lock(mutex());
+        return all().contains(id_of(path));
+    }
+
+  private:
+    using Id = std::pair<dev_t, ino_t>;
+    static Id id_of(const fs::path& path) {
+        struct stat s {};
+        return ::stat(path.c_str(), &s) == 0 ? Id{s.st_dev, s.st_ino} : Id{};
+    }
+    static std::mutex& mutex() {
+        static std::mutex m;
+        return m;
+    }
+    static std::map<Id, int>& all() {
+        static std::map<Id, int> files;
+        return files;
+    }
+
+    Id id_;
+};
+
+constexpr int kBusyMilliseconds = 2000;
+constexpr std::size_t kMostMeta = 1000, kMostName = 4096, kMostPreset = std::size_t{1} << 20;  // bytes
+constexpr std::size_t kMostPresets = 10'000;
 
 /// Whether the project was moved away under our hands, which SQLite calls many names; "" when it is there.
 std::string why_gone(const std::filesystem::path& path) {
@@ -75,6 +119,8 @@ std::string why_not_opened(const std::filesystem::path& path) {
             throw Error(name, std::string("cannot be read or written: ") + e.what());
         case SQLITE_CANTOPEN:
             throw Error(name, why_not_opened(path));
+        case SQLITE_INTERRUPT:
+            throw Cancelled();
         case SQLITE_NOMEM:
             throw Error(name, "does not fit into memory");
         case SQLITE_CONSTRAINT:
@@ -102,26 +148,30 @@ std::uint32_t big_endian(const char* bytes) {
 
 struct Header {
     bool sqlite = false;
+    bool own_kind = false;  ///< UTF-8 with a rollback journal, as all projects are
     std::uint32_t application = 0, version = 0;
 };
 
 /// The head of a SQLite file, read without SQLite so that nothing of a foreign file runs.
 Header header_of(const fs::path& path) {
+    if (OpenFile::is_open(path)) return {.sqlite = true, .own_kind = true, .application = kApplicationId, .version = 0};
+    std::error_code ec;
+    if (!fs::is_regular_file(path, ec)) return {};
     std::ifstream file(path, std::ios::binary);
     char head[100] = {};
     file.read(head, sizeof head);
     if (file.gcount() != sizeof head || std::memcmp(head, "SQLite format 3", 16) != 0) return {};
-    return {.sqlite = true, .application = big_endian(head + 68), .version = big_endian(head + 60)};
+    return {.sqlite = true,
+            .own_kind = head[18] == 1 && head[19] == 1 && big_endian(head + 56) == 1,
+            .application = big_endian(head + 68),
+            .version = big_endian(head + 60)};
 }
 
-void set_pragmas(SQLite::Database& db) {
+void set_pragmas(SQLite::Database& db, Access access) {
     db.setBusyTimeout(kBusyMilliseconds);
-    db.exec(
-        "PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY;");
-    sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-    sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+    if (access == Access::read) db.exec("PRAGMA query_only = ON;");
     // The rollback journal keeps a project one file; each commit reaches the disk.
-    db.exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL; PRAGMA foreign_keys = OFF;");
+    else db.exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL; PRAGMA foreign_keys = OFF;");
 }
 
 void put_meta(SQLite::Database& db, const char* key, const std::string& value) {
@@ -134,7 +184,7 @@ void put_meta(SQLite::Database& db, const char* key, const std::string& value) {
 std::string get_meta(SQLite::Database& db, const char* key) {
     SQLite::Statement s(db, "SELECT value FROM meta WHERE key = ?");
     s.bind(1, key);
-    return s.executeStep() ? s.getColumn(0).getString() : "";
+    return s.executeStep() ? s.getColumn(0).getString().substr(0, kMostMeta) : "";
 }
 
 void put_preset(SQLite::Database& db, const char* kind, const PresetText& preset) {
@@ -145,12 +195,15 @@ void put_preset(SQLite::Database& db, const char* kind, const PresetText& preset
     s.exec();
 }
 
-std::vector<PresetText> get_presets(SQLite::Database& db, const char* kind) {
+std::vector<PresetText> get_presets(SQLite::Database& db, const fs::path& path, const char* kind) {
     SQLite::Statement s(db, "SELECT name, toml FROM presets WHERE kind = ? ORDER BY name");
     s.bind(1, kind);
     std::vector<PresetText> presets;
-    while (s.executeStep())
-        presets.emplace_back(s.getColumn(0).getString(), s.getColumn(1).getString());
+    while (s.executeStep()) {
+        if (presets.size() >= kMostPresets) damaged(path, std::string("it has too many presets of the kind '") + kind + "'");
+        presets.emplace_back(text_of(s.getColumn(0), kMostName, path, "the name of a preset"),
+                             text_of(s.getColumn(1), kMostPreset, path, "a preset"));
+    }
     return presets;
 }
 
@@ -162,6 +215,7 @@ void settle_old_journal(const fs::path& path) {
     if (!fs::exists(journal, ec)) return;
     try {
         SQLite::Database old(path.string(), SQLite::OPEN_READWRITE);
+        restrain(old);
         old.execAndGet("SELECT count(*) FROM sqlite_master");
     } catch (const SQLite::Exception&) {
         // Not a database any more: the journal is of no use to anybody.
@@ -171,24 +225,45 @@ void settle_old_journal(const fs::path& path) {
 
 }  // namespace
 
+ChangedOutside::ChangedOutside(const fs::path& project)
+    : Error(project.string(), "another program changed it meanwhile; nothing was written over that: do it again") {}
+
 struct Project::State {
     fs::path path;
+    std::optional<ProjectLock> lock;  ///< none: to be read only
     SQLite::Database db;
+    mutable Overseer overseer;
+    OpenFile file;
+    std::int64_t version = 0;         ///< `PRAGMA data_version`, which other connections change
+    mutable FileStamp seen;
 
-    explicit State(const fs::path& p) : path(p), db(p.string(), SQLite::OPEN_READWRITE) {}
+    State(const fs::path& p, std::optional<ProjectLock> l)
+        : path(p), lock(std::move(l)), db(p.string(), SQLite::OPEN_READWRITE), overseer(db.getHandle()), file(p), seen(stamp_of(p)) {}
 
+    /// `hears`: whoever listens may stop it.
     template <class Fn>
-    auto run(Fn&& fn) {
-        return guarded(path, [&] { return fn(db); });
+    auto run(Fn&& fn, bool hears = false) {
+        overseer.begin(seen.size, hears);
+        try {
+            return guarded(path, [&] { return fn(db); });
+        } catch (const Cancelled&) {
+            if (overseer.spent()) damaged(path, "reading it does not come to an end");
+            throw;
+        }
     }
+    std::int64_t data_version() { return db.execAndGet("PRAGMA data_version").getInt64(); }
     /// All of `fn` or nothing.
     template <class Fn>
     void change(Fn&& fn) {
-        guarded(path, [&] {
-            SQLite::Transaction transaction(db);
+        if (!lock) throw Error(path.string(), "was opened to be read only");
+        if (file.replaced(path)) throw ChangedOutside(path);
+        run([&](SQLite::Database&) {
+            SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+            if (data_version() != version) throw ChangedOutside(path);
             fn(db);
             transaction.commit();
         });
+        seen = stamp_of(path);
     }
 };
 
@@ -197,7 +272,24 @@ Project::~Project() = default;
 Project::Project(Project&&) noexcept = default;
 Project& Project::operator=(Project&&) noexcept = default;
 
-Project Project::create(const fs::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill) {
+Project Project::open_file(const fs::path& path, std::optional<ProjectLock> lock, const ProgressFn& progress) {
+    auto state = guarded(path, [&] { return std::make_unique<State>(path, std::move(lock)); });
+    state->overseer.listen(progress);
+    state->run(
+        [&](SQLite::Database& db) {
+            restrain(db);
+            check_schema(db, path);
+            set_pragmas(db, state->lock ? Access::write : Access::read);
+            const std::string verdict = state->overseer.check_pages(db);
+            if (verdict != "ok") damaged(path, verdict);
+            state->version = state->data_version();
+        },
+        true);
+    return Project(std::move(state));
+}
+
+Project Project::create(const fs::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill, const OpenOptions& options) {
+    const ProjectLock lock(path, options.patience, options.progress);
     write_atomically(path, [&](const fs::path& temporary) {
         std::error_code ec;
         fs::remove(temporary, ec);
@@ -209,27 +301,28 @@ Project Project::create(const fs::path& path, const ModelToWrite& model, const s
             db.exec("PRAGMA application_id = " + std::to_string(kApplicationId) +
                     "; PRAGMA user_version = " + std::to_string(kFirstFormat) + ";");
             SQLite::Transaction transaction(db);
-            db.exec(kSchema);
+            create_tables(db);
             put_meta(db, "written_by", std::string("tuft ") + TUFT_VERSION);
             put_preset(db, "substrate", {"", model.substrate});
             store_model(db, model);
             transaction.commit();
         });
         if (fill) {
-            Project filled = open(temporary);
+            Project filled = open_file(temporary, lock, {});
             filled.state_->path = path;  // for messages
             fill(filled);
         }
         settle_old_journal(path);
     });
     release_free_memory();
-    return open(path);
+    return open(path, options);
 }
 
-Project Project::open(const fs::path& path) {
+Project Project::open(const fs::path& path, const OpenOptions& options) {
     std::error_code ec;
     if (!fs::exists(path, ec)) throw Error(path.string(), "no such file");
     if (fs::is_directory(path, ec)) throw Error(path.string(), "is a folder, not a project");
+    if (!fs::is_regular_file(path, ec)) throw Error(path.string(), "is not a regular file");
     if (::access(path.c_str(), R_OK) != 0) throw Error(path.string(), "may not be read; change its permissions");
     const Header header = header_of(path);
     if (!header.sqlite) throw Error(path.string(), "is not a tuft project");
@@ -240,12 +333,33 @@ Project Project::open(const fs::path& path) {
                                        std::to_string(header.version) + ", this one reads up to " +
                                        std::to_string(kProjectFormat) +
                                        "); update tuft to open it");
-    return guarded(path, [&] {
-        auto state = std::make_unique<State>(path);
-        set_pragmas(state->db);
-        const std::string verdict = state->db.execAndGet("PRAGMA quick_check(1)").getString();
-        if (verdict != "ok") damaged(path, verdict.substr(0, verdict.find('\n')));
-        return Project(std::move(state));
+    if (!header.own_kind) damaged(path, "it is kept in another way than tuft keeps projects");
+    std::optional<ProjectLock> lock;
+    if (options.access == Access::write) {
+        if (::access(path.c_str(), W_OK) != 0) throw Error(path.string(), "cannot be written: it is read-only");
+        lock.emplace(path, options.patience, options.progress);
+    }
+    return open_file(path, std::move(lock), options.progress);
+}
+
+void Project::listen(ProgressFn progress) {
+    state_->overseer.listen(std::move(progress));
+}
+
+bool Project::changed_outside() const {
+    if (state_->file.replaced(state_->path)) return true;
+    const FileStamp now = stamp_of(state_->path);
+    if (now == state_->seen || now == FileStamp{}) return false;
+    if (state_->run([&](SQLite::Database&) { return state_->data_version(); }) != state_->version) return true;
+    state_->seen = now;
+    return false;
+}
+
+void Project::read_together(const std::function<void()>& read) const {
+    guarded(state_->path, [&] {
+        SQLite::Transaction transaction(state_->db);
+        read();
+        transaction.commit();
     });
 }
 
@@ -263,12 +377,14 @@ std::string Project::written_by() const {
 }
 
 ProjectModel Project::model() const {
-    return state_->run([&](SQLite::Database& db) {
-        ProjectModel model = load_model(db, state_->path);
-        for (const PresetText& preset : get_presets(db, "substrate"))
-            model.substrate = preset.second;
-        return model;
-    });
+    return state_->run(
+        [&](SQLite::Database& db) {
+            ProjectModel model = load_model(db, state_->path, state_->overseer.progress());
+            for (const PresetText& preset : get_presets(db, state_->path, "substrate"))
+                model.substrate = preset.second;
+            return model;
+        },
+        true);
 }
 
 std::uint64_t Project::model_hash() const {
@@ -292,11 +408,11 @@ void Project::put_substrate(const std::string& toml) {
 }
 
 std::vector<PresetText> Project::brushes() const {
-    return state_->run([](SQLite::Database& db) { return get_presets(db, "brush"); });
+    return state_->run([&](SQLite::Database& db) { return get_presets(db, state_->path, "brush"); });
 }
 
 std::vector<PresetText> Project::inks() const {
-    return state_->run([](SQLite::Database& db) { return get_presets(db, "ink"); });
+    return state_->run([&](SQLite::Database& db) { return get_presets(db, state_->path, "ink"); });
 }
 
 void Project::put_recolour(const PresetText& preset) {
@@ -304,7 +420,7 @@ void Project::put_recolour(const PresetText& preset) {
 }
 
 std::vector<PresetText> Project::recolours() const {
-    return state_->run([](SQLite::Database& db) { return get_presets(db, "recolour"); });
+    return state_->run([&](SQLite::Database& db) { return get_presets(db, state_->path, "recolour"); });
 }
 
 void Project::put_shown_substrate(const std::string& toml) {
@@ -312,8 +428,8 @@ void Project::put_shown_substrate(const std::string& toml) {
 }
 
 std::string Project::shown_substrate() const {
-    return state_->run([](SQLite::Database& db) {
-        const std::vector<PresetText> stored = get_presets(db, "shown substrate");
+    return state_->run([&](SQLite::Database& db) {
+        const std::vector<PresetText> stored = get_presets(db, state_->path, "shown substrate");
         return stored.empty() ? std::string() : stored.front().second;
     });
 }
@@ -357,7 +473,7 @@ void Project::remove(std::uint64_t stroke_id) {
 }
 
 std::vector<stroke::Stroke> Project::strokes() const {
-    return state_->run([&](SQLite::Database& db) { return load_strokes(db, state_->path); });
+    return state_->run([&](SQLite::Database& db) { return load_strokes(db, state_->path, state_->overseer.progress()); }, true);
 }
 
 std::size_t Project::n_strokes() const {
@@ -381,16 +497,17 @@ void Project::save_canvas(const ink::Canvas& canvas, std::uint64_t stroke_id) {
 }
 
 std::optional<SavedCanvases> Project::load_canvases(std::size_t n_slots) const {
-    return state_->run([&](SQLite::Database& db) -> std::optional<SavedCanvases> {
+    const auto load = [&](SQLite::Database& db) -> std::optional<SavedCanvases> {
         if (get_meta(db, "tiles_slots") != std::to_string(n_slots)) return std::nullopt;
         SavedCanvases saved;
         saved.stroke_id = std::strtoull(get_meta(db, "tiles_stroke").c_str(), nullptr, 10);
         std::uint64_t hash = 0;
-        saved.layers = tuft::io::load_canvases(db, state_->path, n_slots, hash);
+        saved.layers = tuft::io::load_canvases(db, state_->path, n_slots, hash, state_->overseer.progress());
         // What does not add up is made again from the strokes.
         if (get_meta(db, "tiles_hash") != std::to_string(hash)) return std::nullopt;
         return saved;
-    });
+    };
+    return state_->run(load, true);
 }
 
 std::optional<SavedCanvas> Project::load_canvas(std::size_t n_slots) const {

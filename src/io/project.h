@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -11,8 +12,10 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "core/progress.h"
 #include "core/units.h"
 #include "ink/canvas.h"
+#include "io/project_lock.h"
 #include "mesh/triangle_mesh.h"
 #include "stroke/journal/journal.h"
 
@@ -64,23 +67,51 @@ struct SavedCanvases {
     std::uint64_t stroke_id = 0;
 };
 
+/// What a project is opened for. One process at a time may write it (`ProjectLock`); any number read
+/// it meanwhile, and see each change once it is whole.
+enum class Access { read, write };
+
+struct OpenOptions {
+    Access access = Access::write;
+    std::chrono::milliseconds patience{0};  ///< to wait for another program to let go of it
+    ProgressFn progress = {};  ///< asked about every tenth of a second, also by the methods, while they work; see `listen`
+};
+
+/// Another program changed the project, or put another file in its place, since it was opened here:
+/// nothing is written on top of that.
+class ChangedOutside : public Error {
+  public:
+    explicit ChangedOutside(const std::filesystem::path& project);
+};
+
 /// An open project. Every change is one committed transaction: a kill at any moment loses
 /// at most the change in hand, and after any end the project is the one file (a file
 /// NAME-journal beside it after a kill is needed by the next opening). Methods throw
-/// `Error` naming the file when it is damaged or the disk is full. One thread at a time.
+/// `Error` naming the file when it is damaged or the disk is full, and those that change it
+/// `ChangedOutside`. A file may come from anywhere: nothing that it brings is run, sizes are
+/// checked before memory is taken. One thread at a time.
 class Project {
   public:
     /// Makes a new project in place of any file of that name, complete with what `fill` puts into
-    /// it, or not at all: on any error, or a kill, what was there stays.
-    static Project create(const std::filesystem::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill = {});
+    /// it, or not at all: on any error, or a kill, what was there stays. Throws `ProjectInUse` where
+    /// another program has the project of that name.
+    static Project create(const std::filesystem::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill = {},
+                          const OpenOptions& options = {});
     /// Opens a project. Throws `Error` for a file that is not a tuft project, is from a
-    /// newer version, or is damaged (all pages are checked).
-    static Project open(const std::filesystem::path& path);
+    /// newer version, or is damaged (all pages are checked); `ProjectInUse`; `Cancelled`.
+    static Project open(const std::filesystem::path& path, const OpenOptions& options = {});
     ~Project();
     Project(Project&&) noexcept;
     Project& operator=(Project&&) noexcept;
 
     const std::filesystem::path& path() const;
+    /// Who is asked from now on whether to go on; nobody: empty.
+    void listen(ProgressFn progress);
+    /// Whether another program changed the file since it was opened, or another file is in its place.
+    /// Looks at the file's time first: about a microsecond while nothing changes.
+    bool changed_outside() const;
+    /// Runs `read` on one state of the file, whoever writes meanwhile.
+    void read_together(const std::function<void()>& read) const;
     int format() const;
     std::string written_by() const;  ///< program and version that made it
 
@@ -120,6 +151,7 @@ class Project {
   private:
     struct State;
     explicit Project(std::unique_ptr<State> state);
+    static Project open_file(const std::filesystem::path& path, std::optional<ProjectLock> lock, const ProgressFn& progress);
     std::unique_ptr<State> state_;
 };
 

@@ -8,10 +8,7 @@
 #include "core/error.h"
 #include "io/packing.h"
 #include "io/project.h"
-
-namespace SQLite {
-class Database;
-}
+#include "io/project_schema.h"
 
 /// The tables of a project; included by project*.cpp only.
 namespace tuft::io {
@@ -19,6 +16,7 @@ namespace tuft::io {
 inline constexpr std::uint32_t kApplicationId = 0x54554654;  // "TUFT"
 inline constexpr std::int64_t kMaxTriangles = std::int64_t{1} << 28;
 inline constexpr std::int64_t kMaxSamples = std::int64_t{1} << 25;  ///< in one stroke
+inline constexpr std::int64_t kMaxEntries = 1'000'000;              ///< of a journal
 
 [[noreturn]] inline void damaged(const std::filesystem::path& path, const std::string& what) {
     throw Error(path.string(), "the project is damaged: " + what);
@@ -55,16 +53,16 @@ std::vector<T> get_array(SQLite::Database& db, const std::filesystem::path& path
 
 /// Model and atlas (project_model.cpp). `load_model` checks sizes, indices and numbers.
 void store_model(SQLite::Database& db, const ModelToWrite& model);
-ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path);
+ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path, const ProgressFn& progress);
 std::uint64_t hash_of(const mesh::TriangleMesh& mesh);
 /// Its materials with their pictures as they were found (project_materials.cpp); groups come first.
 void store_materials(SQLite::Database& db, const mesh::TriangleMesh& mesh);
 void load_materials(SQLite::Database& db, const std::filesystem::path& path, mesh::TriangleMesh& mesh);
 
-/// Strokes (project_strokes.cpp). The caller opens the transaction.
+/// Strokes (project_strokes.cpp). The caller opens the transaction. `load_strokes` throws `Cancelled`.
 void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
                    std::span<const stroke::Stroke> strokes);
-std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path);
+std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path, const ProgressFn& progress);
 
 /// Texels (project_tiles.cpp). The caller opens the transaction.
 struct StoredTexels {
@@ -74,7 +72,7 @@ struct StoredTexels {
 StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerTexels> layers);
 /// The first layer, also when it has no texels, and the others that have any.
 std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::filesystem::path& path,
-                                               std::size_t n_slots, std::uint64_t& hash);
+                                               std::size_t n_slots, std::uint64_t& hash, const ProgressFn& progress);
 
 /// Marks the project as one of `format`, unless it is of a higher one.
 void raise_format(SQLite::Database& db, int format);

@@ -5,12 +5,14 @@
 
 #include "atlas/flatten/fault.h"
 #include "core/hash.h"
+#include "core/shallow_json.h"
 #include "core/units.h"
 #include "io/project_db.h"
 
 namespace tuft::io {
 namespace {
 
+constexpr std::size_t kMostSource = 8192, kMostGroupText = std::size_t{1} << 26;  // bytes
 constexpr Packing kXyz{.element = 4, .lag = 3};
 constexpr Packing kUv{.element = 4, .lag = 2};
 constexpr Packing kSingle{.element = 4, .lag = 1};
@@ -83,6 +85,7 @@ bool has_array(SQLite::Database& db, const std::filesystem::path& path, const ch
     const SQLite::Column blob = select.getColumn(1);
     check_packed(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), count * size,
                  path.string() + ": the project is damaged: array '" + name + "'");
+    check_memory(path, 2 * static_cast<std::uintmax_t>(count) * size);  // it, and it before its bytes are in order
     return true;
 }
 
@@ -139,14 +142,14 @@ void store_model(SQLite::Database& db, const ModelToWrite& model) {
     put_array(db, "atlas", "udims", a.udims, kSingle);
 }
 
-ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path) {
+ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path, const ProgressFn& progress) {
     SQLite::Statement row(db,
                           "SELECT source, unit, vertices, triangles, groups, atlas_size, gutter, "
                           "texel_size, charts, uvs_from_file FROM model WHERE id = 1");
     if (!row.executeStep()) damaged(path, "it has no model");
     ProjectModel model;
-    model.source = row.getColumn(0).getString();
-    model.frame.unit = row.getColumn(1).getString();
+    model.source = text_of(row.getColumn(0), kMostSource, path, "the model's file name");
+    model.frame.unit = text_of(row.getColumn(1), kMostSource, path, "the model's unit");
     const std::int64_t vertices = row.getColumn(2).getInt64(),
                        triangles = row.getColumn(3).getInt64();
     if (vertices < 1 || vertices > 3 * kMaxTriangles || triangles < 1 || triangles > kMaxTriangles)
@@ -155,7 +158,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
     mesh::TriangleMesh& m = model.mesh;
     try {
         m.group_names =
-            nlohmann::json::parse(row.getColumn(4).getString()).get<std::vector<std::string>>();
+            parse_shallow_json(text_of(row.getColumn(4), kMostGroupText, path, "the list of groups")).get<std::vector<std::string>>();
     } catch (const nlohmann::json::exception&) {
         damaged(path, "the names of the groups cannot be read");
     }
@@ -173,6 +176,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
     m.positions = get_array<Vec3f>(db, path, "mesh", "positions", kXyz, n_v);
     m.triangles = get_array<std::array<std::uint32_t, 3>>(db, path, "mesh", "triangles", kXyz, n_t);
     if (m.positions.empty() || m.triangles.empty()) damaged(path, "a part of the model is missing");
+    report(progress, "reading", 0.3);
     m.corner_normals = get_array<Vec3f>(db, path, "mesh", "corner_normals", kXyz, 3 * n_t);
     m.neighbours = get_array<std::uint32_t>(db, path, "mesh", "neighbours", kXyz, 3 * n_t);
     m.corner_uvs = get_array<Vec2f>(db, path, "mesh", "corner_uvs", kUv, 3 * n_t);
@@ -180,6 +184,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
         get_array<std::array<std::uint8_t, 4>>(db, path, "mesh", "vertex_colours", kSingle, n_v);
     m.triangle_groups = get_array<std::uint32_t>(db, path, "mesh", "triangle_groups", kSingle, n_t);
     load_materials(db, path, m);
+    report(progress, "reading", 0.6);
     a.corner_uvs = get_array<Vec2f>(db, path, "atlas", "corner_uvs", kUv, 3 * n_t);
     a.triangle_chart = get_array<std::uint32_t>(db, path, "atlas", "triangle_chart", kSingle, n_t);
     const auto pages = get_array<std::uint32_t>(db, path, "atlas", "pages", kSingle, 1);
@@ -188,6 +193,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path)
         a.udims = get_array<std::uint32_t>(db, path, "atlas", "udims", kSingle, a.pages);
     model.frame.y_up = !get_array<std::uint32_t>(db, path, "mesh", "y_up", kSingle, 1).empty();
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
+    report(progress, "reading", 0.9);
     check(model, path);
     return model;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "io/project_db.h"
 
@@ -10,6 +11,8 @@ namespace tuft::io {
 namespace {
 
 constexpr std::size_t kFields = 11;  // per sample
+constexpr std::size_t kMostWord = 4096, kMostLabel = std::size_t{1} << 20, kMostSettings = std::size_t{1} << 25;  // bytes
+constexpr std::uintmax_t kLookEvery = std::uintmax_t{64} << 20;  // bytes of samples between two looks at what is free
 constexpr Packing kSamples{.element = 8, .lag = 1, .level = 6};
 
 /// All times, then all x, ...: columns of like numbers compress well.
@@ -91,26 +94,35 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
     }
 }
 
-std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path) {
+std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path, const ProgressFn& progress) {
+    const std::int64_t n = db.execAndGet("SELECT count(*) FROM strokes").getInt64();
+    if (n > kMaxEntries)
+        damaged(path, "it has " + std::to_string(n) + " strokes, more than the " + std::to_string(kMaxEntries) + " that are read");
+    check_memory(path, static_cast<std::uintmax_t>(n) * sizeof(stroke::Stroke));
     SQLite::Statement select(
         db,
         "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
         "sample_count, samples FROM strokes ORDER BY ordinal");
     std::vector<stroke::Stroke> strokes;
+    std::uintmax_t bytes = 0, checked = 0;
     while (select.executeStep()) {
+        report(progress, "reading", 0);
         stroke::Stroke stroke;
         stroke::Trace& t = stroke.trace;
         stroke.id = static_cast<std::uint64_t>(select.getColumn(0).getInt64());
         const std::string what =
             path.string() + ": the project is damaged: stroke " + std::to_string(stroke.id);
-        t.brush = select.getColumn(1).getString();
-        t.ink = select.getColumn(2).getString();
+        const auto text = [&](int column, std::size_t most, const char* of_what) {
+            return text_of(select.getColumn(column), most, path, of_what);
+        };
+        t.brush = text(1, kMostWord, "the brush of a stroke");
+        t.ink = text(2, kMostWord, "the ink of a stroke");
         t.seed = static_cast<std::uint64_t>(select.getColumn(3).getInt64());
-        t.label = select.getColumn(4).getString();
-        stroke::read_entry_json(select.getColumn(5).getString(), stroke);
+        t.label = text(4, kMostLabel, "the label of a stroke");
+        stroke::read_entry_json(text(5, kMostSettings, "the settings of a stroke"), stroke);
         stroke.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
-        const auto laying = stroke::laying_named(select.getColumn(8).getString());
+        const auto laying = stroke::laying_named(text(8, kMostWord, "how a stroke is laid"));
         if (!laying) throw Error(what + " is laid onto the model in a way that is not known");
         t.placement.laying = *laying;
         const SQLite::Column placement = select.getColumn(9);
@@ -128,6 +140,9 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         const auto size = static_cast<std::size_t>(blob.getBytes());
         const std::size_t numbers = kFields * static_cast<std::size_t>(count);
         check_packed(blob.getBlob(), size, numbers * sizeof(double), what);
+        // Its columns, and them as they are unpacked, go again.
+        bytes += sizeof(stroke::TraceSample) * static_cast<std::uintmax_t>(count);
+        if (const auto now = 3 * numbers * sizeof(double); bytes - checked + now > kLookEvery) check_memory(path, bytes - std::exchange(checked, bytes) + now);
         std::vector<double> columns(numbers);
         unpack(blob.getBlob(), size, columns.data(), numbers, kSamples, what);
         if (!finite(columns) || !finite(p)) throw Error(what + " has numbers that are not finite");

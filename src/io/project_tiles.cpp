@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "core/hash.h"
 #include "io/project_db.h"
@@ -13,16 +14,9 @@ namespace {
 constexpr Packing kTiles{.element = 4, .lag = 1, .level = 1};
 
 // The first layer is where projects without layers have their texels; the others have tables
-// that are like it with the layer's id before.
-constexpr const char* kFilmsTable =
-    "CREATE TABLE IF NOT EXISTS films(slot INTEGER NOT NULL, film INTEGER NOT NULL, "
-    "planes INTEGER NOT NULL, amounts BLOB NOT NULL, PRIMARY KEY(slot, film));";
-constexpr const char* kLayerTables =
-    "CREATE TABLE IF NOT EXISTS layer_tiles(layer INTEGER NOT NULL, slot INTEGER NOT NULL, "
-    "planes INTEGER NOT NULL, amounts BLOB NOT NULL, PRIMARY KEY(layer, slot)); "
-    "CREATE TABLE IF NOT EXISTS layer_films(layer INTEGER NOT NULL, slot INTEGER NOT NULL, "
-    "film INTEGER NOT NULL, planes INTEGER NOT NULL, amounts BLOB NOT NULL, "
-    "PRIMARY KEY(layer, slot, film));";
+// that are like it with the layer's id before (project_schema.cpp).
+constexpr std::uintmax_t kCheckEvery = std::uintmax_t{128} << 20;  // bytes of texels between two looks at what is free
+constexpr std::size_t kMostPigmentText = std::size_t{1} << 20;
 
 /// Projects of format 1 have only the open film.
 bool has_films(SQLite::Database& db) {
@@ -52,7 +46,7 @@ class LayerRows {
         insert(s, {static_cast<std::int64_t>(tile.slot), tile.planes}, tile.amounts.data(), open);
         if (tile.under.empty()) return;
         if (first() && !film_) {
-            db_.exec(kFilmsTable);
+            create_table(db_, "films");
             raise_format(db_, kFilmsFormat);
         }
         SQLite::Statement& f = statement(film_, first() ? "INSERT INTO films VALUES(?, ?, ?, ?)"
@@ -66,13 +60,15 @@ class LayerRows {
     }
 
     /// Puts all tiles of the layer into its canvas.
-    void load(ink::Canvas& canvas, const std::filesystem::path& path) {
+    void load(ink::Canvas& canvas, const std::filesystem::path& path, const ProgressFn& progress) {
         SQLite::Statement tile(
             db_, first() ? "SELECT slot, planes, amounts FROM tiles ORDER BY slot"
                          : "SELECT slot, planes, amounts FROM layer_tiles WHERE layer = ? ORDER BY slot");
         if (!first()) tile.bind(1, static_cast<std::int64_t>(layer_));
         const bool films = !first() || has_films(db_);
+        std::uintmax_t bytes = 0, checked = 0;
         while (tile.executeStep()) {
+            tuft::report(progress, "reading", 0);
             const std::int64_t slot = tile.getColumn(0).getInt64();
             const std::int64_t planes = tile.getColumn(1).getInt64();
             if (slot < 0 || slot >= static_cast<std::int64_t>(canvas.n_slots()) || planes < 0 || planes > 255)
@@ -83,6 +79,8 @@ class LayerRows {
             const std::string what = path.string() + ": the project is damaged: tile " + std::to_string(slot);
             append(snapshot, tile.getColumn(2), snapshot.planes, what);
             if (films) load_films(snapshot, what);
+            bytes += sizeof(float) * snapshot.amounts.size();
+            if (bytes - checked > kCheckEvery) check_memory(path, bytes - std::exchange(checked, bytes));
             canvas.restore(snapshot);
         }
     }
@@ -198,7 +196,8 @@ StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerT
         const bool first = layer.layer == stroke::kFirstLayer;
         const std::vector<std::uint32_t> slots = layer.canvas->touched_slots();
         if (!first && !slots.empty()) {
-            db.exec(kLayerTables);
+            create_table(db, "layer_tiles");
+            create_table(db, "layer_films");
             raise_format(db, layer.layer == stroke::kPaletteLayer ? kPaletteFormat : kLayersFormat);
         }
         LayerRows rows(db, layer.layer);
@@ -208,7 +207,7 @@ StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerT
 }
 
 std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::filesystem::path& path,
-                                               std::size_t n_slots, std::uint64_t& hash) {
+                                               std::size_t n_slots, std::uint64_t& hash, const ProgressFn& progress) {
     std::vector<stroke::LayerCanvas> layers;
     const auto add = [&](std::uint32_t id) -> ink::Canvas& {
         const std::size_t slots = id == stroke::kPaletteLayer ? stroke::make_palette().texels.n_slots() : n_slots;
@@ -227,11 +226,13 @@ std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::
         }
     }
     SQLite::Statement pigment(db, "SELECT toml FROM pigments ORDER BY plane");
-    while (pigment.executeStep()) {
-        const ink::Ink alone = ink::parse_ink(pigment.getColumn(0).getString(), path.string());
+    for (std::size_t n = 0; pigment.executeStep(); ++n) {
+        if (n >= ink::kMaxPigments) damaged(path, "it has too many pigments");
+        const ink::Ink alone = ink::parse_ink(text_of(pigment.getColumn(0), kMostPigmentText, path, "a pigment"), path.string());
+        if (alone.parts.empty()) damaged(path, "a pigment is none");
         for (stroke::LayerCanvas& layer : layers) layer.canvas.add_pigment(alone.parts.at(0).pigment);
     }
-    for (stroke::LayerCanvas& layer : layers) LayerRows(db, layer.layer).load(layer.canvas, path);
+    for (stroke::LayerCanvas& layer : layers) LayerRows(db, layer.layer).load(layer.canvas, path, progress);
     std::vector<stroke::LayerTexels> texels;
     texels.reserve(layers.size());
     for (const stroke::LayerCanvas& layer : layers) texels.push_back({layer.layer, &layer.canvas});

@@ -18,8 +18,12 @@ void use_presets(const Project& project, stroke::Painting& painting) {
 
 void restore_strokes(const Project& project, stroke::Painting& painting,
                      const ProgressFn& progress) {
-    std::vector<stroke::Stroke> strokes = project.strokes();
-    std::optional<SavedCanvases> saved = project.load_canvases(painting.model().texels.n_slots());
+    std::vector<stroke::Stroke> strokes;
+    std::optional<SavedCanvases> saved;
+    project.read_together([&] {
+        strokes = project.strokes();
+        saved = project.load_canvases(painting.model().texels.n_slots());
+    });
     if (saved && stroke::fits(strokes, saved->stroke_id)) {
         painting.adopt(std::move(strokes), std::move(saved->layers), saved->stroke_id);
         return;

@@ -108,7 +108,7 @@ TEST(Project, ModelAndAtlasComeBackToTheBit) {
     const Folder folder("project_model");
     const ProjectModel model = sample_model();
     const std::uint64_t hash = Project::create(folder / "a.tuft", model).model_hash();
-    const Project project = Project::open(folder / "a.tuft");
+    const Project project = Project::open(folder / "a.tuft", {.access = Access::read});
     EXPECT_EQ(project.model_hash(), hash);
     EXPECT_EQ(project.format(), kFirstFormat);
     EXPECT_EQ(project.written_by().substr(0, 5), "tuft ");

@@ -121,7 +121,7 @@ std::vector<std::uint8_t> Pictures::make(const Job& job) {
     const ProgressFn progress = [this](std::string_view, double) { return !stop_.load(); };
     mesh::TriangleMesh mesh;
     if (fs::path(job.file).extension() == ".tuft") {
-        mesh = io::Project::open(job.file).model().mesh;
+        mesh = io::Project::open(job.file, {.access = io::Access::read, .progress = progress}).model().mesh;
     } else {
         mesh::RepairOptions repair;
         repair.progress = progress;

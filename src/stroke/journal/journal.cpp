@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/shallow_json.h"
 #include "ink/touch/reservoir.h"
 #include "stroke/journal/entry_json.h"
 
@@ -26,7 +27,7 @@ nlohmann::json json_of(const Settings& s) {
 
 nlohmann::json parsed(const std::string& text) {
     try {
-        return nlohmann::json::parse(text);
+        return parse_shallow_json(text);
     } catch (const nlohmann::json::exception&) {
         throw Error("the settings of a stroke cannot be read: " + text.substr(0, 80));
     }
