@@ -104,8 +104,12 @@ void loop(app::Display& display, const Options& options) {
     if (!options.file.empty()) app::open_path(session, options.file);
     app::EventQueue events;
     std::string title;
-    while (!display.closed() && !session.quit && !(script && script->finished())) {
+    while (!session.quit && !(script && script->finished())) {
         display.poll(events, !events.empty() ? 0 : script ? script->patience(studio) : studio.patience());
+        if (display.closed()) {
+            display.stay_open();
+            app::leave(session, {});
+        }
         if (display.lost() || (script && script->take_loss())) {
             studio.drop_graphics();
             ImGui_ImplOpenGL3_Shutdown();
@@ -121,11 +125,12 @@ void loop(app::Display& display, const Options& options) {
         if (script) script->after_frame(studio, display.width(), display.height());
         display.present();
         studio.shown(display.now());
-        const std::string name = app::project_name(session);
+        const std::string name = app::project_name(session) + (session.last.viewing ? " (a view)" : "");
         if (const std::string wanted = name.empty() ? "tuft studio" : name + " \xe2\x80\x93 tuft studio"; wanted != title)
             display.set_title(title = wanted);
     }
     studio.finish();
+    if (!session.left_behind.empty()) throw Error(session.left_behind);
 }
 
 int run(const Options& options) {

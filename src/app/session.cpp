@@ -35,9 +35,10 @@ void take_picked(Session& s, const std::string& name) {
 
 std::unique_ptr<Painter> start_painter(Session& s, Painter::Work work) {
     const fs::path project = work.keeper.path();
-    if (project.empty()) s.note.clear();  // it is in memory only
+    if (project.empty() || work.keeper.viewing()) s.note.clear();  // it is in memory only, or another program's
     else s.note.write(project, work.source);
     if (!project.empty() && !is_unnamed(project)) remember_project(project);
+    work.spare = s.note.new_project(fs::path(work.source).stem().string());
     return std::make_unique<Painter>(std::move(work));
 }
 
@@ -139,10 +140,40 @@ void choose_mask(Session& s, std::uint32_t id) {
     s.painter->post(ShowMask{id});
 }
 
+bool has_unkept_work(const Session& s) { return s.painter && (s.last.unkept > 0 || s.last.behind); }
+
+void leave(Session& s, Leaving leaving) {
+    if (!has_unkept_work(s)) return leave_at_once(s, leaving);
+    s.files.close();
+    s.leaving = std::move(leaving);
+    s.painter->post(RetryKeeping{});
+}
+
+void leave_at_once(Session& s, const Leaving& leaving) {
+    const Leaving now = leaving;
+    s.leaving.reset();
+    if (now.to == Leaving::To::quit) s.quit = true;
+    if (now.to == Leaving::To::open || now.to == Leaving::To::close) {
+        close_model(s);
+        s.recent = recent_projects();
+        s.lost = find_lost_work();
+    }
+    if (now.to == Leaving::To::open) open_path(s, now.file);
+}
+
+void open_in_use(Session& s, OpenAs as) {
+    if (!s.in_use) return;
+    const fs::path project = s.in_use->project;
+    s.in_use.reset();
+    s.opening.load(project, s.note.new_project(project.stem().string()), as);
+}
+
 void open_path(Session& s, const fs::path& path) {
     if (path.extension() == ".toml") return open_ink(s, path);
     if (const std::string e = path.extension().string(); e == ".svg" || e == ".inkml") return open_writing(s, path);
+    if (has_unkept_work(s)) return leave(s, {Leaving::To::open, path});
     s.pictures.rest();
+    s.in_use.reset();
     s.inspected.reset();
     s.is_sample = false;
     s.revises.clear();
@@ -184,6 +215,8 @@ bool close_dialog(Session& s) {
     else if (s.show_colours) s.show_colours = false;
     else if (s.show_export) s.show_export = false;
     else if (s.opening.running()) s.opening.cancel();
+    else if (s.leaving) s.leaving.reset();
+    else if (s.in_use) s.in_use.reset();
     else if (s.inspected) s.inspected.reset();
     else if (!s.lost.empty() && !s.painter) s.lost.erase(s.lost.begin());  // later
     else return false;
@@ -201,8 +234,19 @@ void accept_inspected(Session& s) {
 void close_model(Session& s) {
     if (!s.painter) return;
     const bool empty = s.strokes.empty() && s.painter->idle();
-    const fs::path project = s.last.project;
-    s.painter.reset();  // finishes and keeps what is in work
+    fs::path project = s.last.project;
+    const bool viewing = s.last.viewing;
+    s.left_behind.clear();
+    // Finishes and keeps what is in work.
+    if (const fs::path spare = s.painter->finish(); !spare.empty()) {
+        s.left_behind = project.string() + " could not be written; the work is in " + spare.string() + " and is offered at the next start";
+        s.note.write(spare, s.painter->source());
+        remember_project(spare);
+        project = spare;
+    } else if (s.painter->unkept()) {
+        s.left_behind = project.string() + " could not be written, and nothing else either: the last strokes are lost";
+    }
+    s.painter.reset();
     s.strokes.clear();
     s.selected = 0;
     s.misfits.clear();
@@ -216,16 +260,18 @@ void close_model(Session& s) {
     s.palette.fresh = true;
     s.tuft = {};
     s.curve = {};
-    if (empty && is_unnamed(project)) {
+    if (empty && !viewing && is_unnamed(project)) {
         std::error_code ec;
         fs::remove(project, ec);
     }
-    if (empty || !is_unnamed(project)) s.note.clear();
+    if (empty || viewing || !is_unnamed(project)) s.note.clear();
+    if (!s.left_behind.empty()) say(s, s.left_behind);
 }
 
 void poll_session(Session& s) {
     Opening::Result result = s.opening.poll();
     if (!result.error.empty()) say(s, result.error);
+    if (result.in_use) s.in_use = std::move(result.in_use);
     if (result.inspected) {
         s.inspected = std::move(result.inspected);
         // A revised file has the unit of the one before, where that was in a format without one.
@@ -245,7 +291,9 @@ void poll_session(Session& s) {
         const bool revised = !s.revises.empty();
         // Unnamed work that is left for other work is offered again at the next start.
         if (s.painter && !s.strokes.empty() && is_unnamed(s.last.project)) remember_project(s.last.project);
+        std::string note = std::move(result.work->note);
         close_model(s);
+        if (!s.left_behind.empty()) note = s.left_behind;
         s.painter = start_painter(s, std::move(*result.work));
         s.last = {};
         if (!find_ink(s, s.ink)) s.ink = "carbon";
@@ -253,7 +301,7 @@ void poll_session(Session& s) {
         s.keeps_view = revised;
         s.former = s.revises;
         s.symmetry.centre = s.painter->model().mesh->bounds.centre();
-        say(s, revised ? "The strokes are painted on the revised model; the former project is as it was." : "");
+        say(s, revised ? "The strokes are painted on the revised model; the former project is as it was." : note);
         s.revises.clear();
         s.misfits = std::move(misfits);
         s.show_misfits = !s.misfits.empty();
@@ -275,7 +323,7 @@ void poll_painter(Session& s) {
     if (!u.picked.empty()) take_picked(s, u.picked);
     for (std::string& message : u.messages) say(s, std::move(message));
     u.messages.clear();
-    if (!u.project.empty() && u.project != s.last.project) take_file(s, u.project);
+    if (!u.project.empty() && !u.viewing && u.project != s.last.project) take_file(s, u.project);
     // The scene takes the tiles.
     std::vector<render::TilePixels> tiles = std::move(s.last.tiles);
     tiles.insert(tiles.end(), u.tiles.begin(), u.tiles.end());
@@ -288,6 +336,8 @@ void poll_painter(Session& s) {
     else if (s.mask != 0 && !masks.find(s.mask)) choose_mask(s, 0);
     s.masks_seen = masks.next_id;
     s.last = std::move(u);
+    // What was asked about is on disk now.
+    if (s.leaving && !has_unkept_work(s) && s.painter->idle()) leave_at_once(s, *s.leaving);
 }
 
 bool settled(const Session& s) {

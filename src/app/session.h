@@ -87,6 +87,12 @@ struct ExportChoice {
     int picture_width = 1280;     ///< pixels
 };
 
+/// What is to be done once work that is not on disk is given up or written.
+struct Leaving {
+    enum class To { quit, close, open } to = To::quit;
+    std::filesystem::path file;   ///< to be opened
+};
+
 /// Everything the window knows, as plain data; panels read and change it.
 struct Session {
     Ui ui;
@@ -108,6 +114,9 @@ struct Session {
     bool keeps_view = false;               ///< it is looked at as the one before
     SessionNote note;
     std::vector<LostWork> lost;
+    std::optional<InUse> in_use;           ///< a project that another program has: asked what to do
+    std::optional<Leaving> leaving;        ///< asked about, while some work is in memory only
+    std::string left_behind;               ///< what became of work that could not be kept when it was closed, "" if all was
     std::vector<std::filesystem::path> samples, recent;
     Pictures pictures;
 
@@ -173,8 +182,16 @@ struct Session {
 
 void say(Session& s, std::string message);
 
-/// Opens a model or a project; the work in hand is kept where it is.
+/// Some of the work is in memory only.
+bool has_unkept_work(const Session& s);
+/// Quits, closes or opens; where some work is in memory only, asks first.
+void leave(Session& s, Leaving leaving);
+/// Does so without asking.
+void leave_at_once(Session& s, const Leaving& leaving);
+/// Opens a model or a project; the work in hand is kept where it is, and asked about where it is in memory only.
 void open_path(Session& s, const std::filesystem::path& path);
+/// Opens a project that another program has, to look at it or to go on in a copy.
+void open_in_use(Session& s, OpenAs as);
 /// Opens a shipped model: its unit is known and it is sound, so nothing is asked.
 void open_sample(Session& s, const std::filesystem::path& path);
 /// Closes the dialog that lies on top, as its Cancel does; false when there is none.

@@ -121,7 +121,8 @@ void Studio::layout(int width, int height) {
 
 bool Studio::dialog_open() const {
     const Session& s = session_;
-    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_about || s.show_misfits || s.files.shown();
+    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_about || s.show_misfits || s.in_use || s.leaving ||
+           s.files.shown();
 }
 
 void Studio::panels() {
@@ -146,6 +147,8 @@ void Studio::panels() {
     }
     ImGui::EndDisabled();
     if (s.opening.running()) opening_progress(s);
+    else if (s.leaving) leave_dialog(s);
+    else if (s.in_use) in_use_dialog(s);
     else if (s.inspected) open_dialog(s);
     else if (!s.lost.empty() && !s.painter) recovery_dialog(s);
     export_dialog(s);

@@ -206,7 +206,7 @@ void Studio::key(const Event& e) {
 void Studio::perform(Act act) {
     Session& s = session_;
     if (act == Act::open) return s.files.show(FileDialog::Purpose::open, {});
-    if (act == Act::quit) s.quit = true;
+    if (act == Act::quit) leave(s, {});
     if (act == Act::keys) s.show_keys = !s.show_keys;
     if (!s.painter || dialog_open()) return;
     const auto tilt = [&](double x, double y) {

@@ -229,16 +229,17 @@ ChangedOutside::ChangedOutside(const fs::path& project)
     : Error(project.string(), "another program changed it meanwhile; nothing was written over that: do it again") {}
 
 struct Project::State {
-    fs::path path;
+    fs::path path;                    ///< for messages
+    fs::path place;                   ///< where the file is: of a project that is being made, elsewhere
     std::optional<ProjectLock> lock;  ///< none: to be read only
     SQLite::Database db;
     mutable Overseer overseer;
     OpenFile file;
-    std::int64_t version = 0;         ///< `PRAGMA data_version`, which other connections change
+    std::uint32_t version = 0;        ///< change counter of the file as last read or written here
     mutable FileStamp seen;
 
     State(const fs::path& p, std::optional<ProjectLock> l)
-        : path(p), lock(std::move(l)), db(p.string(), SQLite::OPEN_READWRITE), overseer(db.getHandle()), file(p), seen(stamp_of(p)) {}
+        : path(p), place(p), lock(std::move(l)), db(p.string(), SQLite::OPEN_READWRITE), overseer(db.getHandle()), file(p), seen(stamp_of(p)) {}
 
     /// `hears`: whoever listens may stop it.
     template <class Fn>
@@ -251,19 +252,29 @@ struct Project::State {
             throw;
         }
     }
-    std::int64_t data_version() { return db.execAndGet("PRAGMA data_version").getInt64(); }
+    /// Counts the committed changes of the file; `PRAGMA data_version` counts failed ones of this connection too.
+    /// Read through SQLite's own file: closing another one would take its locks off.
+    std::uint32_t change_counter() {
+        sqlite3_file* handle = nullptr;
+        char bytes[4] = {};
+        sqlite3_file_control(db.getHandle(), "main", SQLITE_FCNTL_FILE_POINTER, &handle);
+        if (!handle || !handle->pMethods || handle->pMethods->xRead(handle, bytes, sizeof bytes, 24) != SQLITE_OK) return version;
+        return big_endian(bytes);
+    }
     /// All of `fn` or nothing.
     template <class Fn>
     void change(Fn&& fn) {
         if (!lock) throw Error(path.string(), "was opened to be read only");
-        if (file.replaced(path)) throw ChangedOutside(path);
+        if (file.replaced(place)) throw ChangedOutside(path);
         run([&](SQLite::Database&) {
             SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-            if (data_version() != version) throw ChangedOutside(path);
+            if (change_counter() != version) throw ChangedOutside(path);
             fn(db);
             transaction.commit();
+            // One change, or none where nothing was to be changed.
+            version = change_counter() == version ? version : version + 1;
         });
-        seen = stamp_of(path);
+        seen = stamp_of(place);
     }
 };
 
@@ -282,7 +293,7 @@ Project Project::open_file(const fs::path& path, std::optional<ProjectLock> lock
             set_pragmas(db, state->lock ? Access::write : Access::read);
             const std::string verdict = state->overseer.check_pages(db);
             if (verdict != "ok") damaged(path, verdict);
-            state->version = state->data_version();
+            state->version = state->change_counter();
         },
         true);
     return Project(std::move(state));
@@ -347,10 +358,10 @@ void Project::listen(ProgressFn progress) {
 }
 
 bool Project::changed_outside() const {
-    if (state_->file.replaced(state_->path)) return true;
-    const FileStamp now = stamp_of(state_->path);
+    if (state_->file.replaced(state_->place)) return true;
+    const FileStamp now = stamp_of(state_->place);
     if (now == state_->seen || now == FileStamp{}) return false;
-    if (state_->run([&](SQLite::Database&) { return state_->data_version(); }) != state_->version) return true;
+    if (state_->change_counter() != state_->version) return true;
     state_->seen = now;
     return false;
 }

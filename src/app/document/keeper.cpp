@@ -10,7 +10,10 @@ template <class Action>
 void Keeper::attempt(const Action& action) {
     try {
         action();
-        if (!behind_ && !wanted_) trouble_.clear();
+        if (!behind_ && !wanted_ && pending_.empty()) trouble_.clear();
+    } catch (const io::ChangedOutside& error) {
+        overtaken_ = true;
+        trouble_ = error.what();
     } catch (const std::exception& error) {
         trouble_ = error.what();
     }
@@ -19,7 +22,7 @@ void Keeper::attempt(const Action& action) {
 template <class Action>
 void Keeper::change(const Action& action) {
     attempt([&] {
-        if (!project_) return;
+        if (!project_ || viewing_) return;
         const bool was = std::exchange(behind_, true);
         action();
         behind_ = was;
@@ -31,9 +34,12 @@ void Keeper::rewrite(const std::string& source, const FileFrame& frame, stroke::
     if (std::string fault = start(wanted_ ? wanted_->path : path(), source, frame, painting); !fault.empty()) trouble_ = std::move(fault);
 }
 
-void Keeper::start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame, const std::string& fault) {
+void Keeper::start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame, const std::string& fault, bool has_work) {
     wanted_ = {path, source, frame, fault};
     trouble_ = fault;
+    project_.reset();
+    behind_ = has_work;
+    viewing_ = overtaken_ = false;
 }
 
 void Keeper::take_presets(const io::Project& project) {
@@ -41,16 +47,44 @@ void Keeper::take_presets(const io::Project& project) {
     for (const auto& [name, toml] : project.inks()) inks_[name] = toml;
 }
 
-void Keeper::adopt(io::Project project) {
-    take_presets(project);
-    project_ = std::move(project);
-    wanted_.reset();
-    pending_.clear();
-    behind_ = false;
+void Keeper::adopt(io::Project project, std::vector<stroke::EntryMark> on_disk) {
+    attempt([&] {
+        take_presets(project);
+        project.listen({});
+        project_ = std::move(project);
+        on_disk_ = std::move(on_disk);
+        wanted_.reset();
+        pending_.clear();
+        behind_ = overtaken_ = viewing_ = false;
+    });
+}
+
+void Keeper::view(io::Project project, std::vector<stroke::EntryMark> on_disk) {
+    adopt(std::move(project), std::move(on_disk));
+    viewing_ = true;
+}
+
+bool Keeper::overtaken() {
+    if (project_ && !overtaken_) {
+        try {
+            overtaken_ = project_->changed_outside();
+        } catch (const std::exception&) {
+            // What is wrong with the file is said when something is written.
+        }
+    }
+    return overtaken_;
+}
+
+std::optional<io::Project> Keeper::read_again() {
+    std::optional<io::Project> file;
+    attempt([&] { file = io::Project::open(path(), {.access = viewing_ ? io::Access::read : io::Access::write}); });
+    return file;
 }
 
 std::string Keeper::start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                           stroke::Painting& painting) {
+    std::error_code ec;
+    if (project_ && std::filesystem::equivalent(path, this->path(), ec) && overtaken() && !viewing_) return io::ChangedOutside(path).what();
     try {
         const stroke::Model& model = painting.model();
         io::Project project = io::Project::create(path, {.source = source,
@@ -67,10 +101,11 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
                                                           fresh.save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
                                                   });
         project_ = std::move(project);
+        on_disk_ = stroke::marks_of(painting.journal().strokes());
         wanted_.reset();
         pending_.clear();
         trouble_.clear();
-        behind_ = false;
+        behind_ = overtaken_ = viewing_ = false;
         return "";
     } catch (const std::exception& error) {
         return error.what();
@@ -88,7 +123,7 @@ void Keeper::prepare(stroke::Painting& painting, const std::string& brush, const
         preset.name = brush;
         painting.use_brush(preset);
         brushes_[brush] = toml;
-        attempt([&] { if (project_) project_->put_brush({brush, toml}); });
+        attempt([&] { if (project_ && !viewing_) project_->put_brush({brush, toml}); });
     }
     if (!ink.empty() && !inks_.contains(ink)) {
         const std::string toml = ink::ink_toml(painting.ink(ink));
@@ -96,12 +131,12 @@ void Keeper::prepare(stroke::Painting& painting, const std::string& brush, const
         parsed.name = ink;
         painting.use_ink(parsed);
         inks_[ink] = toml;
-        attempt([&] { if (project_) project_->put_ink({ink, toml}); });
+        attempt([&] { if (project_ && !viewing_) project_->put_ink({ink, toml}); });
     }
 }
 
 void Keeper::store_looks(const stroke::Painting& painting) {
-    attempt([&] { if (project_) io::store_looks(*project_, painting); });
+    attempt([&] { if (project_ && !viewing_) io::store_looks(*project_, painting); });
 }
 
 std::vector<std::string> Keeper::inks() const {
@@ -114,15 +149,27 @@ void Keeper::flush() {
     if (!project_) throw Error(wanted_ ? wanted_->fault : "there is no project file");
     for (const auto& preset : brushes_) project_->put_brush(preset);
     for (const auto& preset : inks_) project_->put_ink(preset);
-    project_->append(pending_);
+    append(pending_);
     pending_.clear();
 }
 
+void Keeper::append(std::span<const stroke::Stroke> strokes) {
+    project_->append(strokes);
+    for (const stroke::Stroke& s : strokes) on_disk_.push_back(stroke::mark_of(s));
+}
+
+void Keeper::retry(const std::string& source, const FileFrame& frame, stroke::Painting& painting) {
+    if (viewing_) return;
+    if (wanted_ || behind_) return rewrite(source, frame, painting);
+    if (!pending_.empty()) attempt([&] { flush(); });
+}
+
 void Keeper::add(const stroke::Stroke& stroke) {
+    if (viewing_) return;
     attempt([&] {
         if (pending_.empty() && trouble_.empty() && project_) {
             try {
-                project_->append(stroke);
+                append(std::span(&stroke, 1));
             } catch (...) {
                 pending_.push_back(stroke);
                 throw;
@@ -134,13 +181,21 @@ void Keeper::add(const stroke::Stroke& stroke) {
     });
 }
 
+void Keeper::catch_up(std::span<const stroke::Stroke> entries) {
+    pending_.assign(entries.begin(), entries.end());
+    attempt([&] { flush(); });
+}
+
 void Keeper::remove(std::uint64_t id) {
     const auto waits = std::find_if(pending_.begin(), pending_.end(), [id](const auto& s) { return s.id == id; });
     if (waits != pending_.end()) {
         pending_.erase(waits);
         return;
     }
-    change([&] { project_->remove(id); });
+    change([&] {
+        project_->remove(id);
+        std::erase_if(on_disk_, [id](const stroke::EntryMark& m) { return m.id == id; });
+    });
 }
 
 void Keeper::set_hidden(std::uint64_t id, bool hidden) {
@@ -149,12 +204,16 @@ void Keeper::set_hidden(std::uint64_t id, bool hidden) {
             stroke.hidden = hidden;
             return;
         }
-    change([&] { project_->set_hidden(id, hidden); });
+    change([&] {
+        project_->set_hidden(id, hidden);
+        for (stroke::EntryMark& m : on_disk_)
+            if (m.id == id) stroke::set_hidden(m, hidden);
+    });
 }
 
 void Keeper::store_canvas(const stroke::Painting& painting) {
     if (painting.journal().empty()) return;
-    attempt([&] { if (project_ && pending_.empty() && !behind_) project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id); });
+    attempt([&] { if (project_ && !viewing_ && pending_.empty() && !behind_) project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id); });
 }
 
 }  // namespace tuft::app

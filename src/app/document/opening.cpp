@@ -95,7 +95,7 @@ Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
 
 // Strokes of a former project, its presets and ground, on the new model.
 void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn& progress) {
-    const io::Project project = io::Project::open(former);
+    const io::Project project = io::Project::open(former, {.access = io::Access::read, .progress = progress});
     work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
     io::use_presets(project, *work.painting);
     work.keeper.take_presets(project);
@@ -109,7 +109,7 @@ void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn
 // In a file from now on, or in memory until there can be one.
 void keep(Painter::Work& work, const fs::path& file) {
     const std::string fault = work.keeper.start(file, work.source, work.frame, *work.painting);
-    if (!fault.empty()) work.keeper.start_later(file, work.source, work.frame, fault);
+    if (!fault.empty()) work.keeper.start_later(file, work.source, work.frame, fault, !work.painting->journal().empty());
 }
 
 Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
@@ -132,10 +132,25 @@ Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::
     return work;
 }
 
-Painter::Work load_project(const fs::path& path, const fs::path& session, const ProgressFn& progress) {
+// To be written if that is wanted and possible; else to be read, and `why` says why.
+io::Project open_project(const fs::path& path, OpenAs as, const ProgressFn& progress, std::string& why) {
+    if (as == OpenAs::work) {
+        try {
+            return io::Project::open(path, {.access = io::Access::write, .progress = progress});
+        } catch (const io::ProjectInUse&) {
+            throw;
+        } catch (const Error& error) {
+            why = error.what();
+        }
+    }
+    return io::Project::open(path, {.access = io::Access::read, .progress = progress});
+}
+
+Painter::Work load_project(const fs::path& path, const fs::path& session, OpenAs as, const ProgressFn& progress) {
     Painter::Work work;
     report(progress, "reading", 0);
-    io::Project project = io::Project::open(path);
+    std::string why;
+    io::Project project = open_project(path, as, progress, why);
     io::ProjectModel stored = project.model();
     work.source = stored.source;
     work.frame = stored.frame;
@@ -149,13 +164,16 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, const 
     io::show_looks(project, *work.painting);
     work.texture = std::make_unique<Texture>(*work.painting, progress);
     work.pixels = work.texture->pixels();
-    // A file that cannot be written is gone on with in a copy.
-    const bool writable = ::access(path.c_str(), W_OK) == 0 && ::access(fs::absolute(path).parent_path().c_str(), W_OK) == 0;
-    if (writable) {
-        work.keeper.adopt(std::move(project));
+    project.listen({});
+    std::vector<stroke::EntryMark> marks = stroke::marks_of(work.painting->journal().strokes());
+    if (as == OpenAs::view) {
+        work.keeper.view(std::move(project), std::move(marks));
+    } else if (as == OpenAs::work && why.empty()) {
+        work.keeper.adopt(std::move(project), std::move(marks));
     } else {
         work.keeper.take_presets(project);
         keep(work, session);
+        work.note = why.empty() ? "This is a copy; it has no name yet." : "This is a copy that has no name yet: " + why;
     }
     return work;
 }
@@ -185,6 +203,8 @@ void Opening::start(Step step) {
             step(*job);
         } catch (const Cancelled&) {
             job->result = {};
+        } catch (const io::ProjectInUse& in_use) {
+            job->result.in_use = InUse{.project = {}, .holder = in_use.holder()};
         } catch (const std::bad_alloc&) {
             job->result.error = "there is not enough memory for this model";
         } catch (const std::exception& error) {
@@ -213,10 +233,11 @@ void Opening::revise(Inspected inspected, const OpenOptions& options, const fs::
     });
 }
 
-void Opening::load(const fs::path& project, const fs::path& session) {
-    start([project, session](Job& job) {
+void Opening::load(const fs::path& project, const fs::path& session, OpenAs as) {
+    loaded_ = project;
+    start([project, session, as](Job& job) {
         job.kind = kProject;
-        job.result.work = load_project(project, session, job.progress());
+        job.result.work = load_project(project, session, as, job.progress());
     });
 }
 
@@ -241,6 +262,7 @@ Opening::Result Opening::poll() {
     if (!job_ || !job_->done) return {};
     job_->thread.join();
     Result result = std::move(job_->result);
+    if (result.in_use) result.in_use->project = loaded_;
     result.done = true;
     job_.reset();
     return result;

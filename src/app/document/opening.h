@@ -28,6 +28,19 @@ struct OpenOptions {
     bool own_colours = true;  ///< the model's, where it brings any along
 };
 
+/// What a project is opened for.
+enum class OpenAs {
+    work,  ///< to go on in its file; in a copy where that cannot be written
+    view,  ///< to look at it while another program works on it
+    copy,  ///< to go on in a copy
+};
+
+/// A project that another program has.
+struct InUse {
+    std::filesystem::path project;
+    io::LockHolder holder;
+};
+
 /// Opening a model takes two steps, each on a thread of its own: `inspect` reads and checks
 /// the file; `prepare` unwraps it and makes it ready to be painted on. A project needs
 /// `load` only. One step at a time; starting one stops the one before.
@@ -40,8 +53,8 @@ class Opening {
     void prepare(Inspected inspected, const OpenOptions& options, const std::filesystem::path& project);
     /// The same for a model that takes the place of another: paints the strokes of `former` on it.
     void revise(Inspected inspected, const OpenOptions& options, const std::filesystem::path& former, const std::filesystem::path& project);
-    /// `session`: where a copy goes when the project's own place cannot be written.
-    void load(const std::filesystem::path& project, const std::filesystem::path& session);
+    /// `session`: where a copy goes.
+    void load(const std::filesystem::path& project, const std::filesystem::path& session, OpenAs as = OpenAs::work);
     void cancel();
 
     bool running() const { return job_ != nullptr; }
@@ -52,6 +65,7 @@ class Opening {
     struct Result {
         std::optional<Inspected> inspected;
         std::optional<Painter::Work> work;
+        std::optional<InUse> in_use;  ///< and therefore not opened
         std::string error;
         bool done = false;
     };
@@ -63,6 +77,7 @@ class Opening {
     void start(Step step);
 
     std::unique_ptr<Job> job_;
+    std::filesystem::path loaded_;  ///< project of the last `load`
     std::vector<std::unique_ptr<Job>> leaving_;  ///< cancelled, not ended yet
 };
 

@@ -9,6 +9,7 @@ namespace tuft::app {
 namespace {
 
 constexpr double kPublishEvery = 0.012;  // seconds
+constexpr std::chrono::seconds kLookOutsideEvery{1};
 constexpr std::size_t kPosesAtOnce = 8;  // between two looks at the clock
 
 double now() {
@@ -40,13 +41,16 @@ Painter::Painter(Work work) : work_(std::move(work)) {
     thread_ = std::thread([this] { run(); });
 }
 
-Painter::~Painter() {
+Painter::~Painter() { finish(); }
+
+std::filesystem::path Painter::finish() {
     {
         const std::lock_guard lock(mutex_);
         quit_ = true;
     }
     wake_.notify_all();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
+    return spared_;
 }
 
 void Painter::post(Command command) {
@@ -111,11 +115,16 @@ void Painter::run() {
             std::unique_lock lock(mutex_);
             working_ = false;
             if (queue_.empty()) rests_.notify_all();
-            wake_.wait(lock, [this] { return quit_ || !queue_.empty(); });
+            const bool asked = wake_.wait_for(lock, kLookOutsideEvery, [this] { return quit_ || !queue_.empty(); });
+            working_ = true;
+            if (!asked) {
+                lock.unlock();
+                look_outside();
+                continue;
+            }
             if (queue_.empty()) break;
             command = std::move(queue_.front());
             queue_.pop_front();
-            working_ = true;
         }
         try {
             perform(command);
@@ -128,14 +137,32 @@ void Painter::run() {
             say(error.what());
             publish(true);
         }
+        if (work_.keeper.unkept()) look_outside();
     }
     if (work_.painting->in_stroke()) end();
-    if (work_.keeper.behind()) work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
-    work_.keeper.store_canvas(*work_.painting);
+    look_outside();
+    Keeper& keeper = work_.keeper;
+    keeper.retry(work_.source, work_.frame, *work_.painting);
+    if (keeper.unkept() && !work_.spare.empty() && keeper.start(work_.spare, work_.source, work_.frame, *work_.painting).empty()) spared_ = work_.spare;
+    keeper.store_canvas(*work_.painting);
 }
+
+namespace {
+
+// What a person who only looks at a project may not ask for.
+bool changes_work(const Command& command) {
+    return std::visit(Overloaded{[](const BeginStroke&) { return true; }, [](const PaintDrawing&) { return true; }, [](const CareForBrush&) { return true; },
+                                 [](const UndoStroke&) { return true; }, [](const RedoStroke&) { return true; }, [](const EditStroke&) { return true; },
+                                 [](const FillModel&) { return true; }, [](const ChangeLayers&) { return true; }, [](const ChangeMasks&) { return true; },
+                                 [](const auto&) { return false; }},
+                      command);
+}
+
+}  // namespace
 
 void Painter::perform(Command& command) {
     stop_ = false;
+    if (work_.keeper.viewing() && changes_work(command)) return say("This project is only looked at; File > Save as... makes a copy to work on.");
     std::visit(Overloaded{[this](BeginStroke& c) { begin(c); }, [this](ExtendStroke& c) { extend(c); },
                           [this](EndStroke&) { end(); },
                           [this](CareForBrush& c) { care(c); }, [this](PaintDrawing& c) { paint_drawing(c); },
@@ -145,6 +172,10 @@ void Painter::perform(Command& command) {
                               const std::string fault =
                                   work_.keeper.start(c.path, work_.source, work_.frame, *work_.painting);
                               say(fault.empty() ? "Saved as " + c.path.string() : fault);
+                              publish();
+                          },
+                          [this](RetryKeeping&) {
+                              work_.keeper.retry(work_.source, work_.frame, *work_.painting);
                               publish();
                           },
                           [this](FillModel& c) { fill(c); }, [this](ChangeLayers& c) { change_layers(c); },
@@ -214,12 +245,14 @@ void Painter::publish(bool strokes_changed) {
     update_.layers = painting.layers();
     update_.masks = painting.masks();
     update_.wet = std::ranges::any_of(painting.canvases(), [](const stroke::LayerTexels& l) { return l.canvas->wet(); });
-    update_.can_undo = !steps_.empty();
+    update_.can_undo = !steps_.empty() && !work_.keeper.viewing();
     update_.undo_seconds = undo_seconds_;
     update_.can_redo = !undone_.empty();
     update_.project = work_.keeper.path();
     update_.trouble = work_.keeper.trouble();
     update_.unkept = work_.keeper.waiting();
+    update_.behind = work_.keeper.behind();
+    update_.viewing = work_.keeper.viewing();
     last_publish_ = now();
 }
 

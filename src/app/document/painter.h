@@ -107,6 +107,8 @@ struct SendTexture {
 struct SaveProject {
     std::filesystem::path path;
 };
+/// Tries once more to write what could not be written.
+struct RetryKeeping {};
 struct ExportModel {
     std::filesystem::path path;
     bool height = true, orm = true;  ///< maps besides the base colour
@@ -130,7 +132,7 @@ struct EditStroke {
     bool remove = false;
     bool joined = false;          ///< is undone together with the one before it
 };
-using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, CareForBrush, UndoStroke, RedoStroke, SaveProject,
+using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, CareForBrush, UndoStroke, RedoStroke, SaveProject, RetryKeeping,
                              ExportModel, EditStroke, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
 
 /// A stroke for the list.
@@ -176,6 +178,8 @@ struct Update {
     bool wet = false;             ///< some ink is
     std::string trouble;          ///< why work is not being kept, ""
     std::size_t unkept = 0;       ///< strokes that wait in memory for that
+    bool behind = false;          ///< and so does a change of one
+    bool viewing = false;         ///< another program works on the project; it is only looked at
     std::filesystem::path project;
 };
 
@@ -192,10 +196,16 @@ class Painter {
         std::string source;
         FileFrame frame;  ///< of the model file
         std::vector<stroke::Misfit> misfits;  ///< of a revised model: strokes that do not fit it
+        std::filesystem::path spare;  ///< a file for work that cannot be kept in its own at the end
+        std::string note;             ///< for the person who opened it
     };
     explicit Painter(Work work);
-    /// Finishes everything that was asked for first.
+    /// Finishes as `finish` does.
     ~Painter();
+    /// Does everything that was asked for first and keeps it: in `Work::spare` where its own file cannot
+    /// be written. Returns that path then; empty: all is in its own file, or it is lost, as `unkept` says.
+    std::filesystem::path finish();
+    bool unkept() const { return work_.keeper.unkept(); }  ///< after `finish`
 
     void post(Command command);
     Update take();
@@ -255,6 +265,12 @@ class Painter {
     void rewrite(std::vector<stroke::Stroke> strokes);
     void put(const Change& change, bool back);
     void take_presets(stroke::Painting& painting);
+    void replace_painting(std::unique_ptr<stroke::Painting> painting);
+    void look_outside();
+    void take_outside();
+    void leave_file();
+    bool follow(const io::Project& file, std::span<const stroke::Stroke> theirs);
+    void paint_merged(const io::Project& file, const stroke::MergedJournal& merged);
     void export_model(const ExportModel& command);
     void export_maps(const ExportModel& command, const stroke::Painting& painting, const ink::ComposeOptions& compose);
     void export_strokes(const std::filesystem::path& path);
@@ -284,6 +300,7 @@ class Painter {
     Update update_;
     bool working_ = false, quit_ = false;
     std::atomic<bool> stop_{false};
+    std::filesystem::path spared_;            ///< the work is there at the end
     std::thread thread_;
 };
 

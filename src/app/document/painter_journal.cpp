@@ -116,9 +116,14 @@ void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
         for (const std::string& ink : stroke::inks_of(s)) painting->use_ink(old.ink(ink));
     }
     painting->replay(std::move(strokes), progress("Painting again"));
-    for (const stroke::LayerTexels& layer : old.canvases())
-        for (const std::uint32_t slot : layer.canvas->touched_slots()) painting->canvas().mark_dirty(slot);
     painting->restore_undone(old.journal().undone());
+    replace_painting(std::move(painting));
+}
+
+// The same model with other strokes on it.
+void Painter::replace_painting(std::unique_ptr<stroke::Painting> painting) {
+    for (const stroke::LayerTexels& layer : work_.painting->canvases())
+        for (const std::uint32_t slot : layer.canvas->touched_slots()) painting->canvas().mark_dirty(slot);
     work_.painting = std::move(painting);
     lines_.clear();
     if (!palette_.rgb.empty()) {

@@ -17,12 +17,8 @@ void file_menu(Session& s) {
     if (s.ui.menu_item("Revised model...", nullptr, false, ready)) s.files.show(FileDialog::Purpose::revise, s.painter->source());
     if (!s.former.empty() && s.ui.menu_item("Back to the former model", nullptr, false, ready)) open_former(s);
     ImGui::Separator();
-    if (s.ui.menu_item("Close model", nullptr, false, ready)) {
-        close_model(s);
-        s.recent = recent_projects();
-        s.lost = find_lost_work();
-    }
-    if (s.ui.menu_item("Quit", name_of(s.keys.chord(Act::quit)).c_str())) s.quit = true;
+    if (s.ui.menu_item("Close model", nullptr, false, ready)) leave(s, {Leaving::To::close, {}});
+    if (s.ui.menu_item("Quit", name_of(s.keys.chord(Act::quit)).c_str())) leave(s, {});
     ImGui::EndMenu();
 }
 
@@ -85,7 +81,7 @@ void menu_bar(Session& s) {
             ImGui::EndMenu();
         }
         if (s.painter) {
-            const std::string name = project_name(s);
+            const std::string name = project_name(s) + (s.last.viewing ? s.ui.tr(" (a view)") : "");
             const float width = ImGui::GetWindowWidth();
             const float text = ImGui::CalcTextSize(name.c_str()).x, x = std::max(0.5f * (width - text), ImGui::GetCursorPosX() + s.ui.px(8));
             if (x + text < width - s.ui.px(130 + 140 + 34)) {

@@ -237,7 +237,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     else if (c.name == "report") report(studio, now);
     else if (c.name == "names") {
         for (const std::string& name : s.ui.names()) std::printf("%s\n", name.c_str());
-    } else if (c.name == "quit") s.quit = true;
+    } else if (c.name == "quit") leave(s, {});
     return true;
 }
 

@@ -18,6 +18,7 @@ class Display {
     /// What went wrong since the last call and is worth a message, "" if nothing.
     virtual std::string take_trouble() { return ""; }
     virtual bool closed() const = 0;
+    virtual void stay_open() {}  ///< after `closed`: it is not any more
     /// The graphics driver was reset: everything in its memory is gone.
     virtual bool lost() const;
     /// Makes a new OpenGL context, current on this thread, in place of the old one.

@@ -97,6 +97,7 @@ class Window : public Display {
     std::string take_trouble() override { return std::exchange(trouble_, ""); }
     void present() override { glfwSwapBuffers(window_); }
     bool closed() const override { return glfwWindowShouldClose(window_); }
+    void stay_open() override { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
     void resize(int width, int height) override { glfwSetWindowSize(window_, width, height); }
     void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
     int width() const override { return size().first; }

@@ -190,13 +190,20 @@ EntryMark mark_of(const Stroke& entry) {
     const double place[] = {t.placement.origin.x, t.placement.origin.y, t.placement.origin.z, t.placement.right.x, t.placement.right.y,
                             t.placement.right.z,  t.placement.down.x,   t.placement.down.y,   t.placement.down.z};
     h = hash_bytes(place, sizeof place, h);
-    const std::uint64_t rest[] = {t.seed, t.flat, static_cast<std::uint64_t>(t.placement.laying), entry.hidden};
+    const std::uint64_t rest[] = {t.seed, t.flat, static_cast<std::uint64_t>(t.placement.laying)};
     h = hash_bytes(rest, sizeof rest, h);
     for (const std::string& text : {t.brush, t.ink, t.label, entry_json(entry)}) {
         const std::size_t size = text.size();
         h = hash_bytes(text.data(), size, hash_bytes(&size, sizeof size, h));
     }
-    return {entry.id, h};
+    EntryMark mark{entry.id, h};
+    set_hidden(mark, entry.hidden);
+    return mark;
+}
+
+void set_hidden(EntryMark& mark, bool hidden) {
+    if (hidden != mark.hidden) mark.content = ~mark.content;
+    mark.hidden = hidden;
 }
 
 std::vector<EntryMark> marks_of(std::span<const Stroke> entries) {

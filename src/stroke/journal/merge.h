@@ -13,11 +13,13 @@ namespace tuft::stroke {
 /// What is remembered of an entry, to tell later whether somebody changed it.
 struct EntryMark {
     std::uint64_t id = 0;
-    std::uint64_t content = 0;  ///< hash of all that a project stores of it, but for its id
+    std::uint64_t content = 0;  ///< hash of all that a project stores of it, but for its id; of a hidden one with all bits turned
+    bool hidden = false;
 
     bool operator==(const EntryMark&) const = default;
 };
 EntryMark mark_of(const Stroke& entry);
+void set_hidden(EntryMark& mark, bool hidden);
 std::vector<EntryMark> marks_of(std::span<const Stroke> entries);
 
 struct MergedJournal {

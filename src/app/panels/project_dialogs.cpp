@@ -1,0 +1,54 @@
+#include <imgui.h>
+
+#include "app/panels/panels.h"
+
+/// Questions about where the work is kept.
+namespace tuft::app {
+
+void in_use_dialog(Session& s) {
+    if (!s.in_use || !begin_dialog(s, "Project in use", 480)) {
+        if (s.in_use) end_dialog(s);
+        return;
+    }
+    Ui& ui = s.ui;
+    ui.wrapped(s.in_use->project.filename().string() + ": " + io::name_of(s.in_use->holder) + ui.tr(" is working on it."));
+    ui.wrapped(ui.tr("Close it there to go on with it here. A view shows what is painted there, stroke by stroke; a copy goes on by itself."));
+    ImGui::Dummy(ImVec2(0, ui.px(4)));
+    ui.buttons_at_right({{"Cancel", 100}, {"Look at it", 110}, {"Work on a copy", 140}});
+    const bool cancelled = ui.button("Cancel", nullptr, 100);
+    ImGui::SameLine();
+    const bool view = ui.button("Look at it", "Nothing can be painted; Save as... makes a copy", 110);
+    ImGui::SameLine();
+    const bool copy = ui.primary_button("Work on a copy", 140);
+    end_dialog(s);
+    if (copy || view) open_in_use(s, copy ? OpenAs::copy : OpenAs::view);
+    else if (cancelled) s.in_use.reset();
+}
+
+void leave_dialog(Session& s) {
+    if (!s.leaving || !s.painter || !begin_dialog(s, "Work that is not on disk", 560)) {
+        if (s.leaving && s.painter) end_dialog(s);
+        return;
+    }
+    Ui& ui = s.ui;
+    const std::size_t n = s.last.unkept;
+    if (n > 0) ui.wrapped(ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ":");
+    else ui.wrapped(ui.tr("The last change waits in memory:"));
+    ui.wrapped(s.last.trouble);
+    ImGui::Dummy(ImVec2(0, ui.px(4)));
+    ui.buttons_at_right({{"Go back", 90}, {"Leave all the same", 140}, {"Save as...", 110}, {"Try again", 110}});
+    const bool back = ui.button("Go back", nullptr, 90);
+    ImGui::SameLine();
+    const bool leave = ui.button("Leave all the same", "What can be written goes into a copy that is offered at the next start", 140);
+    ImGui::SameLine();
+    const bool save = ui.button("Save as...", nullptr, 110);
+    ImGui::SameLine();
+    const bool again = ui.primary_button("Try again", 110);
+    end_dialog(s);
+    if (leave) return leave_at_once(s, *s.leaving);
+    if (again) s.painter->post(RetryKeeping{});
+    if (back || save) s.leaving.reset();
+    if (save) s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft");
+}
+
+}  // namespace tuft::app
