@@ -53,6 +53,39 @@ void take_file(Session& s, const fs::path& project) {
     if (const fs::path& before = s.last.project; is_unnamed(before) && before != s.revises && before != s.former) fs::remove(before, ec);
 }
 
+// A layer just added is painted on, and so is one that an undo brings back after it was removed from under the hand.
+// Without the one painted on: the one before it was added, where that is undone, else its neighbour below.
+void follow_layers(Session& s, const stroke::LayerTable& now, bool outside) {
+    const std::uint32_t before = s.layer, newest = now.next_id - 1;
+    if (s.layers_seen == 0) s.layer = now.layers.back().id;
+    else if (now.next_id > s.layers_seen && !outside && now.find(newest)) {
+        if (s.layer != kNewestLayer) s.layers_before.push_back(s.layer);
+        s.layer = newest;
+    } else if (s.layer == kNewestLayer) {
+        if (!s.painter->idle()) return;  // still to come
+        s.layer = s.layers_before.back();  // it could not be added
+        s.layers_before.pop_back();
+    } else if (s.layer_gone != 0 && now.find(s.layer_gone)) {
+        s.layer = s.layer_gone;
+    }
+    if (!now.find(s.layer)) {
+        const std::vector<stroke::Layer>& was = s.last.layers.layers;
+        const auto place = std::find_if(was.begin(), was.end(), [&](const stroke::Layer& l) { return l.id == s.layer; }) - was.begin();
+        s.layer_gone = s.layer;
+        s.layer = now.layers[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(place - 1, 0, static_cast<std::ptrdiff_t>(now.layers.size()) - 1))].id;
+        for (; now.next_id < s.layers_seen && !s.layers_before.empty(); s.layers_before.pop_back())
+            if (now.find(s.layers_before.back())) {
+                s.layer = s.layers_before.back();
+                s.layers_before.pop_back();
+                break;
+            }
+    } else if (now.find(s.layer_gone)) {
+        s.layer_gone = 0;
+    }
+    s.layers_seen = now.next_id;
+    if (s.layer != before) s.layer_opacity = -1;
+}
+
 }  // namespace
 
 void say(Session& s, std::string message) {
@@ -124,6 +157,12 @@ void size_brush(Session& s, double factor) {
     } catch (const Error& error) {
         say(s, error.what());  // not every brush has every size
     }
+}
+
+void add_layer(Session& s, const std::string& name) {
+    s.painter->post(ChangeLayers{stroke::add_on_top(s.last.layers, name)});
+    if (s.layer != kNewestLayer) s.layers_before.push_back(s.layer);
+    s.layer = kNewestLayer;
 }
 
 void show_palette(Session& s, bool on) {
@@ -253,6 +292,8 @@ void close_model(Session& s) {
     s.former.clear();
     s.show_misfits = s.shift_stroke = s.show_colours = false;
     s.mask = s.veiled = s.masks_seen = 0;
+    s.layers_seen = s.layer_gone = 0;
+    s.layers_before.clear();
     s.lasso.clear();
     s.own_inks.clear();
     s.palette.shown = false;
@@ -330,6 +371,7 @@ void poll_painter(Session& s) {
     u.tiles = std::move(tiles);
     if (!u.pixels) u.pixels = std::move(s.last.pixels);
     if (!u.tuft) u.tuft = std::move(s.last.tuft);
+    follow_layers(s, u.layers, u.from_outside);
     const stroke::MaskTable& masks = u.masks;
     // A mask that was just made is the one wanted; one that is gone holds nothing back.
     if (masks.next_id > s.masks_seen && s.masks_seen > 0 && !masks.masks.empty()) choose_mask(s, masks.masks.back().id);

@@ -155,7 +155,10 @@ struct Session {
     CapSettings cap;
     std::optional<Act> key_asked;          ///< action that the next key is given to
 
-    std::uint32_t layer = stroke::kFirstLayer;  ///< painted on
+    std::uint32_t layer = stroke::kFirstLayer;  ///< painted on; `kNewestLayer` while one that was asked for is not there yet
+    std::vector<std::uint32_t> layers_before;  ///< painted on before one was added, the newest at the back
+    std::uint32_t layer_gone = 0;          ///< painted on when it was removed; 0: none
+    std::uint32_t layers_seen = 0;         ///< `LayerTable::next_id` at the last look; 0: none yet
     std::uint32_t mask = 0;                ///< kept to; 0: none
     std::uint32_t veiled = 0;              ///< the mask whose veil is asked for
     std::uint32_t masks_seen = 0;          ///< `MaskTable::next_id` at the last look; 0: none yet
@@ -203,6 +206,8 @@ void open_ink(Session& s, const std::filesystem::path& path);
 void save_ink(Session& s, const std::filesystem::path& path);
 /// An ink of this work, or a shipped one; nullptr when it cannot be read.
 const ink::Ink* find_ink(const Session& s, const std::string& name);
+/// Adds a layer on top, which is painted on from now on.
+void add_layer(Session& s, const std::string& name);
 /// Shows the palette or puts it away. With it out, the brush keeps what is in it.
 void show_palette(Session& s, bool on);
 /// Takes the brush in hand in another size, times that of its make, within what there is.

@@ -190,5 +190,25 @@ TEST_F(PainterTest, AFileLeftAfterAChangeIsNotOpenedWithFormerTexels) {
     end();
 }
 
+// Before the first new layer is shown: both are there, and what is painted on the newest is on the second.
+TEST_F(PainterTest, ALayerThatIsAskedForTwiceComesTwiceUnderTwoNames) {
+    const ChangeLayers add{stroke::add_on_top(stroke::LayerTable{}, "Layer 2")};
+    painter_->post(add);
+    painter_->post(add);
+    painter_->post(BeginStroke{.brush = "wolf-small", .ink = "carbon", .layer = kNewestLayer});
+    painter_->post(ExtendStroke{test::poses_above(painter_->model(), preset_, 0.02, 0)});
+    painter_->post(EndStroke{});
+    rest();
+    EXPECT_TRUE(messages_.empty()) << messages_.front();
+    const auto entries = io::Project::open(folder_ / "work.tuft").strokes();
+    ASSERT_EQ(entries.size(), 3u);
+    const stroke::LayerTable table = stroke::layers_after(entries);
+    ASSERT_EQ(table.layers.size(), 3u);
+    EXPECT_EQ(table.layers[1].name, "Layer 2");
+    EXPECT_EQ(table.layers[2].name, "Layer 3");
+    EXPECT_EQ(entries[2].layer, table.layers[2].id);
+    end();
+}
+
 }  // namespace
 }  // namespace tuft::app

@@ -475,6 +475,27 @@ TEST_F(StudioProgram, BadFilesAndFoldersAreAMessageAndWorkGoesOn) {
     EXPECT_EQ(ran.status, 0) << ran.err;
 }
 
+// Strokes are asked for without a wait, as a quick hand does.
+TEST_F(StudioProgram, ALayerJustAddedIsPaintedOnAndAfterItsEndTheOneBefore) {
+    const std::string add = "click \"Add a layer\"\n", stroke = "stroke 46%,58% 50%,61%\n", undo = "wait-ready\nundo\nwait-ready\nwait 0.2\n";
+    const Ran ran = studio(kBowl + stroke + add + stroke +                                        // on layers 1, 2
+                           "wait-ready\nwait 0.2\nset layer \"Layer 1\"\n" + stroke +             // 1
+                           add + "wait-ready\nwait 0.2\n" + add + stroke +                        // 4
+                           undo + undo + undo + stroke +                                          // without them: 1
+                           "wait-ready\nclick \"layer Layer 2\"\nwait 0.3\nclick Remove\nwait-ready\nwait 0.2\n" + stroke + undo + undo +
+                           stroke +                                                               // it is back: 2
+                           "wait-ready\nset palette on\n" + add + "wait-ready\nset palette off\n" + stroke +  // 3
+                           "wait-ready\nexpect kept\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto entries = io::Project::open(path("work.tuft")).strokes();
+    const stroke::LayerTable table = stroke::layers_after(entries);
+    std::string layers;
+    for (const stroke::Stroke& s : entries)
+        if (s.action == stroke::Action::stroke) layers += table.find(s.layer)->name.substr(6);
+    EXPECT_EQ(layers, "12112" + std::to_string(table.layers.size()));
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
+}
+
 // Neither the state folder nor a temporary one can be written into.
 TEST_F(StudioProgram, WorkGoesOnWhereNothingCanBeKeptAndCanBeSavedElsewhere) {
     fs::remove_all(path("state"));

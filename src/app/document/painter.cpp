@@ -97,6 +97,7 @@ Update Painter::take() {
     update_.own_inks.reset();
     update_.palette.reset();
     update_.on_palette = out.on_palette;
+    update_.from_outside = false;
     update_.brush_colour = out.brush_colour;
     update_.looks.reset();
     update_.picked.clear();
@@ -269,7 +270,7 @@ void Painter::begin(const BeginStroke& command) {
     stroke.trace.ink = current_.ink;
     if (command.carry || loads_ > 0) stroke.settings.dip = "carry";
     if (command.wet) stroke.settings.film = "wet";
-    stroke.layer = command.layer;
+    stroke.layer = current_.layer = layer_of(command.layer);
     stroke.mask = command.mask;
     stroke.trace.erases = command.erases;
     work_.painting->begin(std::move(stroke));
@@ -297,6 +298,17 @@ void Painter::change_layers(const ChangeLayers& command) {
     if (command.edit.what == stroke::LayerChange::remove)
         if (const stroke::Layer* layer = work_.painting->layers().find(command.edit.layer.id)) entry.trace.label = layer->name;
     entry.edit = command.edit;
+    // The button may be pressed twice before the first new layer is shown.
+    if (stroke::Layer& layer = entry.edit.layer; command.edit.what == stroke::LayerChange::add) {
+        const stroke::LayerTable& table = work_.painting->layers();
+        if (layer.id < table.next_id) {
+            layer.id = 0;
+            entry.edit.place = static_cast<std::uint32_t>(table.layers.size());
+        }
+        const std::string stem = layer.name.substr(0, layer.name.find_last_not_of("0123456789") + 1);
+        for (std::size_t n = table.layers.size() + 1; table.find(std::string_view(layer.name)); ++n) layer.name = stem + std::to_string(n);
+        entry.trace.label = layer.name;
+    }
     act(std::move(entry));
 }
 
@@ -308,9 +320,15 @@ void Painter::fill(const FillModel& command) {
     entry.trace.flat = false;
     entry.trace.ink = command.ink;
     entry.fill = command.fill;
-    entry.layer = command.layer;
+    entry.layer = layer_of(command.layer);
     entry.mask = command.mask;
     act(std::move(entry));
+}
+
+std::uint32_t Painter::layer_of(std::uint32_t asked) const {
+    const stroke::LayerTable& table = work_.painting->layers();
+    if (asked != kNewestLayer) return asked;
+    return table.find(table.next_id - 1) ? table.next_id - 1 : table.layers.back().id;
 }
 
 // An entry that is done at once.
@@ -344,7 +362,7 @@ void Painter::paint_drawing(PaintDrawing& command) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
         work_.keeper.prepare(*work_.painting, all[i].trace.brush, all[i].trace.ink);
-        all[i].layer = command.layer;
+        all[i].layer = layer_of(command.layer);
         all[i].mask = command.mask;
         if (command.wet) all[i].settings.film = "wet";
         work_.painting->paint(std::move(all[i]));

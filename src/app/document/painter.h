@@ -24,6 +24,9 @@
 
 namespace tuft::app {
 
+/// In the place of a layer: the one added last, which may still be asked for.
+inline constexpr std::uint32_t kNewestLayer = stroke::kPaletteLayer - 1;
+
 /// What the painter is asked to do; it does so in order.
 struct BeginStroke {
     std::string brush, ink;
@@ -171,6 +174,7 @@ struct Update {
     bool on_palette = false;      ///< `tuft` is there
     bool can_undo = false, can_redo = false;
     stroke::LayerTable layers;
+    bool from_outside = false;    ///< another program had a part in the change
     stroke::MaskTable masks;
     std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones
     std::optional<Looks> looks;
@@ -256,6 +260,7 @@ class Painter {
     void send_pixels();
     void publish_looks();
     void look_at_brush();
+    std::uint32_t layer_of(std::uint32_t asked) const;
     void load_tip(const BeginStroke& command, std::size_t& made);
     void paint_drawing(PaintDrawing& command);
     void care(const CareForBrush& command);

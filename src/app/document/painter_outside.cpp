@@ -44,6 +44,10 @@ void Painter::take_outside() {
     std::vector<stroke::EntryMark> marks = stroke::marks_of(theirs);
     const bool same_strokes = marks == keeper.on_disk() && !keeper.behind();
     stroke::MergedJournal merged = stroke::merge_journals(keeper.on_disk(), work_.painting->journal().strokes(), theirs);
+    if (!same_strokes) {
+        const std::lock_guard lock(mutex_);
+        update_.from_outside = true;
+    }
     if (!same_strokes) paint_merged(*file, merged);
     else io::show_looks(*file, *work_.painting);
     const bool altered = merged.altered && !same_strokes;

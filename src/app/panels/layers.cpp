@@ -63,7 +63,6 @@ void layers_section(Session& s) {
     Ui& ui = s.ui;
     const auto& all = s.last.layers.layers;
     if (all.empty()) return;
-    if (!s.last.layers.find(s.layer)) s.layer = all.back().id;
     ui.heading("Layers");
     for (std::size_t i = all.size(); i-- > 0;) {
         const Layer& layer = all[i];
@@ -89,7 +88,7 @@ void layers_section(Session& s) {
         ImGui::PopID();
     }
     if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0, all.size() < stroke::kMaxLayers))
-        change(s, stroke::add_on_top(s.last.layers, fresh_name(s)));
+        add_layer(s, fresh_name(s));
 }
 
 }  // namespace tuft::app
