@@ -407,18 +407,27 @@ std::string project_name(const Session& s) {
     return s.last.project.empty() || is_unnamed(s.last.project) ? fs::path(s.painter->source()).stem().string() : s.last.project.stem().string();
 }
 
+namespace {
+
+double number_within(const std::string& text, double lo, double hi) {
+    const double number = std::atof(text.c_str());
+    return number >= lo ? std::min(number, hi) : lo;  // NaN, too, becomes `lo`
+}
+
+}  // namespace
+
 void load_settings(Session& s) {
     std::ifstream in(state_folder() / "settings");
     for (std::string key, value; in >> key >> value;) {
         if (key == "language") s.wanted.language = value == "chinese" ? Language::chinese : Language::english;
         else if (key == "theme") s.wanted.theme = value == "light" ? Theme::light : Theme::dark;
-        else if (key == "scale") s.wanted.scale = std::clamp(static_cast<float>(std::atof(value.c_str())), 0.75f, 3.0f);
+        else if (key == "scale") s.wanted.scale = static_cast<float>(number_within(value, 0.75, 3));
         else if (key == "left_handed") s.wanted.left_handed = value == "1";
         else if (key.rfind("key:", 0) == 0) s.keys.restore(key.substr(4), value);
-        else if (key == "pen_least") s.hand.pen_least = std::clamp(std::atof(value.c_str()), 0.0, 0.9);
-        else if (key == "pen_full") s.hand.pen_full = std::clamp(std::atof(value.c_str()), s.hand.pen_least + 0.1, 1.0);
-        else if (key == "pen_gamma") s.hand.pen_gamma = std::clamp(std::atof(value.c_str()), 0.25, 4.0);
-        else if (key == "cap_speed") s.cap.speed = std::clamp(std::atof(value.c_str()), 0.1, 4.0);
+        else if (key == "pen_least") s.hand.pen_least = number_within(value, 0.0, 0.9);
+        else if (key == "pen_full") s.hand.pen_full = number_within(value, s.hand.pen_least + 0.1, 1.0);
+        else if (key == "pen_gamma") s.hand.pen_gamma = number_within(value, 0.25, 4.0);
+        else if (key == "cap_speed") s.cap.speed = number_within(value, 0.1, 4.0);
         else if (key == "cap_level") s.cap.level = value == "1";
         else if (key == "cap_eye") s.cap.moves_eye = value == "1";
         else if (key == "keymap") s.keymap = value == "maya" ? Keymap::maya : Keymap::blender;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "app/studio.h"
@@ -7,9 +8,23 @@
 /// Settings by name, for scripts.
 namespace tuft::app {
 
+namespace {
+
+/// The number that a value begins with, 0 where it is a word.
+double number_of(const std::string& value) {
+    constexpr double kMost = 1e6;
+    char* end = nullptr;
+    const double number = std::strtod(value.c_str(), &end);
+    const bool whole = !value.empty() && end == value.c_str() + value.size();
+    if (whole && !(std::abs(number) <= kMost)) throw Error("'" + value + "' is not a number within a million");
+    return std::isfinite(number) ? number : 0;
+}
+
+}  // namespace
+
 void Studio::set(const std::string& name, const std::string& value) {
     Session& s = session_;
-    const double number = std::atof(value.c_str());
+    const double number = number_of(value);
     const bool on = value == "on";
     const auto one_of = [&](const std::vector<std::string>& names) {
         const auto at = std::find(names.begin(), names.end(), value);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -48,7 +49,9 @@ double mean_texel_size(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
 }
 
 [[noreturn]] void refuse_texel_size(const UnwrapOptions& options, double size) {
-    throw Error("a texel of " + std::to_string(options.texel_size * 1e3) +
+    char millimetres[32];
+    std::snprintf(millimetres, sizeof millimetres, "%.3g", options.texel_size * 1e3);
+    throw Error("a texel of " + std::string(millimetres) +
                 " mm needs an atlas of " + std::to_string(static_cast<long long>(size)) +
                 " texels, more than the " + std::to_string(options.max_size) +
                 " allowed; use larger texels");

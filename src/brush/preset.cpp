@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/nesting.h"
 #include "core/units.h"
 
 namespace tuft::brush {
@@ -185,6 +186,7 @@ void check_preset(const Preset& p, const std::string& source) {
 }
 
 Preset parse_preset(std::string_view text, const std::string& source) {
+    check_toml_nesting(text, source);
     toml::table root;
     try {
         root = toml::parse(text);

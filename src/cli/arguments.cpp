@@ -1,10 +1,17 @@
 #include "cli/arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "cli/reference.h"
+#include "core/bounds.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "io/export_maps.h"
 #include "stroke/journal/trace.h"
@@ -18,29 +25,50 @@ constexpr const char* CLI::detail::type_name<std::filesystem::path>() {
 namespace tuft::cli {
 namespace {
 
-// "A,B[,C]" into numbers.
-std::vector<double> numbers(const std::string& text, char separator, std::size_t count) {
+constexpr double kFarthestMm = kFarthest / kMillimetre;
+constexpr std::size_t kLongestMessage = 600;  // bytes
+constexpr double kMostTexels = 1e9;     // along a side; memory is asked about later
+constexpr double kLeastTexelMm = 1e-9;
+constexpr double kMostDegrees = 36000;  // a hundred turns
+
+/// The whole of `text` as a finite number; nothing for anything else.
+std::optional<double> number_of(const std::string& text) {
+    double value = 0;
+    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const char* end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(begin, end, value);
+    if (error != std::errc{} || last != end || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+/// "A,B[,C]" into numbers within ±`most`; empty when it is anything else.
+std::vector<double> numbers(const std::string& text, char separator, std::size_t count, double most) {
     std::vector<double> values;
     std::stringstream stream(text);
     std::string part;
     while (std::getline(stream, part, separator)) {
-        std::size_t used = 0;
-        double value = 0;
-        try {
-            value = std::stod(part, &used);
-        } catch (const std::exception&) {
-            used = 0;
-        }
-        if (used == 0 || used != part.size() || !std::isfinite(value)) return {};
-        values.push_back(value);
+        const std::optional<double> value = number_of(part);
+        if (!value || std::abs(*value) > most) return {};
+        values.push_back(*value);
     }
-    if (values.size() != count) values.clear();
+    if (values.size() != count || text.ends_with(separator)) values.clear();
     return values;
+}
+
+/// Checks every number of the command line: finite, and from `lo` to `hi`, which the help calls `name`.
+CLI::Validator number_in(double lo, double hi, const std::string& name = {}) {
+    return CLI::Validator(
+        [lo, hi](std::string& text) -> std::string {
+            const std::optional<double> value = number_of(text);
+            if (value && *value >= lo && *value <= hi) return {};
+            return fmt::format("'{}' is not a number from {:g} to {:g}", excerpt(text), lo, hi);
+        },
+        name.empty() ? fmt::format("{:g} to {:g}", lo, hi) : name);
 }
 
 void add_common(CLI::App* app, Common& c) {
     app->add_option("--threads", c.threads, "threads to use (0: one per core)")
-        ->check(CLI::Range(0, 1024));
+        ->check(number_in(0, 1024));
     app->add_flag("--json", c.json, "print one JSON object on standard output");
     app->add_flag("--quiet", c.quiet, "no progress, no notes");
 }
@@ -63,13 +91,13 @@ void add_frame(CLI::App* app, std::string& unit, std::string& up, const std::str
 void add_surface(CLI::App* app, Surface& s) {
     add_frame(app, s.unit, s.up, "unit of the model file (default: a guess from its size)");
     app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
-        ->check(CLI::PositiveNumber);
+        ->check(number_in(1, kMostTexels, "POSITIVE"));
     app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")
-        ->check(CLI::PositiveNumber);
+        ->check(number_in(kLeastTexelMm, kFarthestMm, "POSITIVE"));
     app->add_option("--pages", s.pages,
                     "most pages of the atlas (UDIM), each --atlas-size texels wide: as many as "
                     "--texel-size needs, or all of them")
-        ->check(CLI::Range(1, 100));
+        ->check(number_in(1, 100));
     app->parse_complete_callback([&s] {
         if (s.atlas_size > 0 && s.texel_size_mm > 0 && s.pages <= 1)
             throw CLI::ExcludesError("--atlas-size", "--texel-size (without --pages)");
@@ -86,7 +114,7 @@ void add_surface(CLI::App* app, Surface& s) {
         ->check(CLI::IsMember({"free", "groups", "sharp", "both"}))
         ->excludes(keep);
     app->add_option("--sharp-angle", s.sharp_angle_deg, "degrees from which an edge is sharp")
-        ->check(CLI::Range(1.0, 180.0));
+        ->check(number_in(1.0, 180.0));
     app->add_flag("--plain", s.plain,
                   "leave aside the colours that the model brings along (pictures, vertices, facets); else ink lies on them");
     add_store(app, s);
@@ -97,9 +125,9 @@ CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<doubl
         ->add_option_function<std::string>(
             name,
             [&to, name](const std::string& text) {
-                to = numbers(text, ',', 3);
+                to = numbers(text, ',', 3, kFarthestMm);
                 if (to.empty())
-                    throw CLI::ValidationError(name, "'" + text + "' is not X,Y,Z in millimetres");
+                    throw CLI::ValidationError(name, "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
             },
             what)
         ->type_name("X,Y,Z");
@@ -121,9 +149,9 @@ void add_view_direction(CLI::App* app, View& v) {
     app->add_option_function<std::string>(
            "--view",
            [&v](const std::string& text) {
-               const auto n = numbers(text, ',', 2);
+               const auto n = numbers(text, ',', 2, kMostDegrees);
                if (n.empty())
-                   throw CLI::ValidationError("--view", "'" + text + "' is not AZIMUTH,ELEVATION in degrees");
+                   throw CLI::ValidationError("--view", "'" + excerpt(text) + "' is not AZIMUTH,ELEVATION in degrees");
                v.azimuth = n[0];
                v.elevation = n[1];
                v.directed = true;
@@ -136,9 +164,9 @@ void add_view(CLI::App* app, View& v) {
     app->add_option_function<std::string>(
            "--size",
            [&v](const std::string& text) {
-               const auto n = numbers(text, 'x', 2);
-               if (n.empty() || n[0] < 16 || n[1] < 16 || n[0] > 16384 || n[1] > 16384)
-                   throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT, such as 1280x720");
+               const auto n = numbers(text, 'x', 2, 16384);
+               if (n.empty() || n[0] < 16 || n[1] < 16 || n[0] != std::floor(n[0]) || n[1] != std::floor(n[1]))
+                   throw CLI::ValidationError("--size", "'" + excerpt(text) + "' is not WIDTHxHEIGHT, such as 1280x720");
                v.width = static_cast<int>(n[0]);
                v.height = static_cast<int>(n[1]);
            },
@@ -146,15 +174,16 @@ void add_view(CLI::App* app, View& v) {
         ->type_name("WxH");
     add_layers(app, v.layers);
     add_view_direction(app, v);
-    app->add_option("--light", v.light, "turn the lights by so many degrees (they follow the camera)");
+    app->add_option("--light", v.light, "turn the lights by so many degrees (they follow the camera)")
+        ->check(number_in(-kMostDegrees, kMostDegrees, "DEGREES"));
     app->add_flag("--raking", v.raking, "one lamp from the side, which shows the relief of the ink; --light turns it about the view");
-    app->add_option("--zoom", v.zoom, "magnification (1: the whole model)")->check(CLI::Range(0.05, 100.0));
+    app->add_option("--zoom", v.zoom, "magnification (1: the whole model)")->check(number_in(0.05, 100.0));
     app->add_option_function<std::string>(
            "--target",
            [&v](const std::string& text) {
-               v.target_mm = numbers(text, ',', 3);
+               v.target_mm = numbers(text, ',', 3, kFarthestMm);
                if (v.target_mm.empty())
-                   throw CLI::ValidationError("--target", "'" + text + "' is not X,Y,Z in millimetres");
+                   throw CLI::ValidationError("--target", "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
            },
            "the point to look at, in millimetres: X,Y,Z")
         ->type_name("X,Y,Z");
@@ -166,6 +195,15 @@ void name_presets(CLI::App& app) {
         for (CLI::App* command : app.get_subcommands({}))
             if (CLI::Option* option = command->get_option_no_throw(name))
                 option->type_name(std::string_view(name) == "--brush" ? "BRUSH" : std::string_view(name).ends_with("ink") ? "INK" : "SUBSTRATE");
+}
+
+/// Nothing that an option takes is nothing: `--ink ""` is a slip, most often of a script.
+void check_no_empty_values(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& value : option->results())
+            if (value.empty())
+                throw CLI::ValidationError(option->get_name(), "its value is empty");
+    for (const CLI::App* command : app.get_subcommands()) check_no_empty_values(*command);
 }
 
 }  // namespace
@@ -203,14 +241,14 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option_function<std::string>(
          "--down", 
          [&paint](const std::string& text) {
-             paint.down = numbers(text, ',', 3);
-             if (paint.down.empty()) throw CLI::ValidationError("--down", "'" + text + "' is not X,Y,Z");
+             paint.down = numbers(text, ',', 3, kFarthestMm);
+             if (paint.down.empty()) throw CLI::ValidationError("--down", "'" + excerpt(text) + "' is not X,Y,Z");
          },
          "direction of weight for wet ink (0,0,0: none)")
         ->type_name("X,Y,Z");
     p->add_option("--dry", paint.dry,
                   "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
-        ->check(CLI::Range(0.0, 86400.0))
+        ->check(number_in(0.0, 86400.0))
         ->type_name("SECONDS");
     p->add_option("--prepare", paint.prepare,
                   "done with the full brush before it paints, in this order: rinse, wipe[,amount=0.6][,depth=0.3], "
@@ -229,17 +267,17 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
                   "pressure for flat strokes that have none: none, speed, dwell or speed+dwell")
         ->check(CLI::IsMember({"none", "speed", "dwell", "speed+dwell"}));
     p->add_option("--smooth", paint.smooth, "steady a shaky hand: 1 takes the jitter of a mouse away, 0 is off")
-        ->check(CLI::Range(0.0, 100.0));
+        ->check(number_in(0.0, 100.0));
     p->add_option("--stabilise", paint.stabilise_mm, "pull the tip on a string of so many millimetres")
-        ->check(CLI::Range(0.0, 1000.0))
+        ->check(number_in(0.0, 1000.0))
         ->type_name("MM");
     p->add_option("--habit", paint.habit, "undo a writer's habit (.toml, made by 'tuft habit')");
     p->add_option_function<std::string>(
          "--place",
          [&paint](const std::string& text) {
-             paint.place_mm = numbers(text, ',', 3);
+             paint.place_mm = numbers(text, ',', 3, kFarthestMm);
              if (paint.place_mm.empty())
-                 throw CLI::ValidationError("--place", "'" + text + "' is not X,Y,Z in millimetres");
+                 throw CLI::ValidationError("--place", "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
          },
          "where flat strokes go that have no place of their own: X,Y,Z in millimetres")
         ->type_name("X,Y,Z");
@@ -250,10 +288,10 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->check(CLI::IsMember({"drape", "wrap", "project"}));
     p->add_option("--place-width", paint.place_width_mm,
                   "draws what is placed this wide, all stroke files together (default: as written)")
-        ->check(CLI::PositiveNumber)
+        ->check(number_in(kLeastTexelMm, kFarthestMm, "POSITIVE"))
         ->type_name("MM");
     p->add_option("--place-turn", paint.place_turn_deg, "turns it anticlockwise by so many degrees")
-        ->check(CLI::Range(-360.0, 360.0))
+        ->check(number_in(-360.0, 360.0))
         ->type_name("DEG");
     p->add_flag("--place-mirror", paint.place_mirror, "flips it from left to right");
     p->add_flag("--fit-brush", paint.fit_brush, "with --brush: takes this make in the sizes that draw the line widths of a drawing");
@@ -325,10 +363,10 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     f->add_option("PROJECT", fill.project, "project file (.tuft)")->required();
     f->add_option("--ink", fill.ink, "ink to fill with");
     f->add_option("--film", fill.film, "film units of 10 um of wet ink (default: what a full brush leaves)")
-        ->check(CLI::Range(0.0, 1000.0));
+        ->check(number_in(0.0, 1000.0));
     f->add_option("--to-ink", fill.to_ink, "ink at the other end of a gradient (default: the same)");
     f->add_option("--to-film", fill.to_film, "film at the other end of a gradient (default: the same)")
-        ->check(CLI::Range(0.0, 1000.0));
+        ->check(number_in(0.0, 1000.0));
     auto* from = add_point(f, "--from", fill.from_mm, "where the gradient begins, in millimetres");
     auto* to = add_point(f, "--to", fill.to_mm, "where it ends");
     from->needs(to);
@@ -348,8 +386,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     k->require_option(2, 0);
     k->add_option("--group", mask.groups, "the mesh's groups of these names")->delimiter(',');
     add_point(k, "--facing", mask.direction, "where the surface faces this direction");
-    k->add_option("--within", mask.within, "to within so many degrees")->check(CLI::Range(0.0, 180.0));
-    k->add_option("--soft", mask.soft, "with an edge of so many degrees to either side")->check(CLI::Range(0.0, 180.0));
+    k->add_option("--within", mask.within, "to within so many degrees")->check(number_in(0.0, 180.0));
+    k->add_option("--soft", mask.soft, "with an edge of so many degrees to either side")->check(number_in(0.0, 180.0));
     add_point(k, "--chart", mask.chart_mm, "the chart of the atlas at this point, in millimetres");
     k->add_option("--lasso", mask.lasso, "what this polygon encloses: 'X,Y X,Y X,Y ...', millimetres right and up of the middle as seen from --view");
     add_view_direction(k, mask.view);
@@ -364,7 +402,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* d = app.add_subcommand("render", "draw a picture of a model or a project");
     d->add_option("FILE", render.file, "mesh or project")->required();
     d->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
-    d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(CLI::Range(1, 3600));
+    d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(number_in(1, 3600));
     add_frame(d, render.unit, render.up, "unit of a model file (default: a guess from its size)");
     add_look(d, render.look);
     d->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
@@ -380,6 +418,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     fit->add_option("MEASURED", brush.calibrate, "measured table (.csv)")->required();
     fit->add_option("-o,--output", brush.output, "brush preset to write (.toml)")->required();
     add_common(b, brush.common);
+    fit->fallthrough();  // options of 'brush' also stand behind 'calibrate'
 
     Habit habit;
     auto* h = app.add_subcommand("habit", "learn how a writer's strokes differ from those that were meant");
@@ -393,7 +432,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     n->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones");
     n->add_flag("--quick", bench.quick, "smaller models, fewer repeats");
     n->add_option("--atlas-size", bench.surface.atlas_size, "texels along the side of the atlas")
-        ->check(CLI::PositiveNumber);
+        ->check(number_in(1, kMostTexels, "POSITIVE"));
     n->add_option("--isa", bench.isa, "instruction set of the stamps: best, avx512, avx2, baseline")
         ->check(CLI::IsMember({"best", "avx512", "avx2", "baseline"}));
     add_store(n, bench.surface);
@@ -407,6 +446,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     }
     try {
         app.parse(argc, argv);
+        check_no_empty_values(app);
     } catch (const CLI::CallForHelp& help) {
         status = app.exit(help);
         return false;
@@ -419,7 +459,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     } catch (const CLI::ParseError& error) {
         std::string line = error.what();
         if (const auto end = line.find('\n'); end != std::string::npos) line.resize(end);
-        std::cerr << "tuft: " << line << " (see 'tuft --help')\n";
+        std::cerr << "tuft: " << excerpt(line, kLongestMessage) << " (see 'tuft --help')\n";
         status = 2;
         return false;
     }

@@ -408,7 +408,7 @@ int run(const Bench& a) {
     j["isa"] = isa == footprint::Isa::avx512 ? "avx512" : isa == footprint::Isa::avx2 ? "avx2" : "baseline";
     console.clear();
     if (a.common.json) {
-        std::cout << j.dump(2) << '\n';
+        print_json(j);
         return 0;
     }
     fmt::print("{}, one thread (preparing: all), {}, CPU time, medians\n", j["machine"].get<std::string>(),

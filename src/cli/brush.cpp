@@ -21,7 +21,7 @@ namespace {
 void list_brushes(bool json) {
     const std::vector<std::string> names = brush::list_presets();
     if (json) {
-        std::cout << nlohmann::json{{"brushes", names}}.dump(2) << '\n';
+        print_json(nlohmann::json{{"brushes", names}});
         return;
     }
     for (const std::string& name : names) {
@@ -81,13 +81,11 @@ int calibrate(const Brush& a) {
     const std::string toml = brush::preset_toml(fit.preset);
     write_file(a.output, toml.data(), toml.size());
     if (a.common.json)
-        std::cout << nlohmann::json{{"wrote", a.output.string()},
+        print_json(nlohmann::json{{"wrote", a.output.string()},
                                     {"rms_width_mm", fit.rms.width / kMillimetre},
                                     {"rms_drag_mm", fit.rms.drag / kMillimetre},
                                     {"rms_offset_mm", fit.rms.offset / kMillimetre},
-                                    {"evaluations", fit.evaluations}}
-                         .dump(2)
-                  << '\n';
+                                    {"evaluations", fit.evaluations}});
     else
         fmt::print("wrote {}: residuals (rms) {:.2f} mm of width, {:.2f} mm of contact length, {:.2f} mm of offset\n",
                    a.output.string(), fit.rms.width / kMillimetre, fit.rms.drag / kMillimetre,
@@ -120,7 +118,7 @@ int run(const Brush& a) {
         write_file(a.sweep_depth, csv.data(), csv.size());
     }
     const brush::QueryTable table = brush::make_table(preset);
-    if (a.common.json) std::cout << table_json(preset, table).dump(2) << '\n';
+    if (a.common.json) print_json(table_json(preset, table));
     else print_table(preset, table);
     return 0;
 }

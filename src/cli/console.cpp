@@ -3,20 +3,51 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <string_view>
+#include <thread>
+
+#include "core/interrupt.h"
 
 namespace tuft::cli {
 namespace {
 
-std::atomic<bool> g_stop{false};
-extern "C" void on_interrupt(int) {
-    // A second Ctrl-C ends the program the ordinary way.
-    std::signal(SIGINT, SIG_DFL);
-    g_stop = true;
+using namespace std::chrono_literals;
+
+/// For work to unwind by itself: a second less what the machine may be busy with.
+constexpr std::chrono::nanoseconds kPatience = 650ms, kTogether = 50ms;
+
+/// The next of these signals, or 0 after `patience`.
+int next_signal(const sigset_t& signals, std::chrono::nanoseconds patience) {
+    const timespec most{.tv_sec = 0, .tv_nsec = patience.count()};
+    for (;;) {
+        const int signal = ::sigtimedwait(&signals, nullptr, &most);
+        if (signal > 0) return signal;
+        if (errno != EINTR) return 0;
+    }
+}
+
+void await_signals(const sigset_t& signals) {
+    int first = 0;
+    while (::sigwait(&signals, &first) != 0) {}
+    request_interrupt();
+    // A terminal, `timeout` and others send one to the process and its group: it comes twice at the same time.
+    std::this_thread::sleep_for(kTogether);
+    while (next_signal(signals, 0ns) > 0) {}
+    const int second = next_signal(signals, kPatience);
+    remove_unfinished();
+    if (second > 0) {  // ends the ordinary way
+        std::signal(second, SIG_DFL);
+        ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+        ::raise(second);
+    }
+    constexpr std::string_view kStopped = "tuft: stopped\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kStopped.data(), kStopped.size());
+    ::_exit(1);
 }
 
 }  // namespace
@@ -52,11 +83,23 @@ struct Console::State {
     }
 };
 
+void listen_for_signals() {
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a write that fails, with a message
+    std::signal(SIGPIPE, SIG_IGN);  // so is a reader that went away
+    sigset_t signals;
+    ::sigemptyset(&signals);
+    ::sigaddset(&signals, SIGINT);
+    ::sigaddset(&signals, SIGTERM);
+    struct sigaction hang_up{};
+    ::sigaction(SIGHUP, nullptr, &hang_up);
+    if (hang_up.sa_handler != SIG_IGN) ::sigaddset(&signals, SIGHUP);  // ignored under nohup
+    ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    std::thread(await_signals, signals).detach();
+}
+
 Console::Console(bool quiet) : state_(std::make_unique<State>()) {
     state_->quiet = quiet;
     state_->terminal = ::isatty(STDERR_FILENO) == 1;
-    std::signal(SIGINT, on_interrupt);
-    std::signal(SIGTERM, on_interrupt);
 }
 
 Console::~Console() { clear(); }
@@ -64,7 +107,7 @@ Console::~Console() { clear(); }
 ProgressFn Console::progress() {
     return [state = state_.get()](std::string_view phase, double fraction) {
         if (state->terminal && !state->quiet) state->draw(phase, fraction);
-        return !g_stop.load();
+        return !interrupted();
     };
 }
 

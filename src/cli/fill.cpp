@@ -42,6 +42,8 @@ stroke::Stroke entry_of(const FillWork& a, stroke::Painting& painting) {
 int run(const FillWork& a) {
     Console console(a.common.quiet);
     const auto project = open_project(a.project, io::Access::write, console);
+    for (const std::vector<double>* point : {&a.part_mm, &a.chart_mm})
+        if (!point->empty()) check_on_surface(project->model, metres(*point), point == &a.part_mm ? "--part" : "--chart");
     stroke::Painting painting(project->model);
     restore(*project, painting, console);
     std::vector<stroke::Stroke> entries =
@@ -60,12 +62,10 @@ int run(const FillWork& a) {
     console.clear();
     const double volume = report.ink_given * ink::kFilmUnit * 1e9;
     if (a.common.json)
-        std::cout << nlohmann::json{{"project", a.project.string()},
+        print_json(nlohmann::json{{"project", a.project.string()},
                                     {"id", done.back().id},
                                     {"pigment_mm3", volume},
-                                    {"canvas_hash", fmt::format("{:016x}", painting.hash())}}
-                         .dump(2)
-                  << '\n';
+                                    {"canvas_hash", fmt::format("{:016x}", painting.hash())}});
     else
         fmt::print("filled with {:.1f} mm3 of pigment\n", volume);
     return 0;

@@ -28,13 +28,11 @@ int run(const Habit& a) {
         for (const double r : p.pressure_ratio) ratio += r / (4.0 * static_cast<double>(habit.pieces.size()));
     const glm::dmat2& m = habit.linear;
     if (a.common.json)
-        std::cout << nlohmann::json{{"wrote", a.output.string()},
+        print_json(nlohmann::json{{"wrote", a.output.string()},
                                     {"strokes", written.size()},
                                     {"pieces", habit.pieces.size()},
                                     {"pressure_ratio", ratio},
-                                    {"linear", {{m[0][0], m[1][0]}, {m[0][1], m[1][1]}}}}
-                         .dump(2)
-                  << '\n';
+                                    {"linear", {{m[0][0], m[1][0]}, {m[0][1], m[1][1]}}}});
     else
         fmt::print("wrote {}: {} strokes in {} pieces; mean pressure x {:.2f}, slant {:+.2f}, width x {:.2f}, height x {:.2f}\n",
                    a.output.string(), written.size(), habit.pieces.size(), ratio, m[1][0], m[0][0], m[1][1]);

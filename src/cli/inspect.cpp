@@ -31,6 +31,7 @@ int inspect_point(const Inspect& a) {
     console.clear();
     const Vec3 at = kMillimetre * Vec3(a.at_mm[0], a.at_mm[1], a.at_mm[2]);
     const stroke::Pick pick = a.palette ? painting.pick_palette(at) : painting.pick(at);
+    if (!a.palette) check_on_surface(project->model, at, "--at");
     const std::string name = a.save_ink.empty() ? "picked" : a.save_ink.stem().string();
     const std::optional<ink::Ink> ink = painting.ink_of(pick, name);
     if (!a.save_ink.empty()) {
@@ -61,7 +62,7 @@ int inspect_point(const Inspect& a) {
                                   {"amounts", amounts(f.amounts)}});
         if (ink)
             for (const ink::InkPart& part : ink->parts) j["parts"][part.pigment.name] = part.fraction;
-        std::cout << j.dump(2) << '\n';
+        print_json(j);
         return 0;
     }
     if (!ink) fmt::print("bare\n");
@@ -113,7 +114,7 @@ int inspect_project(const Inspect& a) {
                                     {"ink", s.trace.ink},
                                     {"samples", s.trace.samples.size()},
                                     {"hidden", s.hidden}});
-        std::cout << j.dump(2) << '\n';
+        print_json(j);
         return 0;
     }
     const Vec3 size = model.mesh.bounds.size() / kMillimetre;
@@ -222,7 +223,7 @@ int run(const Inspect& a) {
         j["uv_fault"] = s.has_uvs && !uvs.fault.empty() ? nlohmann::json(uvs.fault) : nlohmann::json();
         j["uv_notes"] = notes;
         j["atlas"] = s.has_uvs ? to_json(uvs.atlas, quality) : nlohmann::json();
-        std::cout << j.dump(2) << '\n';
+        print_json(j);
         return 0;
     }
     fmt::print("{}\n", a.file.string());

@@ -60,7 +60,7 @@ int run(const LayerWork& a) {
                                    {"visible", l.visible},
                                    {"opacity", l.opacity},
                                    {"locked", l.locked}});
-        std::cout << j.dump(2) << '\n';
+        print_json(j);
         return 0;
     }
     for (auto l = table.layers.rbegin(); l != table.layers.rend(); ++l)

@@ -5,11 +5,28 @@
 #include <new>
 
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/text.h"
+
+namespace {
+
+constexpr std::size_t kLongestMessage = 1000;  // bytes
+
+/// One line on standard error, whatever is in it; where nobody reads that, nothing.
+void tell(const std::string& what) noexcept {
+    try {
+        fmt::print(stderr, "tuft: {}\n", tuft::excerpt(what, kLongestMessage));
+    } catch (const std::exception&) {
+    }
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     using namespace tuft;
+    cli::listen_for_signals();
     cli::Command command;
     int status = 0;
     try {
@@ -20,14 +37,14 @@ int main(int argc, char** argv) {
         if (!std::cout) throw Error("standard output could not be written to its end");
         return status;
     } catch (const UsageError& error) {
-        fmt::print(stderr, "tuft: {}\n", error.what());
+        tell(error.what());
         return 2;
     } catch (const Cancelled&) {
-        fmt::print(stderr, "tuft: stopped\n");
+        tell("stopped");
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "tuft: not enough memory for this; try a smaller atlas or mesh\n");
+        tell("not enough memory for this; try a smaller atlas or mesh");
     } catch (const std::exception& error) {
-        fmt::print(stderr, "tuft: {}\n", error.what());
+        tell(error.what());
     }
     return 1;
 }

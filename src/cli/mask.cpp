@@ -8,6 +8,8 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
+#include "core/bounds.h"
+#include "core/text.h"
 #include "core/units.h"
 
 /// `tuft mask`: masks of a project, made and ended by entries of its journal.
@@ -25,8 +27,8 @@ std::vector<Vec2> polygon_of(const std::string& text) {
         const auto [comma, error] = std::from_chars(word.data(), end, p.x);
         const bool good = error == std::errc{} && comma != end && *comma == ',';
         const auto [last, fault] = std::from_chars(good ? comma + 1 : end, end, p.y);
-        if (!good || fault != std::errc{} || last != end || !std::isfinite(p.x) || !std::isfinite(p.y))
-            throw UsageError("'" + word + "' of --lasso is not X,Y in millimetres");
+        if (!good || fault != std::errc{} || last != end || !within(p, kFarthest / kMillimetre))
+            throw UsageError("'" + excerpt(word) + "' of --lasso is not X,Y in millimetres");
         polygon.push_back(kMillimetre * p);
     }
     return polygon;
@@ -98,6 +100,7 @@ int run(const MaskWork& a) {
     if (!a.remove) {
         // Looked at before it is kept: groups that are not there, a lasso beside the model.
         const auto opened = open_project(a.project, io::Access::read, console);
+        if (!a.chart_mm.empty()) check_on_surface(opened->model, kMillimetre * vector_of(a.chart_mm), "--chart");
         const stroke::MaskTexels texels = stroke::evaluate(entry.mask_edit.mask, table, opened->model);
         for (std::uint32_t slot = 0; slot < opened->model.texels.n_slots(); ++slot)
             for (int t = 0; t < atlas::kTileTexels; ++t)
@@ -107,11 +110,9 @@ int run(const MaskWork& a) {
     }
     project.append(entry);
     if (a.common.json)
-        std::cout << nlohmann::json{{"project", a.project.string()},
+        print_json(nlohmann::json{{"project", a.project.string()},
                                     {"id", entry.mask_edit.mask.id},
-                                    {"covered_cm2", covered * 1e4}}
-                         .dump(2)
-                  << '\n';
+                                    {"covered_cm2", covered * 1e4}});
     else if (a.remove)
         fmt::print("ended mask {}\n", a.name);
     else

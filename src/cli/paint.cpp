@@ -150,7 +150,7 @@ int run(const Paint& a) {
         j["seconds"] = {{"to_first_stamp", first_stamp}, {"preparing", prepared},
                         {"painting", painted}, {"total", seconds_since(start)}};
         j["peak_mb"] = peak_megabytes();
-        std::cout << j.dump(2) << '\n';
+        print_json(j);
     } else {
         fmt::print("painted {} strokes ({} stamps, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {} charts, texel {:.3f} mm\n",
                    reports.size(), stamps, given * ink::kFilmUnit * 1e9, painted, model.atlas.size,

@@ -77,12 +77,10 @@ int write_strokes(const Export& a, Console& console) {
     if (written.left_out > 0)
         console.note(fmt::format("warning: {} changes of layers and masks are not in a stroke file", written.left_out));
     if (a.common.json)
-        std::cout << nlohmann::json{{"project", a.project.string()},
+        print_json(nlohmann::json{{"project", a.project.string()},
                                     {"wrote", a.output.string()},
                                     {"traces", written.traces.size()},
-                                    {"left_out", written.left_out}}
-                         .dump(2)
-                  << '\n';
+                                    {"left_out", written.left_out}});
     else
         fmt::print("wrote {}\n", a.output.string());
     return 0;
@@ -134,7 +132,7 @@ int run(const Replay& a) {
                          {"misfits", std::move(list)},
                          {"atlas", to_json(model.atlas, model.atlas_report)},
                          {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
-        std::cout << j.dump(2) << '\n';
+        print_json(j);
     } else {
         fmt::print("replayed {} strokes, {} of them miss the model; atlas {} x {}\n", reports.size(),
                    missed, model.atlas.size, model.atlas.size);
@@ -161,11 +159,9 @@ int run(const Export& a) {
     else write_outputs({.exported = a.output, .frame = project->frame}, painting, console);
     console.clear();
     if (a.common.json)
-        std::cout << nlohmann::json{{"project", a.project.string()},
+        print_json(nlohmann::json{{"project", a.project.string()},
                                     {"wrote", a.output.string()},
-                                    {"canvas_hash", fmt::format("{:016x}", painting.hash())}}
-                         .dump(2)
-                  << '\n';
+                                    {"canvas_hash", fmt::format("{:016x}", painting.hash())}});
     else
         fmt::print("wrote {}\n", a.output.string());
     return 0;
@@ -206,7 +202,7 @@ int run(const Render& a) {
     }
     console.clear();
     if (a.common.json)
-        std::cout << nlohmann::json{{"wrote", wrote}}.dump(2) << '\n';
+        print_json(nlohmann::json{{"wrote", wrote}});
     else
         for (const std::string& path : wrote) fmt::print("wrote {}\n", path);
     return 0;

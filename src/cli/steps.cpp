@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -326,6 +327,19 @@ void restore(const OpenProject& project, stroke::Painting& painting, Console& co
     painting.use_substrate(project.substrate);
     io::use_presets(project.file, painting);
     io::restore_strokes(project.file, painting, console.progress());
+}
+
+void check_on_surface(const stroke::Model& model, const Vec3& at, const char* option) {
+    constexpr double kBeside = 0.05;  // of the diagonal
+    const auto near = model.query->closest_point(at);
+    if (!near || near->distance <= kBeside * model.mesh->bounds.diagonal()) return;
+    const Vec3 mm = near->position / kMillimetre;
+    throw Error(fmt::format("{}: the point lies {:.1f} mm beside the model, whose nearest point is {:.3f},{:.3f},{:.3f}",
+                            option, near->distance / kMillimetre, mm.x, mm.y, mm.z));
+}
+
+void print_json(const nlohmann::json& json) {
+    std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
 }
 
 nlohmann::json to_json(const mesh::RepairReport& r) {

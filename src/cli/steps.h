@@ -95,6 +95,12 @@ void show_looks(const io::Project& project, stroke::Painting& painting, const Lo
 /// Brings the painting to where the project stands: substrate, presets, strokes.
 void restore(const OpenProject& project, stroke::Painting& painting, Console& console);
 
+/// Throws `Error` when `at` (metres) lies further beside the surface than a twentieth of the model: then it is another
+/// point that was meant. `option` gave it.
+void check_on_surface(const stroke::Model& model, const Vec3& at, const char* option);
+
+/// One JSON object on standard output. Names of files that are not UTF-8 get a replacement character.
+void print_json(const nlohmann::json& json);
 nlohmann::json to_json(const mesh::RepairReport& report);
 nlohmann::json to_json(const atlas::Atlas& atlas, const atlas::AtlasReport& report);
 nlohmann::json to_json(const stroke::StrokeReport& report, const stroke::Stroke& stroke);

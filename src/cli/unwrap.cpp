@@ -38,7 +38,7 @@ int run(const Unwrap& a) {
         nlohmann::json j{{"model", a.model.string()}, {"wrote", a.output.string()},
                          {"triangles", model.mesh->n_triangles()},
                          {"atlas", to_json(unwrapped.atlas, r)}, {"peak_mb", peak_megabytes()}};
-        std::cout << j.dump(2) << '\n';
+        print_json(j);
         return 0;
     }
     const atlas::Atlas& made = unwrapped.atlas;

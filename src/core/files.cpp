@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 
 namespace fs = std::filesystem;
 
@@ -44,6 +45,9 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     const fs::path temporary =
         folder / ("." + path.stem().string() + ".part" + std::to_string(::getpid()) +
                   path.extension().string());
+    if (fs::exists(path, ec) && !fs::is_regular_file(path, ec))
+        throw Error(path.string(), "is there already and is not a regular file");
+    const Unfinished unfinished(temporary);
     try {
         write(temporary);
         fs::rename(temporary, path);

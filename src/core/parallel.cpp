@@ -11,6 +11,8 @@
 #include <memory>
 #include <mutex>
 
+#include "core/interrupt.h"
+
 namespace tuft {
 namespace {
 
@@ -45,6 +47,7 @@ int thread_count() {
 
 void parallel_for(std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
+    check_interrupt();
     if (n == 0) return;
     grain = std::max<std::size_t>(grain, 1);
     if (thread_count() == 1 || n <= grain) {
@@ -53,7 +56,10 @@ void parallel_for(std::size_t n, std::size_t grain,
     }
     arena().execute([&] {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
-                          [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+                          [&](const tbb::blocked_range<std::size_t>& r) {
+                              check_interrupt();
+                              body(r.begin(), r.end());
+                          });
     });
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/interrupt.h"
 #include "core/segment.h"
 
 namespace tuft::io {
@@ -239,6 +240,7 @@ std::vector<Part> parted(const Line& line, double reach) {
             turns[i] = glm::dot(glm::normalize(in), glm::normalize(out));
     }
     for (std::size_t i = 0; i < count; ++i) {  // the sharpest within reach
+        check_interrupt();
         if (turns[i] > kHairpin) continue;
         bool sharpest = true;
         for (std::size_t k = 0; k < count && sharpest; ++k)
@@ -370,6 +372,7 @@ std::vector<AreaLine> area_lines(std::span<const Ring> rings, FillRule rule) {
         if (!cover(border, lines)) break;
         std::vector<std::vector<AreaLine>> shells;
         for (int k = 0; level == 0 || k < 3; ++k) {
+            check_interrupt();
             const double d = (kFirst + kNext * k) * w;
             const std::vector<Line> runs = runs_at(outline, border, d, w);
             if (runs.empty()) break;

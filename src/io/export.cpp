@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "io/export_formats.h"
@@ -137,6 +138,7 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
         throw Error(path.string(), "the output folder '" + parent.string() + "' does not exist");
     const fs::path folder =
         parent / ("." + path.stem().string() + ".part" + std::to_string(::getpid()));
+    const Unfinished unfinished(folder);
     struct Cleanup {
         fs::path folder;
         ~Cleanup() {

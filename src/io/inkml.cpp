@@ -10,6 +10,7 @@
 #include "core/ease.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/interrupt.h"
 #include "core/units.h"
 #include "io/inkml_decode.h"
 #include "io/inkml_marks.h"
@@ -254,6 +255,7 @@ class Reader : InkmlText {
     }
 
     void add_trace(const xml_node& node, const State& outer) {
+        check_interrupt();
         const std::string_view type = node.attribute("type").value();
         if (type == "penUp") return;
         State state = outer;
@@ -328,7 +330,7 @@ class Reader : InkmlText {
             for (int k = 0; k < 3; ++k)
                 if (std::abs(s.position[k]) > options_.max_extent)
                     throw Error(path, line,
-                                "a coordinate lies " + std::to_string(std::abs(s.position[k])) +
+                                "a coordinate lies more than " + std::to_string(static_cast<long>(options_.max_extent)) +
                                     " m away; declare the unit of X and Y");
             s.time = get(t);
             s.pressure = get(p);

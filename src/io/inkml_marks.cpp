@@ -5,6 +5,7 @@
 #include <cmath>
 #include <pugixml.hpp>
 
+#include "core/bounds.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "stroke/journal/journal.h"
@@ -14,6 +15,8 @@ namespace tuft::io {
 namespace {
 
 using pugi::xml_node;
+
+constexpr double kLeastDirection = 1e-12;  // length of a vector that shall be normalised; the greatest is its inverse
 
 Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view text, std::string_view unit) {
     double v[3];
@@ -33,12 +36,15 @@ Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view tex
 /// Metres.
 Vec3 point_of(const InkmlText& file, const xml_node& node, std::string_view text) {
     const bool metres = trimmed(text).ends_with('m') && !trimmed(text).ends_with("mm");
-    return metres ? vector_of(file, node, text, "m") : kMillimetre * vector_of(file, node, text, "mm");
+    const Vec3 p = metres ? vector_of(file, node, text, "m") : kMillimetre * vector_of(file, node, text, "mm");
+    if (!within(p)) file.fail(node, std::string(node.attribute("type").value()) + " lies more than 10 km away");
+    return p;
 }
 
 Vec3 direction_of(const InkmlText& file, const xml_node& node, std::string_view text) {
     const Vec3 v = vector_of(file, node, text, "mm");
-    if (!(glm::length(v) > 0)) file.fail(node, "a placement's direction is zero");
+    if (!(glm::length(v) > kLeastDirection && within(v, 1 / kLeastDirection)))
+        file.fail(node, "a placement's direction is zero, or no direction");
     return is_unit(glm::dot(v, v)) ? v : glm::normalize(v);
 }
 
@@ -139,6 +145,7 @@ std::vector<stroke::TapeEdge> tape_of(const InkmlText& file, const xml_node& nod
         if (begin == std::string_view::npos) break;
         const auto x = to_number(text.substr(begin, end - begin));
         if (!x || numbers.size() >= 4 * stroke::kMostTape) file.fail(node, "tuft:tape is not a list of edges, four numbers each");
+        if (!(std::abs(*x) <= kFarthest)) file.fail(node, "an edge of tuft:tape lies more than 10 km away");
         numbers.push_back(*x);
         text.remove_prefix(end);
     }
@@ -153,7 +160,10 @@ std::vector<stroke::TapeEdge> tape_of(const InkmlText& file, const xml_node& nod
 long InkmlText::line_at(std::ptrdiff_t offset) const {
     const auto n =
         std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(content.size()));
-    return 1 + static_cast<long>(std::count(content.begin(), content.begin() + n, '\n'));
+    if (n < counted) counted = 0, counted_line = 1;
+    counted_line += static_cast<long>(std::count(content.begin() + counted, content.begin() + n, '\n'));
+    counted = n;
+    return counted_line;
 }
 
 void InkmlText::fail(const pugi::xml_node& node, const std::string& what) const {

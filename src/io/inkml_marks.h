@@ -19,8 +19,10 @@ namespace tuft::io {
 struct InkmlText {
     std::string_view content;
     const std::string& path;  ///< as it is named in errors
+    mutable std::ptrdiff_t counted = 0;  ///< offset up to which lines are counted
+    mutable long counted_line = 1;       ///< line there
 
-    /// Line of the character at `offset`, from 1.
+    /// Line of the character at `offset`, from 1. Offsets that ascend cost one pass over the file in all.
     long line_at(std::ptrdiff_t offset) const;
     /// Throws `Error` with the element's line.
     [[noreturn]] void fail(const pugi::xml_node& node, const std::string& what) const;

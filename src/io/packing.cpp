@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 
 namespace tuft::io {
 namespace {
@@ -96,6 +97,7 @@ std::vector<char> pack(const void* data, std::size_t count, const Packing& packi
     std::vector<unsigned char> piece(std::min(count, kPiece));
     for (std::size_t byte = 0; byte < packing.element; ++byte)
         for (std::size_t begin = 0; begin < count; begin += kPiece) {
+            check_interrupt();
             const std::size_t end = std::min(count, begin + kPiece);
             if (packing.element == 1)
                 spread<std::uint8_t>(data, begin, end, packing.lag, byte, piece.data());

@@ -156,7 +156,7 @@ struct Header {
 Header header_of(const fs::path& path) {
     if (OpenFile::is_open(path)) return {.sqlite = true, .own_kind = true, .application = kApplicationId, .version = 0};
     std::error_code ec;
-    if (!fs::is_regular_file(path, ec)) return {};
+    if (!fs::is_regular_file(path, ec)) return {};  // opening a pipe would wait for its other end
     std::ifstream file(path, std::ios::binary);
     char head[100] = {};
     file.read(head, sizeof head);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "atlas/flatten/fault.h"
+#include "core/bounds.h"
 #include "core/hash.h"
 #include "core/shallow_json.h"
 #include "core/units.h"
@@ -41,7 +42,10 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
     for (const std::uint32_t c : model.atlas.triangle_chart)
         if (c >= model.atlas.n_charts)
             damaged(path, "a triangle is in a chart that does not exist");
-    if (!all_finite(m.positions) || !all_finite(m.corner_normals) || !all_finite(m.corner_uvs) ||
+    for (const Vec3f& p : m.positions)
+        if (!within(Vec3(p))) damaged(path, "the model has points that are no numbers or lie more than 10 km away");
+    if (!(m.bounds.diagonal() >= kSmallestModel)) damaged(path, "the model is smaller than a micrometre");
+    if (!all_finite(m.corner_normals) || !all_finite(m.corner_uvs) ||
         !all_finite(model.atlas.corner_uvs))
         damaged(path, "the model has numbers that are not finite");
     if (m.corner_normals.empty() || m.neighbours.empty() || model.atlas.corner_uvs.empty() ||

@@ -1,7 +1,6 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -48,13 +47,6 @@ std::array<double, 9> numbers_of(const stroke::Placement& p) {
             p.right.z,  p.down.x,   p.down.y,   p.down.z};
 }
 
-template <class Range>
-bool finite(const Range& values) {
-    for (const double v : values)
-        if (!std::isfinite(v)) return false;
-    return true;
-}
-
 }  // namespace
 
 void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
@@ -67,9 +59,11 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         const stroke::Trace& t = stroke.trace;
         const std::vector<double> columns = columns_of(t.samples);
         const std::array<double, 9> placement = numbers_of(t.placement);
-        if (!finite(columns) || !finite(placement))
-            throw Error(path.string(), "stroke " + std::to_string(stroke.id) +
-                                           " has numbers that are not finite and is not stored");
+        try {
+            stroke::check_trace(t);
+        } catch (const Error& error) {
+            throw Error(path.string(), "stroke " + std::to_string(stroke.id) + " is not stored: " + error.what());
+        }
         const std::vector<char> blob = pack(columns.data(), columns.size(), kSamples);
         insert.bind(1, static_cast<std::int64_t>(stroke.id));
         insert.bind(2, t.brush);
@@ -145,8 +139,12 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         if (const auto now = 3 * numbers * sizeof(double); bytes - checked + now > kLookEvery) check_memory(path, bytes - std::exchange(checked, bytes) + now);
         std::vector<double> columns(numbers);
         unpack(blob.getBlob(), size, columns.data(), numbers, kSamples, what);
-        if (!finite(columns) || !finite(p)) throw Error(what + " has numbers that are not finite");
         t.samples = samples_of(columns);
+        try {
+            stroke::check_trace(t);
+        } catch (const Error& error) {
+            throw Error(what + ": " + error.what());
+        }
         strokes.push_back(std::move(stroke));
     }
     return strokes;

@@ -9,8 +9,11 @@
 #include <map>
 #include <span>
 
+#include "core/bounds.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/nesting.h"
+#include "core/text.h"
 #include "ink/colour/srgb.h"
 #include "io/materials.h"
 
@@ -19,30 +22,8 @@ namespace fs = std::filesystem;
 namespace tuft::io {
 namespace {
 
-constexpr int kMaxJsonDepth = 100;  // tinygltf and its JSON library recurse
 constexpr int kMaxNodeDepth = 1000;
 constexpr std::size_t kMaxCorners = std::size_t{1} << 31;
-
-/// Refuses JSON nested so deeply that parsing it would overflow the stack.
-void check_depth(const char* text, std::size_t size, const std::string& name) {
-    int depth = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < size; ++i) {
-        const char c = text[i];
-        if (quoted) {
-            if (c == '\\')
-                ++i;
-            else if (c == '"')
-                quoted = false;
-        } else if (c == '"') {
-            quoted = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > kMaxJsonDepth) throw Error(name, "its JSON is nested too deeply");
-        } else if (c == '}' || c == ']') {
-            --depth;
-        }
-    }
-}
 
 std::uint32_t u32(const char* bytes) {
     std::uint32_t v;
@@ -53,7 +34,7 @@ std::uint32_t u32(const char* bytes) {
 /// Checks the chunks of a GLB (tinygltf trusts the length of the second one) and the JSON.
 void check_container(const std::vector<char>& bytes, const std::string& name) {
     if (std::memcmp(bytes.data(), "glTF", std::min<std::size_t>(4, bytes.size())) != 0) {
-        check_depth(bytes.data(), bytes.size(), name);
+        check_json_nesting({bytes.data(), bytes.size()}, name);
         return;
     }
     if (bytes.size() < 20) throw Error(name, "the GLB file is cut short");
@@ -69,7 +50,7 @@ void check_container(const std::vector<char>& bytes, const std::string& name) {
         const std::size_t size = u32(&bytes[at]);
         if (size > length - at - 8)
             throw Error(name, "a chunk of the GLB file is longer than the file");
-        if (chunk == 0) check_depth(&bytes[at + 8], size, name);
+        if (chunk == 0) check_json_nesting({&bytes[at + 8], size}, name);
         at += 8 + size;
     }
 }
@@ -206,6 +187,9 @@ Loaded load(const std::vector<char>& bytes, const fs::path& path) {
         if (const std::string why = unread_compression(bytes); !why.empty()) err = why;
         while (!err.empty() && std::isspace(static_cast<unsigned char>(err.back()))) err.pop_back();
         std::replace(err.begin(), err.end(), '\n', ' ');
+        // The JSON library's messages begin with its name for the error, and end with what it read last.
+        if (const auto end = err.find("] "); err.starts_with("[json.exception") && end != err.npos)
+            err = "its JSON cannot be read: " + excerpt(err.substr(end + 2, err.find("; last read") - end - 2), 200);
         throw Error(name, err.empty() ? "is not a glTF file that can be read" : err);
     }
     if (model.asset.version.starts_with("1."))
@@ -504,7 +488,7 @@ class Gatherer {
         }
         if (dropped > 0)
             soup_.warnings.push_back(std::to_string(dropped) + " triangles of mesh '" + mesh.name +
-                                     "' were dropped: their vertices are not finite numbers");
+                                     "' were dropped: their vertices are no finite numbers or lie more than 10 km away");
     }
 
     std::uint32_t add_points(const Rows& points, const Mat4& world) {
@@ -515,9 +499,9 @@ class Gatherer {
         for (std::size_t i = 0; i < points.count; ++i) {
             const Vec3 p = Vec3(world * glm::dvec4(points.number(i, 0), points.number(i, 1),
                                                    points.number(i, 2), 1));
-            const bool finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-            bad_.push_back(!finite);
-            soup_.points.push_back(finite ? Vec3(p.x, -p.z, p.y) : Vec3(0));
+            const bool fits = within(p);
+            bad_.push_back(!fits);
+            soup_.points.push_back(fits ? Vec3(p.x, -p.z, p.y) : Vec3(0));
         }
         return base;
     }
@@ -582,7 +566,7 @@ class Gatherer {
     mesh::PolygonSoup soup_;
     std::map<std::pair<std::string, int>, std::uint32_t> group_of_;
     std::map<int, std::shared_ptr<const mesh::Picture>> pictures_;
-    std::vector<bool> bad_;  ///< [n_points] not finite
+    std::vector<bool> bad_;  ///< [n_points] not finite or out of bounds
     bool any_uv_ = false, any_colour_ = false;
 };
 

@@ -4,13 +4,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <pugixml.hpp>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/files.h"
+#include "core/interrupt.h"
 #include "io/area_lines.h"
 #include "io/svg_losses.h"
 #include "io/svg_style.h"
@@ -22,6 +23,7 @@ constexpr double kPixel = 0.0254 / 96;   // metres of a CSS pixel
 constexpr double kSpacing = 5e-4;        // metres, of samples on a straight line
 constexpr int kDeepest = 64;             // of nested groups
 constexpr std::size_t kMostElements = 1'000'000;  // drawn, each `use` of one counted
+constexpr std::size_t kMostText = std::size_t{1} << 30;  // bytes of attributes read, those of each `use` counted
 constexpr int kMostChords = 4096;        // of one curve
 using Matrix = glm::dmat3;
 using Line = std::vector<Vec2>;
@@ -86,7 +88,10 @@ class Drawing {
 
     void walk(const pugi::xml_node& node, Matrix matrix, SvgStyle style, int depth) {
         if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
+        check_interrupt();
         if (++n_elements_ > kMostElements) throw Error(source_, "there are too many elements in it");
+        for (const pugi::xml_attribute& one : node.attributes()) n_text_ += std::strlen(one.value());
+        if (n_text_ > kMostText) throw Error(source_, "what 'use' repeats makes it too large");
         const std::string name = local(node.name());
         static constexpr const char* skipped[] = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "metadata", "style", "title", "desc"};
         if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped) || is_lost(node, name)) return;
@@ -503,7 +508,7 @@ class Drawing {
     SvgLosses losses_;
     Vec2 view_{0};  // size of the page, units of the drawing
     std::vector<Drawn> lines_;
-    std::size_t n_points_ = 0, n_elements_ = 0;
+    std::size_t n_points_ = 0, n_elements_ = 0, n_text_ = 0;
     SvgIds by_id_;
 };
 
@@ -557,14 +562,8 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
 }
 
 std::vector<stroke::Trace> read_svg(const std::filesystem::path& path, const SvgOptions& options) {
-    std::error_code ec;
-    if (const auto size = std::filesystem::file_size(path, ec); ec) throw Error(path.string(), "the file cannot be read");
-    else if (size > options.ink.max_bytes) throw Error(path.string(), "the file is too large for a drawing");
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) throw Error(path.string(), "the file cannot be read");
-    return parse_svg(text.str(), path.string(), options);
+    const std::vector<char> bytes = read_file(path, options.ink.max_bytes);
+    return parse_svg({bytes.data(), bytes.size()}, path.string(), options);
 }
 
 std::vector<stroke::Trace> read_strokes(const std::filesystem::path& path, const InkmlOptions& options) {

@@ -120,18 +120,19 @@ std::map<std::string, std::string> SvgSheet::declared(const pugi::xml_node& node
 
 SvgPaint svg_paint(const std::string& value, const SvgIds& ids) {
     using Kind = SvgPaint::Kind;
-    if (!value.starts_with("url(")) {
-        const std::string colour = canonical(value);
-        if (colour == "none" || colour == "transparent") return {};
-        return {is_white(colour) ? Kind::white : Kind::flat, colour};
+    std::string_view left = value;
+    while (left.starts_with("url(")) {  // a fallback may be a reference again
+        const std::size_t close = std::min(left.find(')'), left.size());
+        std::string target(stripped(left.substr(4, close - 4)));
+        std::erase_if(target, [](char c) { return c == '"' || c == '\''; });
+        const auto at = target.starts_with('#') ? ids.find(target.substr(1)) : ids.end();
+        if (at != ids.end()) return {local_name(at->second) == "pattern" ? Kind::pattern : Kind::gradient, {}};
+        left = close < left.size() ? stripped(left.substr(close + 1)) : std::string_view();
+        if (left.empty()) return {Kind::missing, {}};
     }
-    const std::size_t close = std::min(value.find(')'), value.size());
-    std::string target(stripped(std::string_view(value).substr(4, close - 4)));
-    std::erase_if(target, [](char c) { return c == '"' || c == '\''; });
-    const auto at = target.starts_with('#') ? ids.find(target.substr(1)) : ids.end();
-    if (at != ids.end()) return {local_name(at->second) == "pattern" ? Kind::pattern : Kind::gradient, {}};
-    const std::string_view fallback = close < value.size() ? stripped(std::string_view(value).substr(close + 1)) : std::string_view();
-    return fallback.empty() ? SvgPaint{Kind::missing, {}} : svg_paint(std::string(fallback), ids);
+    const std::string colour = canonical(left);
+    if (colour == "none" || colour == "transparent") return {};
+    return {is_white(colour) ? Kind::white : Kind::flat, colour};
 }
 
 }  // namespace tuft::io

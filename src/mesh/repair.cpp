@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/bounds.h"
 #include "core/error.h"
 #include "mesh/half_edges.h"
 #include "mesh/surface_topology.h"
@@ -31,6 +32,11 @@ void check_soup(const PolygonSoup& soup) {
         if (c >= soup.points.size())
             throw Error("a polygon uses point " + std::to_string(c) + " of " +
                         std::to_string(soup.points.size()));
+}
+
+void check_size(const Box& bounds) {
+    if (!(bounds.diagonal() >= kSmallestModel))
+        throw Error("the mesh is smaller than a micrometre; say its unit");
 }
 
 class Repair {
@@ -75,12 +81,13 @@ void Repair::take_points() {
     for (const Vec3& p : soup_.points) {
         const Vec3 q = (options_.y_up ? Vec3(p.x, -p.z, p.y) : p) * options_.metres_per_unit;
         const double reach = std::abs(q.x) + std::abs(q.y) + std::abs(q.z);
-        if (!(reach < 1e30))
-            throw Error("the mesh has points that are not finite numbers or lie beyond 1e30 m");
+        if (!within(q))
+            throw Error("the mesh has points that lie more than 10 km from the origin; say its unit, or move it there");
         mesh_.positions.emplace_back(q);
         bounds.add(q);
         largest = std::max(largest, reach);
     }
+    if (!soup_.points.empty()) check_size(bounds);
     soup_.points = {};
     mesh_.colours = std::move(soup_.point_colours);
     // Float coordinates keep 1e-5 of the size out to this distance from the origin.
@@ -257,6 +264,7 @@ Surface Repair::hand_out(const SurfaceTopology& topology) {
     report_.holes = topology.n_border_loops();
     report_.closed = report_.border_edges == 0;
     for (const Vec3f& p : mesh_.positions) out.bounds.add(Vec3(p));
+    check_size(out.bounds);
     out.positions = std::move(mesh_.positions);
     out.triangles = std::move(mesh_.triangles);
     out.corner_uvs = std::move(mesh_.uvs);

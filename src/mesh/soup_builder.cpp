@@ -4,16 +4,14 @@
 #include <cmath>
 #include <functional>
 
+#include "core/bounds.h"
 #include "core/error.h"
+#include "core/text.h"
 
 namespace tuft::mesh {
 namespace {
 
 constexpr std::size_t kMaxCorners = 0xfffffff0u;  // offsets are 32-bit
-
-bool is_finite(const Vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 }  // namespace
 
@@ -25,9 +23,7 @@ std::string Tally::text(const std::string& what, const char* unit) const {
 }
 
 void SoupBuilder::add_point(const Vec3& p, long place) {
-    // Beyond 1e30 the squares that lengths and areas are made of leave the range of float.
-    const bool fits =
-        is_finite(p) && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 1e30;
+    const bool fits = within(p, kFarthestNumber);
     if (!fits) {
         bad_points_.push_back(static_cast<std::uint32_t>(soup.points.size()));
         bad_rows_.add(place);
@@ -64,10 +60,11 @@ void SoupBuilder::add_polygon(std::span<const std::uint32_t> corners, std::span<
 }
 
 std::uint32_t SoupBuilder::group(const std::string& name, const std::string& material) {
+    std::string readable = to_utf8(name);
     const auto [it, is_new] =
-        group_of_.try_emplace(name, static_cast<std::uint32_t>(soup.group_names.size()));
+        group_of_.try_emplace(readable, static_cast<std::uint32_t>(soup.group_names.size()));
     if (is_new) {
-        soup.group_names.push_back(name);
+        soup.group_names.push_back(std::move(readable));
         soup.material_names.push_back(material);
     }
     return it->second;
@@ -134,7 +131,7 @@ void SoupBuilder::drop_bad_points() {
     soup.polygon_groups.resize(out);
     if (!soup.corner_uvs.empty()) soup.corner_uvs.resize(out_corner);
     soup.warnings.push_back(
-        bad_rows_.text("vertices are not finite numbers and were dropped", unit_) +
+        bad_rows_.text("vertices are no finite numbers or lie beyond 1e10 and were dropped", unit_) +
         ", and with them " + std::to_string(dropped) + " faces");
 }
 
@@ -153,7 +150,7 @@ PolygonSoup SoupBuilder::finish() {
                                 " faces have no texture coordinates while others do");
     if (soup.n_polygons() == 0) {
         if (had_polygons)
-            throw Error(file_, "every face uses a vertex that is not a finite number");
+            throw Error(file_, "every face uses a vertex that is no finite number or lies beyond 1e10");
         if (n_points > 0)
             throw Error(file_, "has " + std::to_string(n_points) +
                                    " vertices but no faces; a surface is needed");

@@ -31,13 +31,14 @@ class SoupBuilder {
 
     PolygonSoup soup;
 
-    /// Adds a point; one that is not finite is dropped at the end, with its polygons.
+    /// Adds a point; one that is not finite or lies beyond `kFarthestNumber` is dropped at the end, with its polygons.
     void add_point(const Vec3& p, long place);
     /// Adds a polygon over point indices already in range; fewer than three corners are dropped.
     /// `uvs` is empty or has one entry per corner.
     void add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs,
                      std::uint32_t group, long place);
-    /// Index of the group with this name, new if need be; `material` is what its faces are made of.
+    /// Index of the group with this name (as UTF-8, see `to_utf8`), new if need be; `material` is what its
+    /// faces are made of, as the file spells it.
     std::uint32_t group(const std::string& name, const std::string& material = "");
     /// Group of the faces of this colour, named "#rrggbb". Where a file has faces of one colour only, or
     /// more than 256 colours, none of them is a group. The faces get materials of these colours.

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string>
 
+#include "core/bounds.h"
 #include "core/error.h"
 
 namespace tuft::mesh {
@@ -152,8 +153,11 @@ RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float t_min, float 
     return ray;
 }
 
-bool finite(const Vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+/// Embree asserts that rays stay below 1.8e18.
+constexpr float kEmbreeLimit = 1e18f;
+
+bool is_ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) {
+    return within(Vec3(origin), kEmbreeLimit) && within(Vec3(direction), kEmbreeLimit) && t_min <= t_max;
 }
 
 }  // namespace
@@ -208,7 +212,7 @@ SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
 SurfaceQuery& SurfaceQuery::operator=(SurfaceQuery&&) noexcept = default;
 
 std::optional<SurfacePoint> SurfaceQuery::closest_point(const Vec3& p, double max_distance) const {
-    if (!finite(p) || !(max_distance >= 0)) return std::nullopt;
+    if (!within(p, kEmbreeLimit) || !(max_distance >= 0)) return std::nullopt;
     Closest best;
     best.mesh = state_->mesh;
     best.p = p;
@@ -227,7 +231,7 @@ std::optional<SurfacePoint> SurfaceQuery::closest_point(const Vec3& p, double ma
 
 std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k,
                                                        double max_distance) const {
-    if (!finite(p) || k <= 0 || !(max_distance >= 0)) return {};
+    if (!within(p, kEmbreeLimit) || k <= 0 || !(max_distance >= 0)) return {};
     Nearest best;
     best.mesh = state_->mesh;
     best.p = p;
@@ -263,6 +267,7 @@ bool SurfaceQuery::occluded(const Vec3& origin, const Vec3& direction, double t_
 
 RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_min,
                            float t_max) const {
+    if (!is_ray(origin, direction, t_min, t_max)) return {};
     RTCRayHit rayhit{};
     rayhit.ray = make_ray(origin, direction, t_min, t_max);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -275,6 +280,7 @@ RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_
 
 bool SurfaceQuery::blocked(const Vec3f& origin, const Vec3f& direction, float t_min,
                            float t_max) const {
+    if (!is_ray(origin, direction, t_min, t_max)) return false;
     RTCRay ray = make_ray(origin, direction, t_min, t_max);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

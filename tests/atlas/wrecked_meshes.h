@@ -307,7 +307,7 @@ struct WreckedMesh {
 
 /// Seventy-two files, the same every time: eighteen kinds of damage, four of each.
 inline std::vector<WreckedMesh> wrecked_meshes() {
-    constexpr double kSizes[4] = {1e-36, 1e-15, 1e15, 1e32};  // millimetres
+    constexpr double kSizes[4] = {1e-3, 0.1, 1e3, 3e6};  // millimetres: the smallest and the largest there may be
     std::vector<WreckedMesh> files;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         Random random(100 + seed);

@@ -47,7 +47,7 @@ TEST(HostileObj, SaysFileAndLine) {
     EXPECT_EQ(error(v), "a.obj: has 3 vertices but no faces; a surface is needed");
     EXPECT_EQ(error("# nothing\n"), "a.obj: has no vertices and no faces");
     EXPECT_EQ(error("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
-              "a.obj: every face uses a vertex that is not a finite number");
+              "a.obj: every face uses a vertex that is no finite number or lies beyond 1e10");
     EXPECT_EQ(error(v + "f 1 2\n"), "a.obj: has 3 vertices but no faces; a surface is needed");
 }
 

@@ -1,10 +1,11 @@
 #include <algorithm>
-#include <fstream>
+#include <cmath>
 #include <map>
 #include <sstream>
 
 #include "app/script/script.h"
 #include "core/error.h"
+#include "core/files.h"
 
 /// Script format: one command a line, words separated by blanks, "quoted" where they hold
 /// blanks; # begins a comment. Places are X,Y in pixels of the window, or in per cent of the
@@ -50,6 +51,10 @@ const std::map<std::string, std::pair<int, int>> kCommands{
     {"undo", {0, 0}}, {"redo", {0, 0}}, {"save", {1, 1}}, {"export", {1, 1}}, {"close", {0, 0}}, {"screenshot", {1, 1}},
     {"expect", {1, 2}}, {"await", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"resize", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};
 
+constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+constexpr double kMostNumber = 1e6;  // of a place, in pixels or per cent
+constexpr double kMostCount = 1e18;  // of anything, such as a seed
+
 std::vector<std::string> split(const std::string& line, const std::string& file, int number) {
     std::vector<std::string> words;
     std::size_t i = 0;
@@ -72,12 +77,12 @@ std::vector<std::string> split(const std::string& line, const std::string& file,
     return words;
 }
 
-double number(std::string& text, bool& relative) {
+double number(std::string& text, bool& relative, double most = kMostNumber) {
     relative = !text.empty() && text.back() == '%';
     if (relative) text.pop_back();
     std::size_t used = 0;
     const double value = std::stod(text, &used);
-    if (used != text.size()) throw std::invalid_argument("");
+    if (used != text.size() || !(std::abs(value) <= most)) throw std::invalid_argument("");
     return relative ? value / 100 : value;
 }
 
@@ -98,11 +103,26 @@ ScriptPoint parse_point(const std::string& word, const std::string& file, int li
     return point;
 }
 
+/// Words of commands that are numbers: `wait nan` would wait for ever.
+void check_numbers(const ScriptCommand& c, const std::string& file) {
+    static constexpr const char* kNumeric[] = {"wait", "wait-ready", "rate", "scroll", "resize", "random"};
+    if (std::find(std::begin(kNumeric), std::end(kNumeric), c.name) == std::end(kNumeric)) return;
+    for (const std::string& word : c.words) {
+        std::string text = word;
+        bool relative = false;
+        try {
+            if (number(text, relative, kMostCount); !relative) continue;
+        } catch (const std::exception&) {
+        }
+        throw Error(file, c.line, "'" + word + "' is not a number for '" + c.name + "'");
+    }
+}
+
 }  // namespace
 
 std::vector<ScriptCommand> parse_script(const std::filesystem::path& path) {
-    std::ifstream in(path);
-    if (!in) throw Error(path.string(), "the script cannot be read");
+    const std::vector<char> bytes = read_file(path, kMostBytes);
+    std::istringstream in(std::string(bytes.begin(), bytes.end()));
     std::vector<ScriptCommand> commands;
     int number = 0;
     for (std::string line; std::getline(in, line);) {
@@ -123,6 +143,7 @@ std::vector<ScriptCommand> parse_script(const std::filesystem::path& path) {
             throw Error(path.string(), number, "'" + c.name + "' needs " + std::to_string(known->second.first) + " word(s) after it");
         if (c.name == "move" || c.name == "stroke")
             for (const std::string& word : c.words) c.points.push_back(parse_point(word, path.string(), number));
+        check_numbers(c, path.string());
         commands.push_back(std::move(c));
     }
     return commands;

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/nesting.h"
 
 namespace fs = std::filesystem;
 
@@ -102,6 +103,7 @@ const toml::array& Reader::array(std::string_view key) const {
 }
 
 toml::table parse_table(std::string_view text, const std::string& source) {
+    check_toml_nesting(text, source);
     try {
         return toml::parse(text);
     } catch (const toml::parse_error& e) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "stroke/hand/ground.h"
 #include "stroke/hand/laying.h"
 
@@ -97,7 +98,10 @@ class Drape {
             turned.curvature = feel(query_, start, radius_).curvature;
             line.push_back(turned);
         }
-        while (line.size() <= ring) line.push_back(step(query_, line.back(), stride_, radius_));
+        while (line.size() <= ring) {
+            check_interrupt();
+            line.push_back(step(query_, line.back(), stride_, radius_));
+        }
         return line[ring];
     }
 
@@ -120,6 +124,7 @@ LaidTrace lay_draped(const SurfaceQuery& query, const Trace& trace) {
     laid.origin_gap = drape.origin_gap();
     laid.samples.reserve(trace.samples.size());
     for (const TraceSample& s : trace.samples) {
+        check_interrupt();
         LaidSample out = drape.at(Vec2(s.position));
         const LaidSample hand = hand_data(s);
         out.time = hand.time;

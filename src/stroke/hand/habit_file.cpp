@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/nesting.h"
 #include "core/units.h"
 #include "stroke/hand/habit.h"
 
@@ -102,6 +103,7 @@ std::string habit_toml(const Habit& habit) {
 }
 
 Habit parse_habit(std::string_view text, const std::string& source) {
+    check_toml_nesting(text, source);
     toml::table root;
     try {
         root = toml::parse(text);

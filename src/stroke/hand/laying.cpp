@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 
 namespace tuft::stroke {
 
@@ -84,6 +85,7 @@ LaidTrace lay_wrapped(const mesh::SurfaceQuery& query, const Trace& trace) {
 
     laid.samples.reserve(trace.samples.size());
     for (const TraceSample& s : trace.samples) {
+        check_interrupt();
         LaidSample out = hand_data(s);
         const double length = std::hypot(s.position.x, s.position.y);
         const Vec3 heading =
@@ -149,6 +151,7 @@ LaidTrace lay_projected(const mesh::SurfaceQuery& query, const Trace& trace) {
     on_plane.reserve(trace.samples.size());
     laid.samples.reserve(trace.samples.size());
     for (const TraceSample& s : trace.samples) {
+        check_interrupt();
         LaidSample out = hand_data(s);
         const Vec3 p = place.origin + s.position.x * axes.right + s.position.y * axes.down;
         on_plane.push_back(p);

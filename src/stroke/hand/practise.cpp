@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "core/ease.h"
+#include "core/interrupt.h"
 #include "stroke/hand/laying.h"
 #include "stroke/hand/plane_ink.h"
 
@@ -147,6 +148,7 @@ std::vector<Look> looks_of(const std::vector<Station>& stations, const std::vect
         looks.push_back({at, out, i, far});
     };
     for (std::size_t i = 0; i < stations.size(); ++i) {
+        check_interrupt();
         if (weight[i] <= 0) continue;
         Vec2 in = heading(stations, i, -1), on = heading(stations, i, 1);
         const bool head = in == Vec2(0), tail = on == Vec2(0);
@@ -264,6 +266,7 @@ Trace practise(Trace trace, const brush::Preset& preset, const LineWidths& width
     double least = 1e300;
     Trace best = trace;
     for (int t = 0, idle = 0; t < kTries && idle < 2; ++t) {
+        check_interrupt();
         for (std::size_t i = 0; i < n; ++i) {
             TraceSample& s = tried.samples[i];
             s.position = Vec3(wanted[i].centre + moved[i], s.position.z);

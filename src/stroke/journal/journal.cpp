@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/bounds.h"
 #include "core/error.h"
 #include "core/shallow_json.h"
 #include "ink/touch/reservoir.h"
@@ -16,6 +18,10 @@ namespace {
 constexpr double kLongestString = 1.0;    // metres
 constexpr double kStrongestFilter = 100;
 constexpr double kLongestWait = 86400;    // seconds
+constexpr double kLongestStroke = 1e8;    // seconds; clocks of devices that count from their start are kept
+constexpr double kLongestDirection = 1e6;  // of a vector that shall be normalised; the least is its inverse
+constexpr double kMostPressure = 10;      // of the working depth
+constexpr double kMostTilt = 1.6;         // radians: a holder lies flat
 constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe", "wash"};
 
 nlohmann::json json_of(const Settings& s) {
@@ -84,6 +90,24 @@ void check_settings(const Settings& s) {
     if (!(s.stabilise >= 0 && s.stabilise <= kLongestString)) throw Error("stabilise is out of range");
 }
 
+void check_trace(const Trace& trace) {
+    const auto refuse = [](const char* what) { throw Error(std::string(what) + " is no number, or out of range"); };
+    const auto is_direction = [](const Vec3& v) { return within(v, kLongestDirection) && glm::length(v) > 1 / kLongestDirection; };
+    const Placement& p = trace.placement;
+    if (!within(p.origin)) refuse("the place of a drawing");
+    if (trace.flat && !(is_direction(p.right) && is_direction(p.down))) refuse("the direction of a drawing");
+    for (const TraceSample& s : trace.samples) {
+        if (!within(s.position)) refuse("a sample's place");
+        if (!(std::abs(s.time) <= kLongestStroke)) refuse("a sample's time");
+        if (!(std::abs(s.pressure) <= kMostPressure)) refuse("a sample's pressure");
+        if (!within(s.tilt, kMostTilt)) refuse("a sample's tilt");
+        const double square = glm::dot(s.rotation, s.rotation);
+        if (!(square > 1e-6 && square < 1e6)) refuse("a sample's rotation");
+    }
+    for (const TapeEdge& e : trace.tape)
+        if (!within(e.from) || !within(e.to)) refuse("an edge of tape");
+}
+
 void check_seconds(double seconds) {
     if (!(seconds >= 0 && seconds <= kLongestWait))
         throw Error("ink dries for 0 to " + std::to_string(static_cast<int>(kLongestWait)) + " seconds");
@@ -113,7 +137,7 @@ std::string entry_json(const Stroke& entry) {
         j["amount"] = entry.extent.amount;
         if (entry.extent.side != 0) j["side"] = entry.extent.side;
     }
-    return j.dump();
+    return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void read_entry_json(const std::string& json, Stroke& entry) {

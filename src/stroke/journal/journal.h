@@ -39,6 +39,10 @@ void check_settings(const Settings& settings);
 /// Throws `Error` for a time that ink cannot dry for.
 void check_seconds(double seconds);
 void check_extent(const Extent& extent, Action action);
+/// Throws `Error` for samples, a placement or tape that no hand can have made: numbers that are not finite, places
+/// beyond `kFarthest`, times beyond three years, pressures and tilts out of range, rotations and directions that
+/// are none.
+void check_trace(const Trace& trace);
 
 /// An entry of the journal: a stroke, or an action between strokes. An action has no samples;
 /// it names a brush, and for a dip the ink. Drying, fills and changes of layers and masks leave the brush

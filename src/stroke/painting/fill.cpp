@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/bounds.h"
 #include "core/error.h"
 #include "stroke/journal/entry_json.h"
 
@@ -11,7 +12,6 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kThickest = 1000;  // film units: ten millimetres of ink
-constexpr double kFarthest = 1e4;   // metres
 constexpr const char* kRegions[] = {"all", "part", "chart"};
 constexpr const char* kGradients[] = {"none", "along", "round"};
 
@@ -43,8 +43,7 @@ void check_fill(const Fill& f) {
     for (const double film : {f.film, f.to_film})
         if (!(film >= 0 && film <= kThickest)) throw Error("the film of a fill is 0 to 1000 film units");
     for (const Vec3& v : {f.from, f.to, f.at})
-        for (int k = 0; k < 3; ++k)
-            if (!(std::abs(v[k]) <= kFarthest)) throw Error("a point of a fill lies out of range");
+        if (!within(v)) throw Error("a point of a fill lies out of range");
     if (f.gradient != Gradient::none && !(glm::length(f.to - f.from) > 1e-9))
         throw Error("a gradient needs two points that lie apart");
 }

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/bounds.h"
 #include "core/error.h"
 #include "stroke/journal/entry_json.h"
 #include "stroke/journal/layers.h"
@@ -14,16 +15,11 @@ namespace {
 
 constexpr const char* kKinds[] = {"group", "angle", "chart", "lasso", "invert", "intersect", "unite"};
 constexpr std::size_t kMaxMasks = 1000, kMaxPoints = 10000;
-constexpr double kFarthest = 1e4;  // metres
-
-bool in_range(const Vec3& v) {
-    return std::abs(v.x) <= kFarthest && std::abs(v.y) <= kFarthest && std::abs(v.z) <= kFarthest;
-}
 
 void check_view(const LassoView& v) {
     const double off = std::abs(glm::length(v.right) - 1) + std::abs(glm::length(v.up) - 1) +
                        std::abs(glm::dot(v.right, v.up));
-    if (!in_range(v.origin) || !(off < 1e-6)) throw Error("the view of a lasso is no view");
+    if (!within(v.origin) || !(off < 1e-6)) throw Error("the view of a lasso is no view");
 }
 
 void check_mask(const MaskTable& table, const Mask& m) {
@@ -32,13 +28,13 @@ void check_mask(const MaskTable& table, const Mask& m) {
     if (m.points.size() + m.polygon.size() + m.groups.size() + m.of.size() > kMaxPoints)
         throw Error("a mask has too many points");
     for (const Vec3& p : m.points)
-        if (!in_range(p)) throw Error("a point of a mask lies out of range");
+        if (!within(p)) throw Error("a point of a mask lies out of range");
     for (const Vec2& p : m.polygon)
-        if (!in_range(Vec3(p, 0))) throw Error("a point of a mask lies out of range");
+        if (!within(p)) throw Error("a point of a mask lies out of range");
     if (m.kind == MaskKind::group && m.groups.empty()) throw Error("a mask by group needs the name of one");
     if (m.kind == MaskKind::chart && m.points.empty()) throw Error("a mask by chart needs a point");
     if (m.kind == MaskKind::angle) {
-        if (!in_range(m.direction) || !(glm::length(m.direction) > 1e-9))
+        if (!within(m.direction) || !(glm::length(m.direction) > 1e-9))
             throw Error("a mask by angle needs a direction");
         if (!(m.within >= 0 && m.within <= 3.15 && m.soft >= 0 && m.soft <= 3.15))
             throw Error("the angle of a mask is 0 to 180 degrees");

@@ -65,8 +65,8 @@ void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOpt
 
 std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels) {
     const double shape = atlas::is_packed(texels, size) ? kPackedShape : kFloatShape;
-    return static_cast<std::size_t>(static_cast<double>(size) * size * kOccupied *
-                                    (kBytesPerTexel + shape));
+    constexpr double kMost = 1e18;  // what no machine has, and std::size_t still holds
+    return static_cast<std::size_t>(std::min(kMost, static_cast<double>(size) * size * kOccupied * (kBytesPerTexel + shape)));
 }
 
 std::size_t available_memory() {

@@ -1,0 +1,125 @@
+#include "fuzz_paint.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mesh/polygon_soup.h"
+#include "promise.h"
+#include "stroke/painting/painting.h"
+
+namespace tuft::fuzz {
+namespace {
+
+/// A tile, a roof, a block or two tiles with a gap, some 20 mm large, each corner moved by up to
+/// half of it.
+mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
+    static const std::vector<Vec3> kCorners{{-10, -10, 0}, {10, -10, 0}, {10, 10, 0}, {-10, 10, 0},
+                                            {-10, -10, 8}, {10, -10, 8}, {10, 10, 8}, {-10, 10, 8}};
+    static const std::vector<std::vector<std::uint32_t>> kFaces[] = {
+        {{0, 1, 2, 3}},
+        {{0, 1, 2}, {0, 2, 7}, {2, 3, 7}},
+        {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
+        {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 2, 3}}};
+    mesh::PolygonSoup soup;
+    const int shape = bytes.below(4), reach = bytes.below(3);
+    for (const Vec3& corner : kCorners) {
+        Vec3 p = corner;
+        if (reach > 0)
+            for (int k = 0; k < 3; ++k) p[k] += (reach == 1 ? 0.5 : 10) * bytes.real();
+        soup.points.push_back(p);
+    }
+    soup.polygon_start.push_back(0);
+    for (const auto& face : kFaces[shape]) {
+        soup.corners.insert(soup.corners.end(), face.begin(), face.end());
+        soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+    }
+    return soup;
+}
+
+stroke::Stroke stroke_of(Bytes& bytes) {
+    static constexpr const char* kBrushes[] = {"wolf-small", "goat-small*0.3", "mixed-small*0.5",
+                                               "wolf-medium*0.2"};
+    static constexpr const char* kInks[] = {"carbon", "cinnabar", "water", "titanium-white-paste"};
+    stroke::Stroke s;
+    const int flags = bytes.byte(), more = bytes.byte();
+    s.settings.spine = flags & 1 ? "table" : "rod";
+    s.settings.footprint = flags & 2 ? "plane" : "surface";
+    s.settings.contact = flags & 4 ? "vertices" : "exact";
+    s.settings.dip = flags & 8 ? "carry" : "each";
+    s.settings.film = flags & 16 ? "wet" : "still";
+    s.settings.lead = !(flags & 32);
+    s.settings.smooth = flags & 64 ? 1 : 0;
+    s.settings.pressure = flags & 128 ? "speed+dwell" : "none";
+    s.settings.down = Vec3(bytes.real(), bytes.real(), bytes.real());
+    s.trace.brush = kBrushes[more & 3];
+    s.trace.ink = kInks[more >> 2 & 3];
+    s.trace.flat = !(more & 16);
+    s.trace.erases = (more & 0xe0) == 0xe0;
+    s.trace.seed = bytes.byte();
+    s.trace.placement.laying = static_cast<stroke::Laying>(bytes.below(3));
+    s.trace.placement.origin = 0.02 * Vec3(bytes.real(), bytes.real(), bytes.real());
+    if (more & 32) s.trace.placement.right = glm::normalize(Vec3(1, bytes.real(), bytes.real()));
+    const int n = 1 + bytes.below(20);
+    double time = 0;
+    for (int i = 0; i < n; ++i) {
+        stroke::TraceSample sample;
+        sample.time = time += 0.01 * (1 + bytes.real());
+        sample.position = 0.015 * Vec3(bytes.real(), bytes.real(), 0);
+        sample.pressure = 0.5 + 0.5 * bytes.real();
+        if (more & 64) sample.tilt = Vec2(bytes.real(), bytes.real());
+        if (!s.trace.flat) {
+            sample.position.z = 0.02 + 0.015 * bytes.real();
+            sample.rotation = glm::normalize(Quat(1, bytes.real(), bytes.real(), bytes.real()));
+        }
+        s.trace.samples.push_back(sample);
+    }
+    return s;
+}
+
+stroke::Stroke entry_of(Bytes& bytes) {
+    using stroke::Action;
+    static constexpr Action kActions[] = {Action::rinse, Action::reshape, Action::dip,
+                                          Action::wipe,  Action::dry,     Action::fill};
+    const int what = bytes.below(16);
+    stroke::Stroke s = stroke_of(bytes);
+    if (what >= static_cast<int>(std::size(kActions))) return s;
+    s.action = kActions[what];
+    s.trace.flat = s.trace.erases = false;
+    s.trace.samples.clear();
+    if (s.action == Action::dip || s.action == Action::wipe)
+        s.extent = {.depth = std::abs(bytes.real()),
+                    .amount = std::abs(bytes.real()),
+                    .side = bytes.real()};
+    if (s.action == Action::dry) s.seconds = 0.5 + std::abs(bytes.real());
+    if (s.action == Action::fill) s.fill.film = 2 * std::abs(bytes.real());
+    return s;
+}
+
+void check_ink(const ink::Canvas& canvas) {
+    for (std::uint32_t slot = 0; slot < canvas.n_slots(); ++slot)
+        for (std::size_t p = 0; p < canvas.pigments().size(); ++p)
+            if (const auto* plane = canvas.plane(slot, static_cast<int>(p)))
+                for (const float amount : *plane)
+                    promise(std::isfinite(amount) && amount >= 0, "ink is finite and not negative");
+}
+
+}  // namespace
+
+void run_paint(std::span<const std::uint8_t> input) {
+    Bytes bytes(input);
+    refusing([&] {
+        stroke::ModelOptions options;
+        options.unwrap.size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(4));
+        const stroke::Model model = stroke::prepare_model(tiny_mesh(bytes), options);
+        stroke::Painting painting(model);
+        for (int i = 0; i < 3 && !bytes.empty(); ++i)
+            refusing([&] { painting.paint(entry_of(bytes)); });
+        check_ink(painting.canvas());
+        stroke::Painting again(model);
+        again.replay(painting.journal().strokes());
+        promise(again.hash() == painting.hash(), "a replay gives the same bits");
+    });
+}
+
+}  // namespace tuft::fuzz

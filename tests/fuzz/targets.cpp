@@ -1,0 +1,224 @@
+#include "targets.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "brush/preset.h"
+#include "fuzz_paint.h"
+#include "ink/colour/pigments.h"
+#include "ink/colour/presets.h"
+#include "io/image.h"
+#include "io/inkml.h"
+#include "io/project.h"
+#include "io/read_gltf.h"
+#include "io/svg.h"
+#include "mesh/repair.h"
+#include "promise.h"
+#include "stroke/hand/habit.h"
+#include "stroke/journal/journal.h"
+
+namespace tuft::fuzz {
+namespace {
+
+using Input = std::span<const std::uint8_t>;
+
+std::vector<char> chars_of(Input input) {
+    return {input.begin(), input.end()};
+}
+std::string text_of(Input input) {
+    return {input.begin(), input.end()};
+}
+
+/// A folder of this process alone, where files may be looked for and none are.
+const std::filesystem::path& empty_folder() {
+    static const std::filesystem::path folder = [] {
+        const std::filesystem::path base = std::filesystem::is_directory("/dev/shm")
+                                               ? "/dev/shm"
+                                               : std::filesystem::temp_directory_path();
+        std::filesystem::path made = base / ("tuft_fuzz_" + std::to_string(::getpid()));
+        std::filesystem::create_directories(made);
+        std::atexit([] {
+            std::error_code ignored;
+            std::filesystem::remove_all(empty_folder(), ignored);
+        });
+        return made;
+    }();
+    return folder;
+}
+
+template <class V>
+bool finite(const V& v) {
+    for (int k = 0; k < V::length(); ++k)
+        if (!std::isfinite(v[k])) return false;
+    return true;
+}
+
+void check_surface(const mesh::Surface& surface) {
+    const mesh::TriangleMesh& m = surface.mesh;
+    promise(m.n_triangles() > 0, "a surface has triangles");
+    for (const Vec3f& p : m.positions) promise(finite(p), "positions are finite");
+    for (const auto& triangle : m.triangles)
+        for (const std::uint32_t v : triangle)
+            promise(v < m.n_vertices(), "triangles use vertices that are there");
+    for (std::size_t i = 0; i < m.neighbours.size(); ++i)
+        promise(m.neighbours[i] == kNone || m.neighbours[i] < m.n_triangles(),
+                "neighbours are there");
+    for (const Vec3f& n : m.corner_normals)
+        promise(finite(n) && std::abs(glm::length(n) - 1) < 1e-3f, "normals are of length 1");
+    for (const std::uint32_t g : m.triangle_groups)
+        promise(g < m.group_names.size(), "groups are there");
+}
+
+template <mesh::PolygonSoup (*Read)(const std::vector<char>&, const std::filesystem::path&)>
+void run_mesh(Input input) {
+    refusing([&] {
+        check_surface(mesh::build_surface(Read(chars_of(input), empty_folder() / "input")));
+    });
+}
+
+void check_traces(const std::vector<stroke::Trace>& traces) {
+    for (const stroke::Trace& trace : traces) {
+        stroke::check_trace(trace);
+        double last = -HUGE_VAL;
+        for (const stroke::TraceSample& s : trace.samples) {
+            promise(s.time >= last, "time never falls");
+            promise(s.pressure >= 0 && s.pressure <= 1, "pressures are parts");
+            last = s.time;
+        }
+    }
+}
+
+constexpr std::size_t kMostSamples = 20'000;
+
+void run_inkml(Input input) {
+    const io::InkmlOptions options{.max_samples = kMostSamples, .actions = true};
+    std::vector<stroke::Trace> traces;
+    refusing([&] { traces = io::parse_inkml(text_of(input), "input.inkml", options); });
+    check_traces(traces);  // what a reader lets through, a project takes
+    if (traces.empty()) return;
+    const std::string written = io::inkml_text(traces);
+    const std::vector<stroke::Trace> again = io::parse_inkml(written, "again.inkml", options);
+    promise(again.size() == traces.size(), "what is written is read again");
+}
+
+void run_svg(Input input) {
+    std::vector<stroke::Trace> traces;
+    refusing([&] {
+        traces = io::parse_svg(text_of(input), "input.svg", {.ink = {.max_samples = kMostSamples}});
+    });
+    check_traces(traces);
+}
+
+void run_brush(Input input) {
+    refusing([&] {
+        const brush::Preset preset = brush::parse_preset(text_of(input), "input.toml");
+        const std::string text = brush::preset_toml(preset);
+        promise(brush::preset_toml(brush::parse_preset(text, "again.toml")) == text,
+                "a brush that is written is read again");
+    });
+}
+
+void run_ink(Input input) {
+    refusing([&] {
+        const ink::Ink ink = ink::parse_ink(text_of(input), "input.toml");
+        const std::string text = ink::ink_toml(ink);
+        promise(ink::ink_toml(ink::parse_ink(text, "again.toml")) == text,
+                "an ink that is written is read again");
+    });
+}
+
+void run_substrate(Input input) {
+    refusing([&] {
+        const std::string text =
+            ink::substrate_toml(ink::parse_substrate(text_of(input), "input.toml"));
+        promise(ink::substrate_toml(ink::parse_substrate(text, "again.toml")) == text,
+                "a substrate that is written is read again");
+    });
+}
+
+void run_habit(Input input) {
+    refusing([&] {
+        const stroke::Habit habit = stroke::parse_habit(text_of(input), "input.toml");
+        stroke::parse_habit(stroke::habit_toml(habit), "again.toml");
+    });
+}
+
+void run_entry(Input input) {
+    refusing([&] {
+        stroke::Stroke entry;
+        stroke::read_entry_json(text_of(input), entry);
+        const std::string text = stroke::entry_json(entry);
+        stroke::Stroke again;
+        stroke::read_entry_json(text, again);
+        promise(stroke::entry_json(again) == text, "an entry that is written is read again");
+    });
+}
+
+void run_image(Input input) {
+    refusing([&] {
+        const io::Image8 image = io::decode_image8(chars_of(input), "input", std::size_t{1} << 20);
+        promise(image.pixels.size() == static_cast<std::size_t>(image.width) *
+                                           static_cast<std::size_t>(image.height) *
+                                           static_cast<std::size_t>(image.channels),
+                "a picture has all its pixels");
+    });
+}
+
+void run_project(Input input) {
+    const std::filesystem::path file = empty_folder() / "input.tuft";
+    std::filesystem::remove(file.string() + "-journal");
+    std::ofstream(file, std::ios::binary | std::ios::trunc)
+        .write(reinterpret_cast<const char*>(input.data()),
+               static_cast<std::streamsize>(input.size()));
+    refusing([&] {
+        const io::Project project = io::Project::open(file);
+        project.format();
+        project.written_by();
+        project.brushes();
+        project.inks();
+        project.recolours();
+        const io::ProjectModel model = project.model();
+        const std::vector<stroke::Stroke> strokes = project.strokes();
+        for (const stroke::Stroke& s : strokes) stroke::check_trace(s.trace);
+        for (const std::size_t slots : {std::size_t{1}, std::size_t{4}, std::size_t{16}})
+            project.load_canvases(slots);
+    });
+}
+
+constexpr Target kTargets[] = {
+    {"ply", run_mesh<mesh::read_ply>, 3000, true},
+    {"stl", run_mesh<mesh::read_stl>, 3000, true},
+    {"obj", run_mesh<mesh::read_obj>, 3000, true},
+    {"off", run_mesh<mesh::read_off>, 3000, true},
+    {"gltf", run_mesh<io::read_gltf>, 3000, true},
+    {"svg", run_svg, 2000, true},
+    {"inkml", run_inkml, 2000, true},
+    {"brush", run_brush, 3000, true},
+    {"ink", run_ink, 3000, true},
+    {"substrate", run_substrate, 3000, true},
+    {"habit", run_habit, 3000, true},
+    {"entry", run_entry, 3000, true},
+    {"project", run_project, 500, false},
+    {"image", run_image, 1000, false},
+    {"paint", run_paint, 15, false},
+};
+
+}  // namespace
+
+std::span<const Target> targets() {
+    return kTargets;
+}
+
+const Target* find_target(const char* name) {
+    for (const Target& target : kTargets)
+        if (std::strcmp(target.name, name) == 0) return &target;
+    return nullptr;
+}
+
+}  // namespace tuft::fuzz
