@@ -12,11 +12,14 @@
 #include <thread>
 
 #include "core/interrupt.h"
+#include "core/text.h"
 
 namespace tuft::cli {
 namespace {
 
 using namespace std::chrono_literals;
+
+constexpr std::size_t kLongestNote = 1000;  // bytes
 
 /// For work to unwind by itself: a second less what the machine may be busy with.
 constexpr std::chrono::nanoseconds kPatience = 650ms, kTogether = 50ms;
@@ -114,7 +117,7 @@ ProgressFn Console::progress() {
 void Console::note(const std::string& line) {
     if (state_->quiet) return;
     clear();
-    fmt::print(stderr, "tuft: {}\n", line);
+    fmt::print(stderr, "tuft: {}\n", excerpt(line, kLongestNote));
 }
 
 void Console::clear() {

@@ -344,8 +344,9 @@ class Reader : InkmlText {
                 s.tilt[k] = std::clamp(s.tilt[k], -85 * kDegree, 85 * kDegree);
             if (turned) {
                 s.rotation = Quat(get(q[0]), get(q[1]), get(q[2]), get(q[3]));
-                if (!(glm::length(s.rotation) > 1e-6))
-                    throw Error(path, line, "a rotation is zero");
+                const double size = glm::length(s.rotation);
+                if (!(size > 1e-6 && size < 1e6))
+                    throw Error(path, line, "a rotation is zero, or out of range");
                 if (!is_unit(glm::dot(s.rotation, s.rotation))) s.rotation = glm::normalize(s.rotation);
             } else if (!d.trace.flat) {
                 const Vec3 up = glm::normalize(Vec3(std::tan(s.tilt.x), std::tan(s.tilt.y), 1));
@@ -372,6 +373,11 @@ class Reader : InkmlText {
             if (samples.empty()) continue;
             set_times(d);
             if (d.trace.flat && !d.has_pressure) default_pressure(d.trace);
+            try {
+                stroke::check_trace(d.trace);
+            } catch (const Error& error) {
+                throw Error(path, d.line, error.what());
+            }
         }
     }
 

@@ -66,9 +66,9 @@ TEST_F(Stop, LongLinesBeingWalkedOverTheModel) {
                       mesh = write("sheet.obj", sheet_of(300));
     for (const char* laying : {"wrap", "drape"})
         expect_stopped("paint " + mesh + " --atlas-size 512 --place 100,100,0 --laying " +
-                           std::string(laying) + " --strokes " + drawing + " --project " +
-                           path("out.tuft"),
-                       6);
+                           std::string(laying) + " --strokes " + drawing + " --export " +
+                           path("out.glb"),
+                       3);
 }
 
 TEST_F(Stop, AModelBeingReadRepairedAndUnwrapped) {
@@ -85,13 +85,20 @@ TEST_F(Stop, MeasuringAndFitting) {
                    1);
 }
 
-TEST_F(Stop, InkBeingDriedAndReplayed) {
-    const std::string strokes = write("good.inkml", stroke_file("0 0 0", "wolf-large", 60));
-    const std::string paint =
-        "paint " + model("sheet.ply") + " --atlas-size 2048 --film wet --strokes " + strokes + " ";
-    expect_stopped(paint + "--dry 86400 --preview " + path("out.png"), 3);
-    for (const char* signal : {"INT", "HUP"})
-        expect_stopped(paint + "--dry 86400 --export " + path("out.glb"), 3, signal);
+TEST_F(Stop, InkFlowingAndReplayed) {
+    const std::string drawing = write("line.svg", leaf(2'000, false, 150)),
+                      short_one = write("good.inkml", stroke_file());
+    const std::string paint = "paint " + model("sheet.ply") +
+                              " --atlas-size 2048 --brush wolf-large --film wet --strokes " +
+                              drawing;
+    for (const char* signal : {"TERM", "INT", "HUP"})
+        expect_stopped(paint + " --place 0,0,0 --preview " + path("out.png"), 1.5, signal);
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --atlas-size 256 --strokes " + short_one +
+                   " --project " + path("short.tuft"))
+                  .status,
+              0);
+    expect_stopped(
+        "replay " + path("short.tuft") + " --atlas-size 8192 --export " + path("out.glb"), 0.7);
 }
 
 TEST_F(Stop, ASecondSignalEndsItAtOnce) {

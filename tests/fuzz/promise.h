@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <span>
-#include <string>
 
 #include "core/error.h"
 
@@ -16,13 +15,12 @@ inline void promise(bool holds, const char* what) {
     std::abort();
 }
 
-/// Runs `fn`; refusing its input with an `Error` of one line is right.
+/// Runs `fn`; refusing its input with an `Error` is right.
 template <class Fn>
 void refusing(Fn&& fn) {
     try {
         fn();
-    } catch (const Error& error) {
-        promise(std::string(error.what()).find('\n') == std::string::npos, "an error is one line");
+    } catch (const Error&) {
     }
 }
 

@@ -196,8 +196,8 @@ constexpr Target kTargets[] = {
     {"stl", run_mesh<mesh::read_stl>, 3000, true},
     {"obj", run_mesh<mesh::read_obj>, 3000, true},
     {"off", run_mesh<mesh::read_off>, 3000, true},
-    {"gltf", run_mesh<io::read_gltf>, 3000, true},
-    {"svg", run_svg, 2000, true},
+    {"gltf", run_mesh<io::read_gltf>, 1500, true},
+    {"svg", run_svg, 1000, true},
     {"inkml", run_inkml, 2000, true},
     {"brush", run_brush, 3000, true},
     {"ink", run_ink, 3000, true},
@@ -205,8 +205,8 @@ constexpr Target kTargets[] = {
     {"habit", run_habit, 3000, true},
     {"entry", run_entry, 3000, true},
     {"project", run_project, 500, false},
-    {"image", run_image, 1000, false},
-    {"paint", run_paint, 15, false},
+    {"image", run_image, 500, false},
+    {"paint", run_paint, 10, false},
 };
 
 }  // namespace

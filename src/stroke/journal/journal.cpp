@@ -8,6 +8,7 @@
 #include "core/bounds.h"
 #include "core/error.h"
 #include "core/shallow_json.h"
+#include "core/text.h"
 #include "ink/touch/reservoir.h"
 #include "stroke/journal/entry_json.h"
 
@@ -35,7 +36,7 @@ nlohmann::json parsed(const std::string& text) {
     try {
         return parse_shallow_json(text);
     } catch (const nlohmann::json::exception&) {
-        throw Error("the settings of a stroke cannot be read: " + text.substr(0, 80));
+        throw Error("the settings of a stroke cannot be read: " + excerpt(text, 80));
     }
 }
 
@@ -56,7 +57,7 @@ Settings settings_of(const nlohmann::json& j) {
         if (down.size() != 3) throw Error("the direction of weight of a stroke is no three numbers");
         s.down = {down[0], down[1], down[2]};
     } catch (const nlohmann::json::exception&) {
-        throw Error("the settings of a stroke cannot be read: " + j.dump().substr(0, 80));
+        throw Error("the settings of a stroke cannot be read: " + excerpt(j.dump(), 80));
     }
     check_settings(s);
     return s;
@@ -154,12 +155,12 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     entry.layer = id("layer", entry.layer);
     entry.mask = id("mask", entry.mask);
     if (const auto on = j.find("on"); on != j.end()) {
-        if (*on != "palette" && *on != "model") throw Error("a stroke is on the palette or the model, not on " + on->dump().substr(0, 40));
+        if (*on != "palette" && *on != "model") throw Error("a stroke is on the palette or the model, not on " + excerpt(on->dump(), 40));
         if (*on == "palette") entry.layer = kPaletteLayer;
     }
     entry.trace.erases = false;
     if (const auto tool = j.find("tool"); tool != j.end()) {
-        if (*tool != "eraser" && *tool != "brush") throw Error("the tool of a stroke is brush or eraser, not " + tool->dump().substr(0, 40));
+        if (*tool != "eraser" && *tool != "brush") throw Error("the tool of a stroke is brush or eraser, not " + excerpt(tool->dump(), 40));
         entry.trace.erases = *tool == "eraser";
     }
     entry.trace.tape.clear();
@@ -191,7 +192,7 @@ Action action_of(const std::string& name) {
     for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape, Action::dry, Action::layer,
                            Action::mask, Action::fill, Action::wipe, Action::wash})
         if (name == name_of(a)) return a;
-    throw Error("'" + name + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash");
+    throw Error("'" + excerpt(name) + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash");
 }
 
 void check_extent(const Extent& e, Action action) {
