@@ -156,7 +156,7 @@ void read_value(Preset& p, const std::string& table, const std::string& key, con
             fail(source, line_of(node), "'" + full + "' is " + number(v) + ", outside " +
                                             number(f.lo) + " to " + number(f.hi));
         }
-        p.*f.member = v * f.unit;
+        p.*f.member = v * f.unit + 0.0;  // no negative zero, whose text has no sign in TOML
         return;
     }
     unknown_key(source, node, full);

@@ -52,7 +52,10 @@ void remove_unfinished() noexcept {
     List& list = unfinished();
     const std::lock_guard lock(list.mutex);
     std::error_code ignored;
-    for (const std::filesystem::path& path : list.paths) std::filesystem::remove_all(path, ignored);
+    for (const std::filesystem::path& path : list.paths) {
+        std::filesystem::remove_all(path, ignored);
+        std::filesystem::remove(path.string() + "-journal", ignored);  // SQLite's, of a project
+    }
 }
 
 }  // namespace tuft

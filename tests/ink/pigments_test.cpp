@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "core/random.h"
 #include "ink/colour/colorimetry.h"
 #include "ink/colour/composite.h"
 
@@ -47,6 +48,24 @@ TEST(Presets, EverySubstrateLoadsAndWritesItselfBack) {
         EXPECT_EQ(substrate_toml(parse_substrate(substrate_toml(s), "again")), substrate_toml(s));
     }
     EXPECT_GE(list_substrates().size(), 5u);
+}
+
+TEST(Presets, NumbersInOtherUnitsAreReadBackToTheBit) {
+    // Micrometres of a float and millimetres of a double: a project stores this text, and its replay gives the same bits.
+    Random random(3);
+    for (int i = 0; i < 2000; ++i) {
+        Substrate substrate;
+        substrate.reflectance.fill(0.5f);
+        substrate.relief = static_cast<float>(random.uniform(0, 1e-3));
+        substrate.relief_length = static_cast<float>(random.uniform(1e-6, 1e-2));
+        const Substrate read = parse_substrate(substrate_toml(substrate), "text");
+        ASSERT_EQ(read.relief, substrate.relief);
+        ASSERT_EQ(read.relief_length, substrate.relief_length);
+        Ink ink = load_ink("carbon");
+        ink.supply_length = random.uniform(0.001, 100) * 1e-3;  // as it is read
+        ASSERT_EQ(parse_ink(ink_toml(ink), "text").supply_length, ink.supply_length);
+    }
+    EXPECT_EQ(ink_toml(parse_ink("film = 1\nyield_pa = -0.0\npigment = []", "text")), ink_toml(parse_ink("film = 1\nyield_pa = 0\npigment = []", "text")));
 }
 
 TEST(Presets, SubstratesDifferAsTheirMaterialsDo) {

@@ -13,6 +13,7 @@ using preset::list_text;
 using preset::quoted;
 using preset::shortest;
 using preset::shortest_float;
+using preset::shortest_in;
 
 namespace {
 
@@ -89,7 +90,7 @@ std::string pigment_text(const Pigment& p) {
     out << "density = " << shortest_float(p.density)
         << "\ngranulation = " << shortest_float(p.granulation)
         << "\nstaining = " << shortest_float(p.staining)
-        << "\nheight_um = " << shortest(p.height * 1e6)
+        << "\nheight_um = " << shortest_in(p.height, 1e-6)
         << "\nroughness = " << shortest_float(p.roughness) << "\nsource = " << quoted(p.source)
         << "\n";
     return out.str();
@@ -161,8 +162,8 @@ std::string ink_toml(const Ink& ink) {
     std::ostringstream out;
     out << "name = " << quoted(ink.name) << "\ntitle = " << quoted(ink.title)
         << "\nfilm = " << shortest(ink.film) << "\nsupply = " << shortest(ink.supply)
-        << "\nsupply_length_mm = " << shortest(ink.supply_length * 1e3)
-        << "\ntransfer_length_mm = " << shortest(ink.transfer_length * 1e3) << "\n";
+        << "\nsupply_length_mm = " << shortest_in(ink.supply_length, 1e-3)
+        << "\ntransfer_length_mm = " << shortest_in(ink.transfer_length, 1e-3) << "\n";
     if (ink.yield > 0) out << "yield_pa = " << shortest(ink.yield) << "\n";
     if (ink.parts.empty()) out << "pigment = []\n";
     for (const InkPart& part : ink.parts) {

@@ -1,6 +1,7 @@
 #include "ink/colour/presets.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -92,7 +93,7 @@ double Reader::in_range(const toml::node& node, std::string_view key, double lo,
         range << "'" << key << "' must lie in [" << lo << ", " << hi << "], not be " << *value;
         fail(node.source().begin.line, range.str());
     }
-    return *value;
+    return *value + 0.0;  // no negative zero, whose text has no sign in TOML
 }
 
 const toml::array& Reader::array(std::string_view key) const {
@@ -154,6 +155,29 @@ std::string shortest_float(float v) {
     for (int digits = 6; digits <= 9; ++digits) {
         std::snprintf(buffer, sizeof buffer, "%.*g", digits, static_cast<double>(v));
         if (static_cast<float>(std::strtod(buffer, nullptr)) == v) break;
+    }
+    return buffer;
+}
+
+std::string shortest_in(double v, double unit) {
+    char buffer[40];
+    for (int step = 0; step <= 4; ++step) {
+        double number = v / unit;
+        for (int k = 0; k < (step + 1) / 2; ++k)
+            number = std::nextafter(number, step % 2 == 1 ? HUGE_VAL : -HUGE_VAL);
+        for (int digits = 6; digits <= 17; ++digits) {
+            std::snprintf(buffer, sizeof buffer, "%.*g", digits, number);
+            if (std::strtod(buffer, nullptr) * unit == v) return buffer;
+        }
+    }
+    return shortest(v / unit);
+}
+
+std::string shortest_in(float v, double unit) {
+    char buffer[40];
+    for (int digits = 6; digits <= 17; ++digits) {
+        std::snprintf(buffer, sizeof buffer, "%.*g", digits, static_cast<double>(v) / unit);
+        if (static_cast<float>(std::strtod(buffer, nullptr) * unit) == v) break;
     }
     return buffer;
 }

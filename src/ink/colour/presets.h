@@ -55,6 +55,9 @@ Text load(std::string_view name, const char* folder, const char* kind);
 std::string quoted(const std::string& text);    ///< TOML basic string
 std::string shortest(double v);                 ///< TOML number
 std::string shortest_float(float v);            ///< fewest digits that read back as the same float
+/// The number of units that is read back, times `unit`, as the same value: a project's replay gives the same bits.
+std::string shortest_in(float v, double unit);
+std::string shortest_in(double v, double unit);
 std::string list_text(std::span<const float> values);
 
 }  // namespace tuft::ink::preset

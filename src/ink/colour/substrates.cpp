@@ -6,6 +6,7 @@ namespace tuft::ink {
 using preset::list_text;
 using preset::quoted;
 using preset::shortest_float;
+using preset::shortest_in;
 
 Substrate parse_substrate(std::string_view text, const std::string& source) {
     const toml::table table = preset::parse_table(text, source);
@@ -45,8 +46,8 @@ std::string substrate_toml(const Substrate& s) {
            "\nmetallic = " + shortest_float(s.metallic) +
            "\ncapacity = " + shortest_float(s.capacity) +
            "\ninterface = " + shortest_float(s.interface) +
-           "\nrelief_um = " + shortest_float(s.relief * 1e6f) +
-           "\nrelief_length_um = " + shortest_float(s.relief_length * 1e6f) +
+           "\nrelief_um = " + shortest_in(s.relief, 1e-6) +
+           "\nrelief_length_um = " + shortest_in(s.relief_length, 1e-6) +
            "\nabsorbency = " + shortest_float(s.absorbency) +
            "\npores = " + shortest_float(s.pores) +
            "\nretention = " + shortest_float(s.retention) +
