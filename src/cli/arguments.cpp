@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "ink/colour/match.h"
 #include "io/export_maps.h"
 #include "stroke/journal/trace.h"
 
@@ -141,7 +142,7 @@ void add_look(CLI::App* app, Look& look) {
     app->add_option("--substrate", look.substrate,
                     "show the ink on this substrate (name or .toml), without painting it anew");
     app->add_option("--recolour", look.recolours,
-                    "show what was painted with INK as another ink or recipe: INK=NAME or INK=FILE.toml")
+                    "show what was painted with INK as another ink or recipe: INK=NAME, INK=FILE.toml or INK=#rrggbb")
         ->type_name("INK=NAME");
 }
 
@@ -222,7 +223,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("MODEL", paint.model, "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project")->required();
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
     p->add_option("--brush", paint.brush, "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: what they name, else wolf-medium)");
-    p->add_option("--ink", paint.ink, "ink for all strokes (default: what they name, else carbon)");
+    p->add_option("--ink", paint.ink, "ink for all strokes: a name ('tuft ink' lists them), a .toml file, or a colour such as '#c03020' (default: what they name, else carbon)");
     p->add_option("--mask", paint.mask, "mask of the project to keep to, for strokes that name none");
     p->add_flag_callback("--erase", [&paint] { paint.erases = true; },
                          "the strokes take ink away, wet and dry, instead of leaving some");
@@ -325,7 +326,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     r->add_option("PROJECT", replay.project, "project file (.tuft)")->required();
     r->add_option("--model", replay.model, "paint onto this revised mesh instead");
     r->add_option("--brush", replay.brush, "use this brush for every stroke");
-    r->add_option("--ink", replay.ink, "use this ink for every stroke");
+    r->add_option("--ink", replay.ink, "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");
     add_surface(r, replay.surface);
     add_look(r, replay.look);
     r->add_option("--project", replay.out_project, "write a project file (.tuft)");
@@ -361,7 +362,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     FillWork fill;
     auto* f = app.add_subcommand("fill", "lay ink over a whole project, a part or a chart of it, even or graded");
     f->add_option("PROJECT", fill.project, "project file (.tuft)")->required();
-    f->add_option("--ink", fill.ink, "ink to fill with");
+    f->add_option("--ink", fill.ink, "ink to fill with: a name, a .toml file or a colour such as '#c03020'");
     f->add_option("--film", fill.film, "film units of 10 um of wet ink (default: what a full brush leaves)")
         ->check(number_in(0.0, 1000.0));
     f->add_option("--to-ink", fill.to_ink, "ink at the other end of a gradient (default: the same)");
@@ -427,6 +428,19 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     h->add_option("-o,--output", habit.output, "habit to write (.toml)")->required();
     add_common(h, habit.common);
 
+    InkWork ink;
+    auto* inks = app.add_subcommand("ink", "list the inks, or find the mix of pigments nearest to a colour");
+    auto* match = inks->add_subcommand("match", "find the mix of pigments nearest to a colour, by Kubelka-Munk and CIEDE2000");
+    match->add_option("COLOUR", ink.colour, "sRGB as '#rrggbb' (quoted: a shell takes an open # for a comment) or rrggbb")->required();
+    match->add_option("--substrate", ink.substrate, "what it is painted on: porcelain, bisque, clay, ...");
+    match->add_option("--film", ink.film, "thickness of the wet film in film units of 10 um (default, or 0: 2, or 4 or 8 where the colour needs it)")
+        ->check(CLI::Range(0.0, ink::kThickestMix));
+    match->add_option("--pigments", ink.pigments, "choose from these pigments only: NAME,... or FILE.toml,...")->delimiter(',');
+    match->add_option("--parts", ink.parts, "most pigments in the mix")->check(CLI::Range(1, 4));
+    match->add_option("-o,--output", ink.output, "write the mix as an ink (.toml), for --ink");
+    add_common(match, ink.common);
+    add_common(inks, ink.common);
+
     Bench bench;
     auto* n = app.add_subcommand("bench", "measure the speed on this machine");
     n->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones");
@@ -474,6 +488,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     else if (l->parsed()) command = layer;
     else if (f->parsed()) command = fill;
     else if (k->parsed()) command = mask;
+    else if (inks->parsed()) command = ink;
     else command = bench;
     return true;
 }

@@ -168,6 +168,17 @@ struct Habit {
     Common common;
 };
 
+/// `tuft ink`, `tuft ink match COLOUR`
+struct InkWork {
+    std::string colour;               ///< to be matched; empty: the inks are listed
+    std::string substrate = "porcelain";
+    double film = 0;                  ///< film units; 0: as many as the colour needs
+    int parts = 4;                    ///< pigments in the mix, at most
+    std::vector<std::string> pigments;  ///< names or .toml files to choose from; empty: all shipped ones
+    std::filesystem::path output;
+    Common common;
+};
+
 struct Bench {
     std::filesystem::path model;    ///< empty: models made by the benchmark
     bool quick = false;
@@ -176,7 +187,7 @@ struct Bench {
     Common common;
 };
 
-using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench, LayerWork, FillWork, MaskWork>;
+using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench, LayerWork, FillWork, MaskWork, InkWork>;
 
 /// Reads the command line. Prints help or version and returns false with `status` set
 /// when there is nothing to run; a wrong command line gives one line on standard error

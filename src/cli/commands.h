@@ -18,5 +18,6 @@ int run(const Bench& arguments);
 int run(const LayerWork& arguments);
 int run(const FillWork& arguments);
 int run(const MaskWork& arguments);
+int run(const InkWork& arguments);
 
 }  // namespace tuft::cli

@@ -11,6 +11,7 @@
 
 #include "core/units.h"
 #include "ink/colour/composite.h"
+#include "ink/colour/match.h"
 #include "ink/colour/recolour.h"
 #include "io/export.h"
 #include "io/image.h"
@@ -311,11 +312,11 @@ void show_looks(const io::Project& project, stroke::Painting& painting, const Lo
     for (const std::string& text : look.recolours) {
         const auto equals = text.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-            throw UsageError("--recolour: '" + text + "' is not INK=NAME or INK=FILE.toml");
+            throw UsageError("--recolour: '" + text + "' is not INK=NAME, INK=FILE.toml or INK=#rrggbb");
         const std::string name = text.substr(0, equals);
         if (!used.contains(name))
             throw Error("nothing is painted with ink '" + name + "'; there are: " + fmt::format("{}", fmt::join(used, ", ")));
-        painting.recolour(name, ink::load_ink(text.substr(equals + 1)));
+        painting.recolour(name, ink::ink_named(text.substr(equals + 1), painting.substrate()));
         for (const std::string& other : used)
             if (other != name && !ink::shared_pigments(painting.ink(name), painting.ink(other)).empty())
                 console.note(fmt::format("warning: ink {} shares pigments with {} and changes with it", other, name));

@@ -131,7 +131,7 @@ Lab lab_of_rgb(const std::array<double, 3>& rgb) {
     return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
 }
 
-double delta_e_2000(const Lab& p, const Lab& q) {
+ColourDifference colour_difference(const Lab& p, const Lab& q) {
     const double c_mean = 0.5 * (std::hypot(p[1], p[2]) + std::hypot(q[1], q[2]));
     const double c7 = std::pow(c_mean, 7), k25 = std::pow(25.0, 7);
     const double g = 0.5 * (1 - std::sqrt(c7 / (c7 + k25)));
@@ -160,7 +160,11 @@ double delta_e_2000(const Lab& p, const Lab& q) {
     const double sc = 1 + 0.045 * c_mean_, sh = 1 + 0.015 * c_mean_ * t;
     const double bend = (h_mean - 275) / 25, cm7 = std::pow(c_mean_, 7);
     const double rt = -std::sin(radians(60 * std::exp(-bend * bend))) * 2 * std::sqrt(cm7 / (cm7 + k25));
-    const double x = dl / sl, y = dc / sc, z = dh_ / sh;
+    return {.l = dl / sl, .c = dc / sc, .h = dh_ / sh, .r = rt};
+}
+
+double delta_e_2000(const Lab& p, const Lab& q) {
+    const auto [x, y, z, rt] = colour_difference(p, q);
     return std::sqrt(std::max(0.0, x * x + y * y + z * z + rt * y * z));
 }
 

@@ -36,7 +36,15 @@ Spectrum spectrum_of_rgb(const Rgb& colour);
 /// CIELAB of a linear sRGB colour, white (1, 1, 1). Negative tristimulus values count as 0.
 Lab lab_of_rgb(const std::array<double, 3>& linear_rgb);
 
-/// CIEDE2000 with unit weights. Source: Sharma, Wu, Dalal 2005.
+/// The terms of CIEDE2000 with unit weights: ΔE² = l² + c² + h² + r c h.
+/// Source: Sharma, Wu, Dalal 2005, equations 2 to 22.
+struct ColourDifference {
+    double l = 0, c = 0, h = 0;  ///< ΔL'/S_L, ΔC'/S_C, ΔH'/S_H
+    double r = 0;                ///< R_T, in (−2, 0]
+};
+ColourDifference colour_difference(const Lab& a, const Lab& b);
+
+/// CIEDE2000 with unit weights.
 double delta_e_2000(const Lab& a, const Lab& b);
 
 }  // namespace tuft::ink

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ink/colour/match.h"
 #include "stroke/hand/hand.h"
 #include "stroke/session/session.h"
 
@@ -34,7 +35,7 @@ const brush::Preset& Painting::brush(const std::string& name) {
 const ink::Ink& Painting::ink(const std::string& name) {
     const auto found = inks_.find(name);
     if (found != inks_.end()) return found->second;
-    return inks_.emplace(name, ink::load_ink(name)).first->second;
+    return inks_.emplace(name, ink::ink_named(name, substrate_, canvas_.pigments())).first->second;
 }
 
 const BrushInHand* Painting::held(const std::string& brush) const {
