@@ -352,11 +352,11 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     LayerWork layer;
     auto* l = app.add_subcommand("layer", "change a project's layers");
     l->add_option("PROJECT", layer.project, "project file (.tuft)")->required();
-    l->add_option("WHAT", layer.what, "add, remove, show, hide, lock, unlock, opacity, rename or move")
+    l->add_option("WHAT", layer.what, "add, remove, show, hide, lock, unlock, opacity, blend, rename, move, duplicate or merge (into the one below)")
         ->required()
-        ->check(CLI::IsMember({"add", "remove", "show", "hide", "lock", "unlock", "opacity", "rename", "move"}));
+        ->check(CLI::IsMember({"add", "remove", "show", "hide", "lock", "unlock", "opacity", "blend", "rename", "move", "duplicate", "merge"}));
     l->add_option("NAME", layer.name, "name of the layer")->required();
-    l->add_option("VALUE", layer.value, "opacity (0 to 1), new name, or place (1 is the lowest)");
+    l->add_option("VALUE", layer.value, "opacity (0 to 1), blend (normal, glaze, multiply), new name, or place (1 is the lowest)");
     add_common(l, layer.common);
 
     FillWork fill;

@@ -97,6 +97,7 @@ int inspect_project(const Inspect& a) {
                                    {"name", l.name},
                                    {"visible", l.visible},
                                    {"opacity", l.opacity},
+                                   {"blend", ink::name_of(l.blend)},
                                    {"locked", l.locked}});
         for (const stroke::Stroke& s : strokes)
             j["strokes"].push_back({{"id", s.id},
@@ -124,7 +125,8 @@ int inspect_project(const Inspect& a) {
                model.atlas.n_charts, model.atlas.texel_size / kMillimetre);
     if (layers != stroke::LayerTable{})
         for (auto l = layers.layers.rbegin(); l != layers.layers.rend(); ++l)
-            fmt::print("  layer   {:>4}  {}, opacity {:g}{}{}\n", l->id, l->name, l->opacity,
+            fmt::print("  layer   {:>4}  {}, opacity {:g}{}{}{}\n", l->id, l->name, l->opacity,
+                       l->blend == ink::Blend::normal ? "" : std::string(", ") + ink::name_of(l->blend),
                        l->visible ? "" : ", hidden", l->locked ? ", locked" : "");
     for (const stroke::Stroke& s : strokes)
         fmt::print("  {:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", stroke::name_of(s.action), s.id, s.trace.brush,

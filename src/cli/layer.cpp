@@ -27,11 +27,19 @@ stroke::LayerEdit edit_of(const LayerWork& a, const stroke::LayerTable& table) {
     const stroke::Layer* found = table.find(a.name);
     if (!found) throw Error(a.project.string(), "has no layer '" + a.name + "'");
     if (a.what == "remove") return stroke::removed(found->id);
+    if (a.what == "merge") return stroke::merged_down(table, found->id);
+    if (a.what == "duplicate")
+        return stroke::duplicated(table, found->id, a.value.empty() ? stroke::free_name(table, a.name + " copy") : a.value);
     stroke::Layer layer = *found;
     if (a.what == "show" || a.what == "hide") layer.visible = a.what == "show";
     if (a.what == "lock" || a.what == "unlock") layer.locked = a.what == "lock";
     if (a.what == "opacity") layer.opacity = number_of(a);
     if (a.what == "rename") layer.name = a.value;
+    if (a.what == "blend") {
+        const std::optional<ink::Blend> blend = ink::blend_of(a.value);
+        if (!blend) throw UsageError("'tuft layer PROJECT blend NAME VALUE' needs normal, glaze or multiply, not '" + a.value + "'");
+        layer.blend = *blend;
+    }
     if (a.what == "move") {
         const double place = number_of(a), n = static_cast<double>(table.layers.size());
         if (!(place >= 1 && place <= n && place == std::floor(place)))
@@ -59,13 +67,14 @@ int run(const LayerWork& a) {
                                    {"name", l.name},
                                    {"visible", l.visible},
                                    {"opacity", l.opacity},
+                                   {"blend", ink::name_of(l.blend)},
                                    {"locked", l.locked}});
         print_json(j);
         return 0;
     }
     for (auto l = table.layers.rbegin(); l != table.layers.rend(); ++l)
-        fmt::print("{}{}{}, opacity {:g}\n", l->name, l->visible ? "" : " (hidden)", l->locked ? " (locked)" : "",
-                   l->opacity);
+        fmt::print("{}{}{}, opacity {:g}{}\n", l->name, l->visible ? "" : " (hidden)", l->locked ? " (locked)" : "",
+                   l->opacity, l->blend == ink::Blend::normal ? "" : std::string(", ") + ink::name_of(l->blend));
     return 0;
 }
 

@@ -67,6 +67,35 @@ TEST_F(LayersOfAProject, AreMadeByPaintingAndChangedByName) {
     EXPECT_EQ(layers().size(), 1u);
 }
 
+TEST_F(LayersOfAProject, AreCopiedBlendedAndMerged) {
+    paint("");
+    ASSERT_EQ(tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") + " --layer gold --ink cinnabar").status, 0);
+    const std::string below = map("--layers 'Layer 1'"), both = map();
+    const auto change = [&](const std::string& what) {
+        const Ran ran = tuft("layer " + path("p.tuft") + " " + what + " --json");
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return json::parse(ran.out)["layers"];
+    };
+    EXPECT_EQ(change("duplicate gold")[2]["name"], "gold copy");
+    EXPECT_EQ(change("duplicate gold leaf")[2]["name"], "leaf");
+    EXPECT_EQ(map("--layers leaf"), map("--layers gold"));
+    EXPECT_EQ(change("blend leaf multiply")[2]["blend"], "multiply");
+    EXPECT_NE(map("--layers leaf"), map("--layers gold")) << "over porcelain, which is not white";
+    const Ran refused = tuft("layer " + path("p.tuft") + " merge leaf");
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_EQ(refused.error_lines(), 1) << refused.err;
+    change("remove leaf");
+    change("remove 'gold copy'");
+    const json merged = change("merge gold");
+    ASSERT_EQ(merged.size(), 1u);
+    EXPECT_EQ(map(), both);
+    EXPECT_NE(map(), below);
+    const std::string hash = replayed();
+    EXPECT_EQ(hash, json::parse(tuft("replay " + path("p.tuft") + " --threads 3 --json").out)["canvas_hash"]);
+    EXPECT_EQ(tuft("layer " + path("p.tuft") + " merge 'Layer 1'").status, 1);
+    EXPECT_EQ(tuft("layer " + path("p.tuft") + " blend 'Layer 1' screen").status, 2);
+}
+
 TEST_F(LayersOfAProject, AreNamedInTheStrokeFile) {
     std::string ink = stroke_file();
     ink.insert(ink.find("<annotation type=\"tuft:brush\""), "<annotation type=\"tuft:layer\">gold &amp; 金</annotation>");

@@ -209,7 +209,153 @@ TEST(Layers, ChangesAfterTheStoredTexelsNeedNoReplay) {
     EXPECT_EQ(adopted.layers(), LayerTable{});
 }
 
+// Copies, blends and a merge, with strokes between them.
+std::vector<Stroke> merging_session() {
+    LayerTable t;
+    std::vector<Stroke> entries;
+    const auto then = [&](const LayerEdit& e) {
+        apply(t, e);
+        entries.push_back(edit(e));
+    };
+    entries.push_back(on(1, 0));
+    then(duplicated(t, 1, "copy"));
+    entries.push_back(on(2, 0, "cinnabar"));
+    then(changed(t, {.id = 2, .name = "copy", .blend = ink::Blend::glaze}));
+    then(changed(t, {.id = 1, .name = "Layer 1", .blend = ink::Blend::glaze}));
+    then(merged_down(t, 2));
+    entries.push_back(on(1, 1, "indigo"));
+    then(duplicated(t, 1, "top"));
+    then(changed(t, {.id = 3, .name = "top", .blend = ink::Blend::multiply}));
+    then(moved(t, 3, 0));
+    then({LayerChange::merge, {.id = 1}, 0, 3});
+    entries.push_back(on(3, 2));
+    return entries;
+}
+
+TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
+    for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
+        Painting p(model(), {.undo_bytes = undo_bytes});
+        for (const char* name : {"carbon", "cinnabar", "indigo"}) ink::mix_of(p.canvas(), p.ink(name));
+        std::vector<LayerTable> tables;
+        std::vector<std::vector<std::uint8_t>> pictures;
+        const std::vector<Stroke> entries = merging_session();
+        for (const Stroke& s : entries) {
+            tables.push_back(p.layers());
+            pictures.push_back(picture(p));
+            p.paint(s);
+        }
+        const auto end = picture(p);
+        EXPECT_EQ(p.layers().layers.size(), 1u);
+        EXPECT_EQ(p.layers().next_id, 4u);
+        for (std::size_t i = entries.size(); i-- > 0;) {
+            ASSERT_TRUE(p.undo());
+            EXPECT_EQ(p.layers(), tables[i]) << i;
+            EXPECT_EQ(picture(p), pictures[i]) << i;
+        }
+        while (p.redo()) {}
+        EXPECT_EQ(picture(p), end);
+        Painting again(model());
+        again.replay(p.journal().strokes());
+        EXPECT_EQ(picture(again), end);
+    }
+}
+
+// A copy right above an opaque original shows nothing new; changed later, each goes its own way.
+TEST(Layers, ACopyHasTheSameTexelsAndIsItsOwn) {
+    Painting p(model());
+    p.paint(on(kFirstLayer));
+    p.paint(edit(duplicated(p.layers(), kFirstLayer, "copy")));
+    const std::uint32_t copy = p.layers().layers.back().id;
+    EXPECT_TRUE(p.canvas(copy).same_contents(p.canvas()));
+    const std::uint64_t original = p.canvas().hash();
+    p.paint(on(copy, 1, "cinnabar"));
+    EXPECT_EQ(p.canvas().hash(), original);
+    EXPECT_FALSE(p.canvas(copy).same_contents(p.canvas()));
+}
+
+TEST(Layers, MergedOnesLookAsBeforeAndLoseNoPigment) {
+    for (const ink::Blend blend : {ink::Blend::normal, ink::Blend::glaze}) {
+        Painting p(model());
+        p.paint(on(kFirstLayer));
+        const std::uint32_t gold = add(p, "gold");
+        p.paint(on(gold, 0, "cinnabar"));  // over the first
+        p.paint(on(gold, 2, "gamboge"));   // beside it
+        for (const std::uint32_t id : {kFirstLayer, gold}) set(p, id, [blend](Layer& l) { l.blend = blend; });
+        const auto look = ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
+        const auto amounts = ink::compose_amounts(p.stack(), model().texels).texels;
+        p.paint(edit(merged_down(p.layers(), gold)));
+        ASSERT_EQ(p.layers().layers.size(), 1u);
+        const auto merged = ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
+        float most = 0;
+        for (std::size_t i = 0; i < look.size(); ++i) most = std::max(most, std::abs(look[i] - merged[i]));
+        // The same films in the same order; glazes multiply in single precision.
+        EXPECT_LT(most, blend == ink::Blend::normal ? 1e-6f : 1e-5f);
+        const auto after = ink::compose_amounts(p.stack(), model().texels).texels;
+        ASSERT_EQ(after.size(), amounts.size());
+        for (std::size_t i = 0; i < amounts.size(); ++i) ASSERT_NEAR(after[i], amounts[i], 1e-5f);
+    }
+}
+
+TEST(Layers, WhatOneLayerCannotShowIsNotMerged) {
+    LayerTable t;
+    apply(t, add_on_top(t, "gold"));
+    EXPECT_THROW(merged_down(t, 1), Error) << "the lowest";
+    EXPECT_THROW(merged_down(t, 7), Error);
+    EXPECT_EQ(merged_down(t, 2).other, 1u);
+    const auto refused = [&](std::uint32_t id, const std::function<void(Layer&)>& how) {
+        LayerTable other = t;
+        for (Layer& l : other.layers)
+            if (l.id == id) how(l);
+        EXPECT_THROW(merged_down(other, 2), Error);
+    };
+    for (const std::uint32_t id : {1u, 2u}) {
+        refused(id, [](Layer& l) { l.visible = false; });
+        refused(id, [](Layer& l) { l.locked = true; });
+        refused(id, [](Layer& l) { l.opacity = 0.5; });
+        refused(id, [](Layer& l) { l.blend = ink::Blend::glaze; });
+    }
+    for (Layer& l : t.layers) l.blend = ink::Blend::multiply;
+    EXPECT_THROW(merged_down(t, 2), Error);
+}
+
+// Stored texels serve also when layers were copied and merged after them.
+TEST(Layers, CopiesAndMergesAfterTheStoredTexelsNeedNoReplay) {
+    Painting p(model()), replayed(model());
+    p.paint(on(kFirstLayer));
+    const std::uint32_t gold = add(p, "gold");
+    p.paint(on(gold, 0, "cinnabar"));
+    std::vector<LayerCanvas> stored;
+    for (const LayerTexels& l : p.canvases()) stored.push_back({l.layer, *l.canvas});
+    const std::uint64_t last = p.journal().strokes().back().id;
+    p.paint(edit(duplicated(p.layers(), gold, "copy")));
+    p.paint(edit(merged_down(p.layers(), gold)));
+    Painting adopted(model());
+    ASSERT_TRUE(fits(p.journal().strokes(), last));
+    adopted.adopt(p.journal().strokes(), std::move(stored), last);
+    replayed.replay(p.journal().strokes());
+    EXPECT_EQ(adopted.layers(), replayed.layers());
+    EXPECT_EQ(picture(adopted), picture(replayed));
+    EXPECT_EQ(picture(adopted), picture(p));
+}
+
+TEST(Layers, FreeNamesAreFree) {
+    LayerTable t;
+    EXPECT_EQ(free_name(t, "gold"), "gold");
+    apply(t, add_on_top(t, "gold"));
+    EXPECT_EQ(free_name(t, "gold"), "gold 2");
+}
+
 TEST(Layers, EntriesComeBackFromTheirText) {
+    for (const Stroke& s : merging_session()) {
+        Stroke back;
+        read_entry_json(entry_json(s), back);
+        EXPECT_EQ(back.edit.what, s.edit.what);
+        EXPECT_EQ(back.edit.other, s.edit.other);
+        EXPECT_EQ(back.edit.layer.blend, s.edit.layer.blend);
+    }
+    Stroke old;  // of a program that knew no blends
+    read_entry_json(R"({"action":"layer","edit":{"what":"add","id":2,"name":"gold","visible":true,"opacity":1,"locked":false,"place":1}})", old);
+    EXPECT_EQ(old.edit.layer.blend, ink::Blend::normal);
     for (const Stroke& s : session()) {
         Stroke back;
         read_entry_json(entry_json(s), back);
@@ -234,12 +380,16 @@ TEST(Layers, NonsenseIsRefused) {
     EXPECT_THROW(apply(t, add_on_top(t, std::string(300, 'a'))), Error);
     EXPECT_THROW(apply(t, {LayerChange::add, {.id = 1, .name = "again"}, 0}), Error);
     EXPECT_THROW(apply(t, {LayerChange::add, {.id = 5, .name = "high"}, 2}), Error);
+    EXPECT_THROW(apply(t, {LayerChange::merge, {.id = 1}, 0, 2}), Error) << "the last";
+    EXPECT_THROW(apply(t, {LayerChange::duplicate, {.id = 2, .name = "b"}, 1, 7}), Error);
     EXPECT_THROW(apply(t, {LayerChange::change, {.opacity = 1.5}, 0}), Error);
     EXPECT_THROW(apply(t, {LayerChange::change, {.opacity = std::nan("")}, 0}), Error);
     EXPECT_EQ(t, before);
     Stroke s;
     for (const char* text :
          {R"({"action":"layer"})", R"({"action":"layer","edit":{"what":"melt","id":1}})",
+          R"({"action":"layer","edit":{"what":"merge","id":1}})", R"({"action":"layer","edit":{"what":"merge","id":1,"other":-1}})",
+          R"({"action":"layer","edit":{"what":"add","id":2,"name":"a","visible":true,"opacity":1,"locked":false,"place":0,"blend":"screen"}})",
           R"({"action":"layer","edit":{"what":"remove","id":-1}})", R"({"layer":"one"})", R"({"layer":-3})",
           R"({"action":"layer","edit":{"what":"add","id":2,"name":7,"visible":true,"opacity":1,"locked":false,"place":0}})"})
         EXPECT_THROW(read_entry_json(text, s), Error) << text;

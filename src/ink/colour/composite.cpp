@@ -44,6 +44,10 @@ TUFT_CLONES void blend(float* __restrict to, const float* __restrict from,
     for (int t = 0; t < kN; ++t) to[t] += (from[t] - to[t]) * part[t];
 }
 
+TUFT_CLONES void multiply(float* __restrict to, const float* __restrict by) {
+    for (int t = 0; t < kN; ++t) to[t] *= by[t];
+}
+
 /// The dry film covers what is below it, microfacets included, within a fraction of a unit.
 TUFT_CLONES void blend_roughness(float* __restrict roughness, const float* __restrict weighted,
                                  const float* __restrict film, const float* __restrict part) {
@@ -110,9 +114,9 @@ struct Reflectances {
     alignas(64) std::array<Texels, kBands> r;
 };
 
-/// Lays one film over the reflectances `r` of what is below it.
+/// Lays one film over the reflectances `r` of what is below it; with `absorbs_only` its S is 0.
 void lay_film(Reflectances& r, TileLook& look, const TileFilm& film,
-              std::span<const Pigment> pigments) {
+              std::span<const Pigment> pigments, bool absorbs_only = false) {
     alignas(64) Texels k, s, part, thickness{}, rough{}, height{};
     part.fill(film.opacity);
     if (film.mask)
@@ -124,7 +128,7 @@ void lay_film(Reflectances& r, TileLook& look, const TileFilm& film,
         for (std::size_t p = 0; p < pigments.size(); ++p) {
             if (!film.pigments[p]) continue;
             add_scaled(k.data(), film.pigments[p]->data(), pigments[p].k[b]);
-            add_scaled(s.data(), film.pigments[p]->data(), pigments[p].s[b]);
+            if (!absorbs_only) add_scaled(s.data(), film.pigments[p]->data(), pigments[p].s[b]);
         }
         if (whole) {
             film_over(r[b].data(), k.data(), s.data());
@@ -152,11 +156,12 @@ struct TileLayer {
     std::size_t n_films = 0;
     const Plane* water = nullptr;
     float opacity = 1;
+    Blend blend = Blend::normal;
     std::span<const Pigment> pigments;
 };
 
-TileLayer layer_of(const Canvas& canvas, std::uint32_t slot, float opacity) {
-    TileLayer layer{.films = {}, .opacity = opacity, .pigments = canvas.pigments()};
+TileLayer layer_of(const Canvas& canvas, std::uint32_t slot, float opacity, Blend blend = Blend::normal) {
+    TileLayer layer{.films = {}, .opacity = opacity, .blend = blend, .pigments = canvas.pigments()};
     for (int film = 0; film < kFilms; ++film) {
         if (!canvas.has_film(slot, film)) continue;
         TileFilm& to = layer.films[layer.n_films++];
@@ -271,9 +276,16 @@ void end_look(Reflectances& r, TileLook& look, const Plane* water, const Substra
 
 void lay_layer(Reflectances& r, TileLook& look, const TileLayer& layer) {
     const std::span<const TileFilm> films(layer.films.data(), layer.n_films);
-    const auto lay_all = [&](Reflectances& to) {
+    const auto lay_films_over = [&](Reflectances& to) {
         for (const TileFilm& film : films)
-            if (!empty(film)) lay_film(to, look, film, layer.pigments);
+            if (!empty(film)) lay_film(to, look, film, layer.pigments, layer.blend == Blend::glaze);
+    };
+    const auto lay_all = [&](Reflectances& to) {
+        if (layer.blend != Blend::multiply) return lay_films_over(to);
+        Reflectances filter(to.bands > 0);
+        for (int b = 0; b < to.bands; ++b) filter[b].fill(1);
+        lay_films_over(filter);
+        for (int b = 0; b < to.bands; ++b) multiply(to[b].data(), filter[b].data());
     };
     if (layer.opacity >= 1) {
         lay_all(r);
@@ -328,7 +340,7 @@ TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& s
     const Plane* water = nullptr;
     for (const LayerView& view : stack.layers) {
         if (!(view.opacity > 0) || !view.canvas->touched(slot)) continue;
-        const TileLayer layer = layer_of(*view.canvas, slot, view.opacity);
+        const TileLayer layer = layer_of(*view.canvas, slot, view.opacity, view.blend);
         lay_layer(r, look, layer);
         if (!layer.water) continue;
         if (!water) sum.fill(0);
@@ -338,6 +350,18 @@ TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& s
     end_look(r, look, water, substrate);
     if (tile) make_up(look, ground);
     return look;
+}
+
+namespace {
+constexpr const char* kBlends[] = {"normal", "glaze", "multiply"};
+}
+
+const char* name_of(Blend blend) { return kBlends[static_cast<int>(blend)]; }
+
+std::optional<Blend> blend_of(std::string_view name) {
+    const auto at = std::find(std::begin(kBlends), std::end(kBlends), name);
+    if (at == std::end(kBlends)) return std::nullopt;
+    return static_cast<Blend>(at - std::begin(kBlends));
 }
 
 bool Stack::touched(std::uint32_t slot) const {

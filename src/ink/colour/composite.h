@@ -8,6 +8,7 @@
 #include "atlas/texels/gutter.h"
 #include "core/progress.h"
 #include "ink/canvas.h"
+#include "ink/colour/blend.h"
 #include "ink/colour/ground.h"
 #include "ink/colour/srgb.h"
 
@@ -65,6 +66,7 @@ Rgb colour_of_film(const Ink& ink, const Rgb& ground, double film = 0);
 struct LayerView {
     const Canvas* canvas = nullptr;  ///< of the same texel map as all others
     float opacity = 1;               ///< 0–1
+    Blend blend = Blend::normal;
 };
 
 /// User layers, the lowest first; those that are not to be seen are left out.
@@ -85,7 +87,8 @@ struct Stack {
 ///
 ///     R ← R + o (R_with − R),
 ///
-/// R_with as above with all films of the layer over R; height and roughness likewise. Colours
+/// R_with as above with all films of the layer over R, or as its `Blend` says; height and roughness
+/// likewise. Colours
 /// are mixed, not film amounts scaled: a film hides exponentially, so half the amount of a
 /// black ink is still black, while half the opacity is to look half covered. Opacity 1 gives
 /// the same bits as the films of all layers in one canvas would. The water on top is the sum

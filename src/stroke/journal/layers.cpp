@@ -9,9 +9,10 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr const char* kChanges[] = {"add", "change", "remove"};
+constexpr const char* kChanges[] = {"add", "change", "remove", "duplicate", "merge"};
 
-std::vector<Layer>::iterator place_of(LayerTable& table, std::uint32_t id) {
+template <class Table>
+auto place_of(Table& table, std::uint32_t id) {
     const auto at = std::find_if(table.layers.begin(), table.layers.end(),
                                  [id](const Layer& l) { return l.id == id; });
     if (at == table.layers.end()) throw Error("there is no layer " + std::to_string(id));
@@ -56,14 +57,17 @@ const Layer* LayerTable::find(std::string_view name) const {
 
 void apply(LayerTable& table, const LayerEdit& edit) {
     std::vector<Layer>& layers = table.layers;
-    if (edit.what == LayerChange::remove) {
+    if (edit.what == LayerChange::remove || edit.what == LayerChange::merge) {
         const auto at = place_of(table, edit.layer.id);
         if (layers.size() == 1) throw Error("the last layer cannot be removed");
+        if (edit.what == LayerChange::merge && place_of(table, edit.other) == at)
+            throw Error("a layer cannot be merged into itself");
         layers.erase(at);
         return;
     }
     check_layer(table, edit.layer);
-    if (edit.what == LayerChange::add) {
+    if (edit.what == LayerChange::add || edit.what == LayerChange::duplicate) {
+        if (edit.what == LayerChange::duplicate) place_of(table, edit.other);
         if (layers.size() >= kMaxLayers)
             throw Error("a painting has at most " + std::to_string(kMaxLayers) + " layers");
         Layer layer = edit.layer;
@@ -102,9 +106,46 @@ LayerEdit removed(std::uint32_t id) {
     return {LayerChange::remove, Layer{.id = id}, 0};
 }
 
+LayerEdit duplicated(const LayerTable& table, std::uint32_t id, const std::string& name) {
+    LayerEdit edit = changed(table, *place_of(table, id));
+    edit.what = LayerChange::duplicate;
+    edit.other = id;
+    edit.layer.id = table.next_id;
+    edit.layer.name = name;
+    ++edit.place;
+    return edit;
+}
+
+LayerEdit merged_down(const LayerTable& table, std::uint32_t id) {
+    const Layer& upper = *place_of(table, id);
+    if (&upper == table.layers.data())
+        throw Error("layer '" + upper.name + "' is the lowest: there is none to merge it into");
+    const Layer& lower = *(&upper - 1);
+    for (const Layer* layer : {&upper, &lower}) {
+        const std::string what = "layer '" + layer->name + "' is ";
+        if (!layer->visible) throw Error(what + "hidden; show it before layers are merged");
+        if (layer->locked) throw Error(what + "locked; unlock it before layers are merged");
+        if (layer->opacity < 1)
+            throw Error(what + "faded, which one layer of ink cannot show; give it opacity 1 before layers are merged");
+        if (layer->blend == ink::Blend::multiply)
+            throw Error(what + "multiplied, which one layer of ink cannot show; blend it normally before layers are merged");
+    }
+    if (upper.blend != lower.blend)
+        throw Error("layers '" + upper.name + "' and '" + lower.name + "' blend differently; make both normal or both glaze before they are merged");
+    return {LayerChange::merge, Layer{.id = id}, 0, lower.id};
+}
+
+std::string free_name(const LayerTable& table, const std::string& base) {
+    if (!table.find(std::string_view(base))) return base;
+    for (int n = 2;; ++n)
+        if (std::string name = base + " " + std::to_string(n); !table.find(std::string_view(name))) return name;
+}
+
 nlohmann::json json_of(const LayerEdit& edit) {
     nlohmann::json j{{"what", kChanges[static_cast<int>(edit.what)]}, {"id", edit.layer.id}};
-    if (edit.what == LayerChange::remove) return j;
+    if (edit.other) j["other"] = edit.other;
+    if (edit.what == LayerChange::remove || edit.what == LayerChange::merge) return j;
+    if (edit.layer.blend != ink::Blend::normal) j["blend"] = ink::name_of(edit.layer.blend);
     j["name"] = edit.layer.name;
     j["visible"] = edit.layer.visible;
     j["opacity"] = edit.layer.opacity;
@@ -126,7 +167,12 @@ LayerEdit layer_edit_of(const nlohmann::json& j) {
             return static_cast<std::uint32_t>(value);
         };
         edit.layer.id = whole("id");
-        if (edit.what == LayerChange::remove) return edit;
+        if (edit.what == LayerChange::duplicate || edit.what == LayerChange::merge) edit.other = whole("other");
+        if (edit.what == LayerChange::remove || edit.what == LayerChange::merge) return edit;
+        const std::string blend = j.value("blend", "normal");
+        const std::optional<ink::Blend> known = ink::blend_of(blend);
+        if (!known) throw Error("'" + blend + "' is no blend of a layer");
+        edit.layer.blend = *known;
         edit.layer.name = j.at("name").get<std::string>();
         edit.layer.visible = j.at("visible").get<bool>();
         edit.layer.opacity = j.at("opacity").get<double>();

@@ -8,6 +8,7 @@
 
 #include "core/types.h"
 #include "ink/canvas.h"
+#include "ink/colour/blend.h"
 
 /// User layers: films of their own that are painted, shown and changed apart from each other.
 namespace tuft::stroke {
@@ -25,6 +26,7 @@ struct Layer {
     bool visible = true;
     double opacity = 1;               ///< 0–1, see ink::look_of_tile
     bool locked = false;              ///< takes no strokes from the hand
+    ink::Blend blend = ink::Blend::normal;  ///< how its films meet what lies below
 
     bool operator==(const Layer&) const = default;
 };
@@ -40,14 +42,17 @@ struct LayerTable {
     bool operator==(const LayerTable&) const = default;
 };
 
-enum class LayerChange { add, change, remove };
+/// `duplicate`: a new layer with a copy of another's texels as they are then. `merge`: the texels of
+/// a layer are laid on those of another (ink/film/merge.h), and the layer ends.
+enum class LayerChange { add, change, remove, duplicate, merge };
 
 /// One change of the table: a new layer, another state or place of one, or its end.
 struct LayerEdit {
     LayerChange what = LayerChange::add;
-    Layer layer;                      ///< as it is to be; `remove` looks at the id only. `add` with
-                                      ///< id 0: the next one
+    Layer layer;                      ///< as it is to be; `remove` and `merge` look at the id only.
+                                      ///< `add` and `duplicate` with id 0: the next one
     std::uint32_t place = 0;          ///< index from the bottom that it is to have
+    std::uint32_t other = 0;          ///< `duplicate`: the layer copied; `merge`: the one merged into
 
     bool operator==(const LayerEdit&) const = default;
 };
@@ -61,6 +66,13 @@ LayerEdit add_on_top(const LayerTable& table, const std::string& name);
 LayerEdit changed(const LayerTable& table, const Layer& layer);
 LayerEdit moved(const LayerTable& table, std::uint32_t id, std::uint32_t place);
 LayerEdit removed(std::uint32_t id);
+/// A copy right above the layer, looking the same but for its name.
+LayerEdit duplicated(const LayerTable& table, std::uint32_t id, const std::string& name);
+/// The layer laid on the one below it. Throws `Error` where that would look different: both must be
+/// visible, unlocked, of opacity 1 and of the same blend, normal or glaze; and for the lowest layer.
+LayerEdit merged_down(const LayerTable& table, std::uint32_t id);
+/// `base`, or where a layer has that name the first of "base 2", "base 3", … that none has.
+std::string free_name(const LayerTable& table, const std::string& base);
 
 /// Throws `Error` for a name that is empty, too long or no readable text.
 void check_name(std::string_view name, const char* of_what);

@@ -45,7 +45,7 @@ const BrushInHand* Painting::held(const std::string& brush) const {
 
 // A brush that is not held is fresh; the entry says so, for replays that hold it.
 void Painting::settle(Stroke& entry) const {
-    if (entry.action == Action::layer && entry.edit.what == LayerChange::add && entry.edit.layer.id == 0)
+    if (entry.action == Action::layer && (entry.edit.what == LayerChange::add || entry.edit.what == LayerChange::duplicate) && entry.edit.layer.id == 0)
         entry.edit.layer.id = layers_.next_id;
     if (entry.action == Action::mask && !entry.mask_edit.remove && entry.mask_edit.mask.id == 0)
         entry.mask_edit.mask.id = masks_.next_id;
@@ -331,7 +331,8 @@ bool Painting::undo() {
     const bool hidden = journal_.strokes().back().hidden;
     const bool table_only = keeps_texels(journal_.strokes().back().action) &&
                             (journal_.strokes().back().action == Action::mask ||
-                             journal_.strokes().back().edit.what != LayerChange::remove);
+                             (journal_.strokes().back().edit.what != LayerChange::remove &&
+                              journal_.strokes().back().edit.what != LayerChange::merge));
     journal_.undo();
     if (hidden) return true;
     if (undo_.empty() || undo_.back().stroke_id != id) {

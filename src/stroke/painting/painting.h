@@ -228,6 +228,8 @@ class Painting {
     const ink::Substrate& substrate_of(const Stroke& entry) const;
     Pick pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const;
     void edit_layers(const Stroke& entry);
+    LayerCanvas take_texels(std::uint32_t id);
+    LayerTiles merge_texels(std::uint32_t into, const ink::Canvas& from);
     StrokeReport lay_fill(const Stroke& entry);
     void edit_masks(const Stroke& entry);
     std::vector<LayerTexels> shown_layers() const;

@@ -27,12 +27,17 @@ ink::WetFilm& Painting::film(std::uint32_t mask) {
 
 /// The mask that was last painted through on a layer, of entries before this one.
 std::uint32_t Painting::tape_on(std::uint32_t layer, std::uint64_t before_id) const {
-    std::uint32_t mask = 0;
+    std::map<std::uint32_t, std::uint32_t> masks;  // by layer
     for (const Stroke& s : journal_.strokes()) {
         if (before_id && s.id == before_id) break;
-        const bool paints = s.action == Action::stroke || s.action == Action::fill;
-        if (paints && !s.hidden && s.layer == layer) mask = s.mask;
+        if (s.hidden) continue;
+        if (s.action == Action::stroke || s.action == Action::fill) masks[s.layer] = s.mask;
+        if (s.action != Action::layer) continue;
+        // A copy is wet as far as the original; of two merged layers the mask of the upper one goes on.
+        if (s.edit.what == LayerChange::duplicate) masks[s.edit.layer.id] = masks[s.edit.other];
+        if (s.edit.what == LayerChange::merge && masks[s.edit.layer.id]) masks[s.edit.other] = masks[s.edit.layer.id];
     }
+    const std::uint32_t mask = masks[layer];
     return masks_.find(mask) ? mask : 0;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/hash.h"
+#include "ink/film/merge.h"
 #include "stroke/painting/painting.h"
 
 /// What a painting does with its layers.
@@ -80,7 +81,8 @@ ink::Stack Painting::stack() const {
     ink::Stack stack{std::vector<ink::LayerView>{}};
     if (!shown_on_) stack.ground = &model_->ground;  // another substrate is seen whole
     for (const LayerTexels& texels : shown_layers())
-        stack.layers.push_back({texels.canvas, static_cast<float>(layers_.find(texels.layer)->opacity)});
+        stack.layers.push_back({texels.canvas, static_cast<float>(layers_.find(texels.layer)->opacity),
+                                layers_.find(texels.layer)->blend});
     return stack;
 }
 
@@ -137,23 +139,47 @@ void Painting::check_layer(const Stroke& entry) const {
 void Painting::edit_layers(const Stroke& entry) {
     Undo undo{.stroke_id = entry.id, .layers = layers_};
     const std::uint32_t id = entry.edit.layer.id;
+    if (entry.edit.what == LayerChange::merge) canvas(id);  // knows all pigments now
     apply(layers_, entry.edit);
     switch (entry.edit.what) {
         case LayerChange::add: upper_.emplace(id, ink::Canvas(model_->texels.n_slots())); break;
         case LayerChange::change: touch_look(id); break;
-        case LayerChange::remove:
+        case LayerChange::duplicate: {
+            const ink::Canvas copy = canvas(entry.edit.other);
+            upper_.emplace(id, copy);
             touch_look(id);
-            undo.canvas.emplace(LayerCanvas{id, ink::Canvas(model_->texels.n_slots())});
-            if (id == kFirstLayer) {
-                for (const ink::Pigment& p : canvas_.pigments()) undo.canvas->canvas.add_pigment(p);
-                std::swap(undo.canvas->canvas, canvas_);
-            } else {
-                undo.canvas->canvas = std::move(upper_.at(id));
-                upper_.erase(id);
-            }
             break;
+        }
+        case LayerChange::merge:
+            undo.canvas.emplace(take_texels(id));
+            undo.before.push_back(merge_texels(entry.edit.other, undo.canvas->canvas));
+            break;
+        case LayerChange::remove: undo.canvas.emplace(take_texels(id)); break;
     }
     keep_undo(std::move(undo));
+}
+
+// Texels of a layer that ends.
+LayerCanvas Painting::take_texels(std::uint32_t id) {
+    touch_look(id);
+    LayerCanvas taken{id, ink::Canvas(model_->texels.n_slots())};
+    if (id == kFirstLayer) {
+        for (const ink::Pigment& p : canvas_.pigments()) taken.canvas.add_pigment(p);
+        std::swap(taken.canvas, canvas_);
+    } else {
+        taken.canvas = std::move(upper_.at(id));
+        upper_.erase(id);
+    }
+    return taken;
+}
+
+// What the lower layer held where ink is laid on it.
+LayerTiles Painting::merge_texels(std::uint32_t into, const ink::Canvas& from) {
+    ink::Canvas& lower = canvas(into);
+    LayerTiles before{into, {}};
+    for (const std::uint32_t slot : from.touched_slots()) before.tiles.push_back(lower.snapshot(slot));
+    ink::lay_films(lower, from);
+    return before;
 }
 
 // Another table; layers that it does not have go, with their texels.
