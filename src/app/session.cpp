@@ -172,6 +172,16 @@ void show_palette(Session& s, bool on) {
     say(s, "Pour inks, rinse the brush, stir; then paint on the model with what is in it.");
 }
 
+void select_entries(Session& s, std::set<std::uint64_t> ids) {
+    JournalState& j = s.journal;
+    if (j.selected.empty() && ids.empty()) return;
+    j.selected = std::move(ids);
+    j.moves = false;
+    j.from.reset();
+    j.to.reset();
+    if (s.painter) s.painter->post(HighlightStrokes{{j.selected.begin(), j.selected.end()}});
+}
+
 void choose_mask(Session& s, std::uint32_t id) {
     s.mask = id;
     if (s.veiled == id || !s.painter) return;
@@ -249,7 +259,7 @@ bool close_dialog(Session& s) {
     else if (s.show_keys) s.show_keys = false;
     else if (s.show_about) s.show_about = false;
     else if (s.show_misfits) s.show_misfits = false;
-    else if (s.shift_stroke) s.shift_stroke = false;
+    else if (s.journal.moves) s.journal.moves = false, s.journal.from.reset(), s.journal.to.reset();
     else if (s.show_settings) s.show_settings = false;
     else if (s.show_colours) s.show_colours = false;
     else if (s.show_export) s.show_export = false;
@@ -258,6 +268,7 @@ bool close_dialog(Session& s) {
     else if (s.in_use) s.in_use.reset();
     else if (s.inspected) s.inspected.reset();
     else if (!s.lost.empty() && !s.painter) s.lost.erase(s.lost.begin());  // later
+    else if (!s.journal.selected.empty()) select_entries(s, {});
     else return false;
     return true;
 }
@@ -287,10 +298,10 @@ void close_model(Session& s) {
     }
     s.painter.reset();
     s.strokes.clear();
-    s.selected = 0;
+    s.journal = {};
     s.misfits.clear();
     s.former.clear();
-    s.show_misfits = s.shift_stroke = s.show_colours = false;
+    s.show_misfits = s.show_colours = false;
     s.mask = s.veiled = s.masks_seen = 0;
     s.layers_seen = s.layer_gone = 0;
     s.layers_before.clear();
@@ -353,7 +364,16 @@ void poll_session(Session& s) {
 void poll_painter(Session& s) {
     if (!s.painter) return;
     Update u = s.painter->take();
-    if (u.strokes) s.strokes = std::move(*u.strokes);
+    if (u.strokes) {
+        s.strokes = std::move(*u.strokes);
+        // What is chosen may be gone, or lie elsewhere.
+        std::set<std::uint64_t> there;
+        for (const StrokeLine& line : s.strokes)
+            if (s.journal.holds(line.id)) there.insert(line.id);
+        select_entries(s, std::move(there));
+    }
+    if (u.outline) s.journal.outline = std::move(*u.outline);
+    u.outline.reset();
     if (u.own_inks) s.own_inks = std::move(*u.own_inks);
     if (u.palette) {
         s.palette.picture = std::move(*u.palette);

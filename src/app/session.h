@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/document/curve.h"
+#include "app/document/journal_state.h"
 #include "app/document/opening.h"
 #include "app/document/painter.h"
 #include "app/document/pictures.h"
@@ -107,8 +108,7 @@ struct Session {
     std::filesystem::path revises;         ///< project whose strokes what is being opened shall carry
     std::filesystem::path former;          ///< project that the revised model's strokes came from
     std::vector<stroke::Misfit> misfits;   ///< strokes that do not fit a revised model any more
-    bool show_misfits = false, shift_stroke = false;  ///< the chosen stroke is being moved
-    std::optional<mesh::SurfacePoint> shift_from, shift_to;
+    bool show_misfits = false;
     bool is_sample = false;                ///< what is being opened; nothing is asked then
     bool model_is_new = false;             ///< the scene must take it over
     bool keeps_view = false;               ///< it is looked at as the one before
@@ -169,7 +169,7 @@ struct Session {
     double layer_opacity = -1;             ///< while its slider is in the hand
     bool layer_details = false;
     std::vector<StrokeLine> strokes;
-    std::uint64_t selected = 0;
+    JournalState journal;
     Update last;                           ///< without tiles and messages
     brush::TuftState tuft;                 ///< drawn: pressed, or hovering
     double depth = 0;                      ///< metres of the unbent tip below the surface
@@ -212,6 +212,8 @@ void add_layer(Session& s, const std::string& name);
 void show_palette(Session& s, bool on);
 /// Takes the brush in hand in another size, times that of its make, within what there is.
 void size_brush(Session& s, double factor);
+/// Chooses these entries of the journal, and none else; their ink is highlighted.
+void select_entries(Session& s, std::set<std::uint64_t> ids);
 /// Keeps strokes to a mask and veils what it leaves out; 0: none.
 void choose_mask(Session& s, std::uint32_t id);
 /// Looks at a model that shall take the place of the one in work, with its strokes.

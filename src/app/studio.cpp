@@ -232,7 +232,7 @@ void Studio::update_tuft(double now) {
     s.pressed = s.last.tuft && !s.last.tuft->branches.empty() && !s.last.on_palette;
     if (s.pressed) {
         s.tuft = *s.last.tuft;
-    } else if (s.tool != Tool::writing && s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask && !s.shift_stroke && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
+    } else if (s.tool != Tool::writing && s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask && !s.journal.moves && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
         if (!preview_ || preview_brush_ != s.brush) {
             preview_ = brush::make_tuft(brush::load_preset(s.brush));
             preview_brush_ = s.brush;

@@ -121,19 +121,20 @@ RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint
 
 bool Studio::shift_press(const Event& e) {
     Session& s = session_;
-    if (!s.shift_stroke) return false;
-    s.shift_from = s.shift_to = aim_at(*s.painter->model().query, aim_of(e));
+    if (!s.journal.moves) return false;
+    s.journal.from = s.journal.to = aim_at(*s.painter->model().query, aim_of(e));
     return true;
 }
 
 void Studio::shift_release(const Event& e) {
     Session& s = session_;
-    if (const auto to = aim_at(*s.painter->model().query, aim_of(e))) s.shift_to = to;
-    if (glm::distance(s.shift_from->position, s.shift_to->position) > 1e-5)
-        s.painter->post(EditStroke{.id = s.selected, .move = shift_between(*s.shift_from, *s.shift_to)});
-    s.shift_from.reset();
-    s.shift_to.reset();
-    s.shift_stroke = false;
+    JournalState& j = s.journal;
+    if (const auto to = aim_at(*s.painter->model().query, aim_of(e))) j.to = to;
+    if (glm::distance(j.from->position, j.to->position) > 1e-5)
+        s.painter->post(EditStrokes{.ids = {j.selected.begin(), j.selected.end()}, .move = shift_between(*j.from, *j.to)});
+    j.from.reset();
+    j.to.reset();
+    j.moves = false;
 }
 
 }  // namespace tuft::app

@@ -115,6 +115,7 @@ void Studio::press(const Event& e) {
     else if (e.button != 0 && s.keymap == Keymap::blender) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     if (drag_ != Drag::none || e.button != 0) return;
     if (shift_press(e)) return;
+    if (s.tool != Tool::mask && s.tool != Tool::pick) select_entries(s, {});  // ink is shown as it is while one paints
     if (s.tool == Tool::writing) return lay_writing();
     if (s.tool == Tool::pick) return pick_press(e);
     if (s.tool == Tool::mask) return mask_press(e);
@@ -146,8 +147,8 @@ void Studio::move(const Event& e) {
     }
     if (s.curve.grabbed >= 0) return curve_drag(e);
     if (!s.lasso.empty()) return lasso_move(e);
-    if (s.shift_from) {
-        if (const auto to = aim_at(*s.painter->model().query, aim_of(e))) s.shift_to = to;
+    if (s.journal.from) {
+        if (const auto to = aim_at(*s.painter->model().query, aim_of(e))) s.journal.to = to;
         return;
     }
     const double dx = kTurnPixels * (e.x - cursor_.x), dy = kTurnPixels * (e.y - cursor_.y);
@@ -169,7 +170,7 @@ void Studio::release(const Event& e) {
         s.hand_down = false;
     }
     if (e.button == 0 && !s.lasso.empty()) lasso_release();
-    if (e.button == 0 && s.shift_from) shift_release(e);
+    if (e.button == 0 && s.journal.from) shift_release(e);
     if (e.button == 0 && s.curve.grabbed >= 0) curve_release(e);
     drag_ = Drag::none;
 }
@@ -217,7 +218,7 @@ void Studio::perform(Act act) {
         case Act::undo: s.painter->post(UndoStroke{}); break;
         case Act::redo: s.painter->post(RedoStroke{}); break;
         case Act::delete_stroke:
-            if (s.selected) s.painter->post(EditStroke{.id = s.selected, .remove = true});
+            if (!s.journal.selected.empty()) s.painter->post(EditStrokes{.ids = {s.journal.selected.begin(), s.journal.selected.end()}, .remove = true});
             break;
         case Act::save: s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft"); break;
         case Act::export_to: s.show_export = true; break;

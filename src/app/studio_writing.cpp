@@ -54,7 +54,7 @@ void Studio::lay_writing() {
     // Pressures that are made up stay as they are while the slider is where it is at first.
     const WritingHand hand{s.brush, s.ink, s.hand.pressure / HandSettings{}.pressure};
     say(s, s.ui.tr("Placed:") + (" " + place_words(s.writing, *placement)));
-    s.painter->post(PaintDrawing{placed_writing(s.writing, *placement, hand), s.symmetry, s.layer, s.mask, s.wet});
+    s.painter->post(PaintDrawing{placed_writing(s.writing, *placement, hand), stroke::group_name(s.writing.file), s.symmetry, s.layer, s.mask, s.wet});
 }
 
 }  // namespace tuft::app

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
@@ -71,6 +72,23 @@ int inspect_point(const Inspect& a) {
     return 0;
 }
 
+struct GroupSum {
+    std::string name;
+    std::size_t entries = 0, strokes = 0, hidden = 0;
+};
+std::map<std::uint64_t, GroupSum> groups_of(const std::vector<stroke::Stroke>& entries) {
+    std::map<std::uint64_t, GroupSum> groups;
+    for (const stroke::Stroke& s : entries) {
+        if (s.group.id == 0) continue;
+        GroupSum& sum = groups[s.group.id];
+        sum.name = s.group.name;
+        ++sum.entries;
+        sum.strokes += s.action == stroke::Action::stroke;
+        sum.hidden += s.hidden;
+    }
+    return groups;
+}
+
 int inspect_project(const Inspect& a) {
     if (!a.at_mm.empty()) return inspect_point(a);
     Console console(a.common.quiet);
@@ -78,6 +96,7 @@ int inspect_project(const Inspect& a) {
     const io::ProjectModel model = project.model();
     const std::vector<stroke::Stroke> strokes = project.strokes();
     const stroke::LayerTable layers = stroke::layers_after(strokes);
+    const std::map<std::uint64_t, GroupSum> groups = groups_of(strokes);
     const atlas::AtlasReport quality = atlas::measure(model.mesh, model.atlas);
     if (a.common.json) {
         nlohmann::json j{{"project", a.file.string()},
@@ -99,8 +118,12 @@ int inspect_project(const Inspect& a) {
                                    {"opacity", l.opacity},
                                    {"blend", ink::name_of(l.blend)},
                                    {"locked", l.locked}});
+        j["groups"] = nlohmann::json::array();
+        for (const auto& [id, group] : groups)
+            j["groups"].push_back({{"id", id}, {"name", group.name}, {"entries", group.entries}, {"strokes", group.strokes}, {"hidden", group.hidden == group.entries}});
         for (const stroke::Stroke& s : strokes)
             j["strokes"].push_back({{"id", s.id},
+                                    {"group", s.group.id},
                                     {"action", stroke::name_of(s.action)},
                                     {"dip", s.settings.dip},
                                     {"depth", s.extent.depth},
@@ -128,9 +151,17 @@ int inspect_project(const Inspect& a) {
             fmt::print("  layer   {:>4}  {}, opacity {:g}{}{}{}\n", l->id, l->name, l->opacity,
                        l->blend == ink::Blend::normal ? "" : std::string(", ") + ink::name_of(l->blend),
                        l->visible ? "" : ", hidden", l->locked ? ", locked" : "");
-    for (const stroke::Stroke& s : strokes)
-        fmt::print("  {:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", stroke::name_of(s.action), s.id, s.trace.brush,
+    std::uint64_t group = 0;
+    for (const stroke::Stroke& s : strokes) {
+        if (s.group.id != 0 && s.group.id != group) {
+            const GroupSum& sum = groups.at(s.group.id);
+            fmt::print("  group   {:>4}  {}: {} stroke{}{}\n", s.group.id, sum.name, sum.strokes, sum.strokes == 1 ? "" : "s",
+                       sum.hidden == sum.entries ? " (hidden)" : "");
+        }
+        group = s.group.id;
+        fmt::print("  {}{:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", group ? "  " : "", stroke::name_of(s.action), s.id, s.trace.brush,
                    s.trace.ink, s.trace.samples.size(), s.trace.label, s.hidden ? " (hidden)" : "");
+    }
     return 0;
 }
 

@@ -85,6 +85,10 @@ int run(const Paint& a) {
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);
     stroke::keep_to_named_masks(strokes, painting.masks(), a.mask);
     const std::size_t n_before = painting.journal().strokes().size();
+    // Files are numbered from 1: each is a group of its own in this journal.
+    const std::uint64_t first_group = painting.journal().next_group_id();
+    for (stroke::Stroke& s : strokes)
+        if (s.group.id != 0) s.group.id += first_group - 1;
     const double prepared = seconds_since(start);
     find_presets(painting, strokes);
     std::optional<io::Project> project;

@@ -152,9 +152,12 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     std::vector<stroke::Stroke> strokes;
     std::set<std::string> told;  // a file that is painted twice is told of once
     for (const fs::path& file : a.strokes) {
+        const std::size_t first = strokes.size();
         std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) { if (told.insert(line).second) console.note(line); }});
         if (habit) traces = stroke::undo_habit(*habit, std::move(traces));
         stroke::append_entries(strokes, std::move(traces), options);
+        for (std::size_t i = first; i < strokes.size(); ++i)
+            strokes[i].group = {static_cast<std::uint64_t>(1 + (&file - a.strokes.data())), stroke::group_name(file)};
         if (a.dry >= 0 && !strokes.empty()) {
             stroke::Stroke entry{.settings = settings, .action = stroke::Action::dry, .seconds = a.dry};
             entry.trace.flat = false;

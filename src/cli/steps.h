@@ -41,7 +41,8 @@ void check_output(const std::filesystem::path& path);
 /// Throws `UsageError` when the extension is none of `allowed` (".glb", ...).
 void check_extension(const std::filesystem::path& path, const std::vector<std::string>& allowed);
 
-/// Strokes of InkML files in order, with brush and ink filled in where the file names none.
+/// Strokes of InkML and SVG files in order, with brush and ink filled in where the file names none; each file is a group,
+/// numbered from 1.
 std::vector<stroke::Stroke> load_strokes(const Paint& arguments, Console& console);
 
 /// Has only the layers of these names seen; throws `UsageError` for a name that is not there.

@@ -105,20 +105,20 @@ TEST_F(PainterTest, AStoppedChangeLeavesTexelsAndJournalTogether) {
     rest();
     ASSERT_EQ(lines_.size(), 4u);
     const auto before = lines_;
-    painter_->post(EditStroke{.id = id(1), .hidden = true});
-    painter_->post(EditStroke{.id = id(0), .remove = true});
-    painter_->post(EditStroke{.id = id(2), .ink = "iron-red"});
+    painter_->post(EditStrokes{.ids = {id(1)}, .hidden = true});
+    painter_->post(EditStrokes{.ids = {id(0)}, .remove = true});
+    painter_->post(EditStrokes{.ids = {id(2)}, .ink = "iron-red"});
     stop_all();
     EXPECT_NE(std::ranges::find(messages_, "Stopped; everything is as it was."), messages_.end());
     EXPECT_EQ(busy_, "");
     expect_file_like_journal("stopped");
 
     // A change that is stopped between two that are not, and their undo stopped and asked for again.
-    painter_->post(EditStroke{.id = before[1].id, .hidden = true});
+    painter_->post(EditStrokes{.ids = {before[1].id}, .hidden = true});
     rest();
-    painter_->post(EditStroke{.id = before[0].id, .remove = true});
+    painter_->post(EditStrokes{.ids = {before[0].id}, .remove = true});
     stop_all();
-    painter_->post(EditStroke{.id = before[2].id, .ink = "iron-red"});
+    painter_->post(EditStrokes{.ids = {before[2].id}, .ink = "iron-red"});
     stroke(0.004);
     expect_file_like_journal("changed");
     painter_->post(UndoStroke{});
@@ -138,7 +138,7 @@ TEST_F(PainterTest, AStoppedChangeLeavesTexelsAndJournalTogether) {
 TEST_F(PainterTest, AStrokeThatIsCalledOffLeavesWhatCanBeRedone) {
     for (int i = 0; i < 3; ++i) stroke(0.001 * i);
     rest();
-    painter_->post(EditStroke{.id = id(2), .remove = true});
+    painter_->post(EditStrokes{.ids = {id(2)}, .remove = true});
     rest();
     ASSERT_EQ(lines_.size(), 2u);
     painter_->post(UndoStroke{});  // the removal
@@ -162,7 +162,7 @@ TEST_F(PainterTest, AChangeOrAnUndoWhileTheHandIsDownCallsItsStrokeOff) {
     rest();
     const std::uint64_t first = id(0);
     begin("cinnabar", 0.003);
-    painter_->post(EditStroke{.id = first, .hidden = true});
+    painter_->post(EditStrokes{.ids = {first}, .hidden = true});
     painter_->post(EndStroke{});
     expect_file_like_journal("changed");
     EXPECT_EQ(lines_.size(), 2u) << "no loading is left";
@@ -179,11 +179,11 @@ TEST_F(PainterTest, AFileLeftAfterAChangeIsNotOpenedWithFormerTexels) {
     for (int i = 0; i < 3; ++i) stroke(0.001 * i);
     painter_->post(SaveProject{folder_ / "work.tuft"});  // with its texels
     rest();
-    painter_->post(EditStroke{.id = id(0), .hidden = true});
+    painter_->post(EditStrokes{.ids = {id(0)}, .hidden = true});
     expect_file_like_journal("hidden");
     painter_->post(SaveProject{folder_ / "work.tuft"});
     // The last one goes, and another comes in its place.
-    painter_->post(EditStroke{.id = id(2), .remove = true});
+    painter_->post(EditStrokes{.ids = {id(2)}, .remove = true});
     rest();
     stroke(0.006, "cinnabar");
     expect_file_like_journal("another in its place");

@@ -100,6 +100,7 @@ Update Painter::take() {
     update_.from_outside = false;
     update_.brush_colour = out.brush_colour;
     update_.looks.reset();
+    update_.outline.reset();
     update_.picked.clear();
     update_.wet = out.wet;
     update_.undo_seconds = out.undo_seconds;
@@ -188,7 +189,8 @@ void Painter::perform(Command& command) {
                           [this](PickInk& c) { pick(c); }, [this](TakeInk& c) { add_ink(std::move(c.ink)); },
                           [this](RecolourInk& c) { recolour(c); }, [this](ShowOn& c) { show_on(c); },
                           [this](ChangeMasks& c) { change_masks(c); }, [this](ShowMask& c) { show_mask(c); },
-                          [this](ExportModel& c) { export_model(c); }, [this](EditStroke& c) { edit(c); }},
+                          [this](ExportModel& c) { export_model(c); }, [this](EditStrokes& c) { edit(c); },
+                          [this](HighlightStrokes& c) { highlight(c); }},
                command);
 }
 
@@ -216,7 +218,7 @@ void Painter::publish(bool strokes_changed) {
         std::size_t same = 0;
         while (same < lines_.size() && same < strokes.size() && lines_[same].id == strokes[same].id &&
                lines_[same].brush == strokes[same].trace.brush && lines_[same].ink == strokes[same].trace.ink &&
-               lines_[same].hidden == strokes[same].hidden)
+               lines_[same].hidden == strokes[same].hidden && lines_[same].group == strokes[same].group)
             ++same;
         lines_.resize(same);
         for (; same < strokes.size(); ++same) lines_.push_back(stroke_line(strokes[same]));
@@ -225,14 +227,8 @@ void Painter::publish(bool strokes_changed) {
     if (!wells.empty()) refresh(palette_, painting, wells);
     if (strokes_changed) look_at_brush();
     const brush::TuftState* tuft = painting.tuft();
+    send_tiles(std::move(tiles));
     const std::lock_guard lock(mutex_);
-    if (update_.tiles.empty()) update_.tiles = std::move(tiles);
-    else {
-        std::set<std::uint32_t> fresh;
-        for (const render::TilePixels& tile : tiles) fresh.insert(tile.tile);
-        std::erase_if(update_.tiles, [&](const render::TilePixels& t) { return fresh.contains(t.tile); });
-        update_.tiles.insert(update_.tiles.end(), tiles.begin(), tiles.end());
-    }
     if (strokes_changed) update_.strokes = lines_;
     update_.tuft = tuft ? *tuft : brush::TuftState{};
     update_.on_palette = tuft && current_.layer == stroke::kPaletteLayer;
@@ -255,6 +251,14 @@ void Painter::publish(bool strokes_changed) {
     update_.behind = work_.keeper.behind();
     update_.viewing = work_.keeper.viewing();
     last_publish_ = now();
+}
+
+void Painter::send_tiles(std::vector<render::TilePixels> tiles) {
+    const std::lock_guard lock(mutex_);
+    std::set<std::uint32_t> fresh;
+    for (const render::TilePixels& tile : tiles) fresh.insert(tile.tile);
+    std::erase_if(update_.tiles, [&](const render::TilePixels& t) { return fresh.contains(t.tile); });
+    update_.tiles.insert(update_.tiles.end(), std::make_move_iterator(tiles.begin()), std::make_move_iterator(tiles.end()));
 }
 
 void Painter::begin(const BeginStroke& command) {
@@ -343,12 +347,13 @@ void Painter::act(stroke::Stroke entry) {
 
 void Painter::paint_drawing(PaintDrawing& command) {
     cancel();
-    const ProgressFn shown = progress("Laying it down");
+    const ProgressFn shown = progress("Placing the drawing");
     shown("", 0);
     PlacedWriting& drawing = command.drawing;
     stroke::choose_brushes(drawing.entries, stroke::drawing_in(drawing.entries, true), drawing.scale, drawing.extent, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
     std::vector<stroke::Stroke> all = drawing.entries;
+    const std::size_t in_group = std::max<std::size_t>(1, all.size());
     for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry)) {
         const double reads = glm::determinant(map.linear) < 0 ? -1 : 1;
         for (stroke::Stroke entry : drawing.entries) {
@@ -359,12 +364,15 @@ void Painter::paint_drawing(PaintDrawing& command) {
     }
     undone_.clear();
     steps_.push_back({});
+    stroke::EntryGroup group;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
         work_.keeper.prepare(*work_.painting, all[i].trace.brush, all[i].trace.ink);
         all[i].layer = layer_of(command.layer);
         all[i].mask = command.mask;
         if (command.wet) all[i].settings.film = "wet";
+        if (i % in_group == 0 && !command.name.empty()) group = {work_.painting->journal().next_group_id(), command.name};
+        all[i].group = group;
         work_.painting->paint(std::move(all[i]));
         work_.keeper.add(work_.painting->journal().strokes().back());
         ++steps_.back().made;

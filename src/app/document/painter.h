@@ -56,6 +56,7 @@ struct EndStroke {};
 /// Paints a drawing that has been placed on the model; undone together.
 struct PaintDrawing {
     PlacedWriting drawing;
+    std::string name;             ///< its strokes are a group of this name, each symmetric copy another one; empty: no groups
     stroke::Symmetry symmetry;    ///< the drawing reads the same way in each copy, also beyond a mirror plane
     std::uint32_t layer = stroke::kFirstLayer;
     std::uint32_t mask = 0;
@@ -126,27 +127,40 @@ struct RigidMove {
     Vec3 from{0}, to{0};          ///< metres
     Quat rotation{1, 0, 0, 0};
 };
-/// Changes a stroke that is already there; the rest is painted again.
-struct EditStroke {
-    std::uint64_t id = 0;
-    std::optional<bool> hidden;
-    std::optional<std::string> brush, ink;
-    std::optional<RigidMove> move;
+/// Changes entries that are already there, all at once and undone as one; the rest is painted again.
+struct EditStrokes {
+    std::vector<std::uint64_t> ids = {};  ///< others than the journal's are left aside
+    std::optional<bool> hidden = {};
+    std::optional<std::string> brush = {};  ///< name without a size: each stroke keeps its own factor
+    std::optional<std::string> ink = {};    ///< of strokes, dips and fills
+    std::optional<RigidMove> move = {};
+    std::optional<std::string> group = {};  ///< makes them a group of that name; empty: takes them out of theirs
     bool remove = false;
-    bool joined = false;          ///< is undone together with the one before it
+};
+/// Highlights the texels that these entries leave ink on; none: nothing.
+struct HighlightStrokes {
+    std::vector<std::uint64_t> ids;
 };
 using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, CareForBrush, UndoStroke, RedoStroke, SaveProject, RetryKeeping,
-                             ExportModel, EditStroke, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
+                             ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
 
 /// A stroke for the list.
 struct StrokeLine {
     std::uint64_t id = 0;
     stroke::Action action = stroke::Action::stroke;
     std::string brush, ink, label;
+    stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;
     double length = 0;            ///< metres of the hand's way
-    std::vector<Vec3f> places;    ///< metres, model frame: where the hand was; empty for flat traces
     std::vector<Vec3f> way;       ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
+    bool flat = false;            ///< `way` is in the frame of a drawing
+    Vec2 way_centre{0};           ///< metres: of the way (0.5, 0.5) there
+    double way_span = 0;          ///< metres: of [0, 1]
+};
+
+/// A place at the rim of highlighted ink.
+struct OutlinePoint {
+    Vec3f position{0}, normal{0, 0, 1};  ///< metres; unit
 };
 
 /// How the work is shown, apart from how it was painted.
@@ -178,6 +192,7 @@ struct Update {
     stroke::MaskTable masks;
     std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones
     std::optional<Looks> looks;
+    std::optional<std::vector<OutlinePoint>> outline;  ///< of what was asked to be highlighted
     std::string picked;           ///< name of an ink just picked up or taken in
     bool wet = false;             ///< some ink is
     std::string trouble;          ///< why work is not being kept, ""
@@ -231,14 +246,15 @@ class Painter {
   private:
     /// An entry of the journal that was changed, or taken out.
     struct Change {
-        std::size_t at = 0;                   ///< its place
+        std::size_t at = 0;                   ///< its place in the journal before
         stroke::Stroke before;
         std::optional<stroke::Stroke> after;  ///< none: taken out
+        bool in_rows = false;                 ///< the file's rows can follow it; else it is written anew
     };
     /// What one undo takes back.
     struct Step {
         std::size_t made = 0;                 ///< entries at the journal's end
-        std::optional<Change> change;         ///< or this
+        std::vector<Change> changes;          ///< or these, in the journal's order
         bool joined = false;                  ///< and the step before it
     };
     void run();
@@ -258,6 +274,7 @@ class Painter {
     void recolour(const RecolourInk& command);
     void show_on(const ShowOn& command);
     void send_pixels();
+    void send_tiles(std::vector<render::TilePixels> tiles);
     void publish_looks();
     void look_at_brush();
     std::uint32_t layer_of(std::uint32_t asked) const;
@@ -266,9 +283,10 @@ class Painter {
     void care(const CareForBrush& command);
     void undo();
     void redo();
-    void edit(const EditStroke& command);
+    void edit(const EditStrokes& command);
+    void highlight(const HighlightStrokes& command);
     void rewrite(std::vector<stroke::Stroke> strokes);
-    void put(const Change& change, bool back);
+    void put(const std::vector<Change>& changes, bool back);
     void take_presets(stroke::Painting& painting);
     void replace_painting(std::unique_ptr<stroke::Painting> painting);
     void look_outside();

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <chrono>
+#include <ranges>
+#include <set>
 #include <utility>
 
 #include "app/document/painter.h"
+#include "brush/preset.h"
 
 /// Going back over the journal, and changing what is in it: on the painter's thread.
 namespace tuft::app {
@@ -21,6 +24,15 @@ void shift(stroke::Stroke& stroke, const RigidMove& move) {
     }
 }
 
+// Another make of brush in the size that the stroke was painted with.
+std::string rebrushed(const std::string& before, const std::string& wanted) {
+    return brush::name_of({brush::sized_name(wanted).base, brush::sized_name(before).factor});
+}
+
+bool has_ink_of_its_own(const stroke::Stroke& entry) {
+    return !entry.trace.ink.empty() && (entry.action == stroke::Action::stroke || entry.action == stroke::Action::dip || entry.action == stroke::Action::fill);
+}
+
 }  // namespace
 
 void Painter::undo() {
@@ -29,7 +41,7 @@ void Painter::undo() {
     for (bool more = true; more && !steps_.empty();) {
         const Step& step = steps_.back();
         more = step.joined;
-        if (step.change) put(*step.change, true);
+        if (!step.changes.empty()) put(step.changes, true);
         for (std::size_t i = 0; i < step.made && work_.painting->journal().can_undo(); ++i) {
             const std::uint64_t id = work_.painting->journal().strokes().back().id;
             work_.painting->undo();
@@ -46,7 +58,7 @@ void Painter::redo() {
     cancel();
     for (bool more = true; more && !undone_.empty(); more = !undone_.empty() && undone_.back().joined) {
         const Step& step = undone_.back();
-        if (step.change) put(*step.change, false);
+        if (!step.changes.empty()) put(step.changes, false);
         for (std::size_t i = 0; i < step.made; ++i)
             if (work_.painting->redo()) work_.keeper.add(work_.painting->journal().strokes().back());
         steps_.push_back(std::move(undone_.back()));
@@ -55,40 +67,53 @@ void Painter::redo() {
     publish(true);
 }
 
-void Painter::edit(const EditStroke& command) {
+void Painter::edit(const EditStrokes& command) {
     cancel();
-    const std::vector<stroke::Stroke>& strokes = work_.painting->journal().strokes();
-    const auto at = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.id == command.id; });
-    if (at == strokes.end()) return;
-    Change change{.at = static_cast<std::size_t>(at - strokes.begin()), .before = *at, .after = {}};
-    if (!command.remove) {
-        stroke::Stroke& after = change.after.emplace(*at);
-        if (command.hidden) after.hidden = *command.hidden;
-        if (command.brush) after.trace.brush = *command.brush;
-        if (command.ink) after.trace.ink = *command.ink;
-        if (command.move) shift(after, *command.move);
-        if (command.brush || command.ink) work_.keeper.prepare(*work_.painting, after.trace.brush, after.trace.ink);
+    const stroke::Journal& journal = work_.painting->journal();
+    const std::set<std::uint64_t> wanted(command.ids.begin(), command.ids.end());
+    const stroke::EntryGroup group = command.group && !command.group->empty() ? stroke::EntryGroup{journal.next_group_id(), *command.group} : stroke::EntryGroup{};
+    if (group.id != 0) stroke::check_name(group.name, "group");
+    const bool in_rows = command.remove || (command.hidden && !command.brush && !command.ink && !command.move && !command.group);
+    std::vector<Change> changes;
+    for (std::size_t i = 0; i < journal.strokes().size(); ++i) {
+        const stroke::Stroke& before = journal.strokes()[i];
+        if (!wanted.contains(before.id)) continue;
+        Change change{.at = i, .before = before, .after = {}, .in_rows = in_rows};
+        if (!command.remove) {
+            stroke::Stroke& after = change.after.emplace(before);
+            if (command.hidden) after.hidden = *command.hidden;
+            if (command.brush && stroke::has_brush(before.action)) after.trace.brush = rebrushed(before.trace.brush, *command.brush);
+            if (command.ink && has_ink_of_its_own(before)) after.trace.ink = *command.ink;
+            if (command.move) shift(after, *command.move);
+            if (command.group) after.group = group;
+            if (after.trace.brush != before.trace.brush || after.trace.ink != before.trace.ink)
+                work_.keeper.prepare(*work_.painting, after.trace.brush, after.trace.ink);
+        }
+        changes.push_back(std::move(change));
     }
-    put(change, false);
+    if (changes.empty()) return;
+    put(changes, false);
     work_.painting->restore_undone({});
     undone_.clear();
-    steps_.push_back({.change = std::move(change), .joined = command.joined && !steps_.empty()});
+    steps_.push_back({.changes = std::move(changes)});
     publish(true);
 }
 
-// Changes an entry, or changes it back, and paints all strokes anew.
-void Painter::put(const Change& change, bool back) {
-    const stroke::Stroke& from = change.before;
+// Changes entries, or changes them back, and paints all strokes anew.
+void Painter::put(const std::vector<Change>& changes, bool back) {
     std::vector<stroke::Stroke> strokes = work_.painting->journal().strokes();
-    const auto at = strokes.begin() + static_cast<std::ptrdiff_t>(change.at);
-    if (!change.after && back) strokes.insert(at, from);
-    else if (!change.after) strokes.erase(at);
-    else *at = back ? from : *change.after;
+    const auto at = [&](const Change& change) { return strokes.begin() + static_cast<std::ptrdiff_t>(change.at); };
+    if (back)
+        for (const Change& change : changes) change.after ? void(*at(change) = change.before) : void(strokes.insert(at(change), change.before));
+    else
+        for (const Change& change : std::views::reverse(changes)) change.after ? void(*at(change) = *change.after) : void(strokes.erase(at(change)));
     rewrite(std::move(strokes));
-    if (!change.after && !back) return work_.keeper.remove(from.id);
-    if (change.after && change.after->hidden != from.hidden) return work_.keeper.set_hidden(from.id, back ? from.hidden : change.after->hidden);
-    // Rows can only be added and taken out: the file is written anew, whole or not at all.
-    work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
+    // Rows can only be hidden and taken out: other changes, and several at once, write the file anew, whole or not at all.
+    const Change& first = changes.front();
+    const bool one_row = changes.size() == 1 && first.in_rows;
+    if (one_row && !first.after && !back) work_.keeper.remove(first.before.id);
+    else if (one_row && first.after) work_.keeper.set_hidden(first.before.id, back ? first.before.hidden : first.after->hidden);
+    else work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
 }
 
 // Ground, brushes, inks and looks as the journal's strokes were painted with.

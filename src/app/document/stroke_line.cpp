@@ -5,7 +5,7 @@
 namespace tuft::app {
 
 StrokeLine stroke_line(const stroke::Stroke& stroke) {
-    StrokeLine line{.id = stroke.id, .action = stroke.action, .brush = stroke.trace.brush, .ink = stroke.trace.ink, .label = stroke.trace.label,
+    StrokeLine line{.id = stroke.id, .action = stroke.action, .brush = stroke.trace.brush, .ink = stroke.trace.ink, .label = stroke.trace.label, .group = stroke.group,
                     .hidden = stroke.hidden, .erases = stroke.trace.erases, .on_palette = stroke.layer == stroke::kPaletteLayer};
     const auto& samples = stroke.trace.samples;
     if (samples.empty()) return line;
@@ -34,8 +34,9 @@ StrokeLine stroke_line(const stroke::Stroke& stroke) {
         lo_z = std::min(lo_z, points.back().z), hi_z = std::max(hi_z, points.back().z);
     }
     const double span = std::max({hi_x - lo_x, hi_y - lo_y, 1e-4});
-    if (!stroke.trace.flat && !line.on_palette)
-        for (std::size_t i = 0; i < n; ++i) line.places.emplace_back(samples[i * (samples.size() - 1) / std::max<std::size_t>(1, n - 1)].position);
+    line.flat = stroke.trace.flat;
+    line.way_centre = Vec2(mean) + Vec2(0.5 * (lo_x + hi_x), 0.5 * (lo_y + hi_y));
+    line.way_span = span;
     for (const Vec3& p : points)
         line.way.emplace_back(0.5 + (p.x - 0.5 * (lo_x + hi_x)) / span, 0.5 + (p.y - 0.5 * (lo_y + hi_y)) / span,
                               (hi_z - p.z) / std::max(1e-6, hi_z - lo_z));

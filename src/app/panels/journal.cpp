@@ -3,76 +3,289 @@
 #include <algorithm>
 
 #include "app/panels/panels.h"
+#include "brush/preset.h"
 
+/// The list of what was painted, and what can be done with its entries.
 namespace tuft::app {
 namespace {
 
-void draw_way(const Session& s, const StrokeLine& line, ImVec2 at, float size) {
+constexpr float kRowHeight = 42, kIndent = 16;
+constexpr std::size_t kThumbnailStrokes = 300;  // of a group, that its picture shows
+
+using Lines = std::vector<const StrokeLine*>;
+
+bool is_stroke(const StrokeLine& line) { return line.action == stroke::Action::stroke; }
+
+unsigned colour_of(const Session& s, const StrokeLine& line) {
+    return (ink_colour(s, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
+}
+
+// The way of a stroke; `place` puts a point of it on the screen.
+template <class Place>
+void draw_way(const Session& s, const StrokeLine& line, float size, const Place& place) {
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const unsigned colour = colour_of(s, line);
+    for (std::size_t i = 1; i < line.way.size(); ++i) {
+        const Vec3f &a = line.way[i - 1], &b = line.way[i];
+        const ImVec2 from = place(a), to = place(b);
+        const float width = 1.0f + 0.055f * size * (a.z + b.z);
+        draw->AddLine(from, to, colour, width);
+        if (!line.hidden) draw->AddCircleFilled(to, 0.5f * width, colour, 8);  // no notch at the bend
+    }
+}
+
+void draw_sheet(ImVec2 at, float size, bool hidden) {
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(at, ImVec2(at.x + size, at.y + size), IM_COL32(238, 236, 230, hidden ? 70 : 255), 3);
+    draw->AddRect(at, ImVec2(at.x + size, at.y + size), IM_COL32(128, 128, 128, 110), 3);
+}
+
+void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 middle(at.x + 0.5f * size, at.y + 0.5f * size);
-    if (line.action != stroke::Action::stroke) {
+    if (!is_stroke(line)) {
         const bool inked = line.action == stroke::Action::dip || line.action == stroke::Action::fill;
         if (inked) draw->AddCircleFilled(middle, 0.24f * size, ink_colour(s, line.ink), 32);
         draw->AddCircle(middle, 0.24f * size, s.ui.faint, 32);
         return;
     }
-    draw->AddRectFilled(at, ImVec2(at.x + size, at.y + size), IM_COL32(238, 236, 230, line.hidden ? 70 : 255), 3);
-    draw->AddRect(at, ImVec2(at.x + size, at.y + size), IM_COL32(128, 128, 128, 110), 3);
+    draw_sheet(at, size, line.hidden);
     const float pad = 0.16f * size, inner = size - 2 * pad;
-    const unsigned colour = (ink_colour(s, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
-    if (line.length < 1e-3) draw->AddCircleFilled(middle, 0.07f * size, colour, 16);  // a touch, no way
-    else for (std::size_t i = 1; i < line.way.size(); ++i) {
-        const Vec3f &a = line.way[i - 1], &b = line.way[i];
-        const ImVec2 to(at.x + pad + b.x * inner, at.y + pad + b.y * inner);
-        const float width = 1.0f + 0.055f * size * (a.z + b.z);
-        draw->AddLine(ImVec2(at.x + pad + a.x * inner, at.y + pad + a.y * inner), to, colour, width);
-        if (!line.hidden) draw->AddCircleFilled(to, 0.5f * width, colour, 8);  // no notch at the bend
+    if (line.length < 1e-3) draw->AddCircleFilled(middle, 0.07f * size, colour_of(s, line), 16);  // a touch, no way
+    else draw_way(s, line, size, [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
+}
+
+// A drawing in its own frame, all strokes in one picture; other groups by their first stroke.
+void draw_group(const Session& s, const Lines& lines, ImVec2 at, float size) {
+    const float shift = s.ui.px(2);
+    const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
+    draw_sheet(ImVec2(at.x + shift, at.y - shift), size - shift, hidden);
+    draw_sheet(ImVec2(at.x, at.y + shift), size - shift, hidden);
+    Box box;
+    for (const StrokeLine* line : lines) {
+        if (!line->flat || line->way.empty()) continue;
+        for (const Vec3f& p : line->way) box.add(Vec3(line->way_centre + line->way_span * (Vec2(p) - 0.5), 0));
+    }
+    const float inner = size - shift - 2 * 0.1f * size;
+    if (!(box.hi.x >= box.lo.x)) return draw_entry(s, *lines.front(), ImVec2(at.x, at.y + shift), size - shift);
+    const double span = std::max({box.size().x, box.size().y, 1e-6});
+    const std::size_t step = 1 + lines.size() / kThumbnailStrokes;
+    for (std::size_t i = 0; i < lines.size(); i += step) {
+        const StrokeLine& line = *lines[i];
+        if (!line.flat) continue;
+        draw_way(s, line, 0.3f * size, [&](const Vec3f& p) {
+            const Vec2 d = (line.way_centre + line.way_span * (Vec2(p) - 0.5) - Vec2(box.centre())) / span;
+            return ImVec2(at.x + 0.5f * (size - shift) + static_cast<float>(d.x) * inner, at.y + shift + 0.5f * (size - shift) + static_cast<float>(d.y) * inner);
+        });
     }
 }
 
-void edit_row(Session& s, const StrokeLine& line) {
+std::vector<std::uint64_t> ids_of(const Lines& lines) {
+    std::vector<std::uint64_t> ids;
+    for (const StrokeLine* line : lines) ids.push_back(line->id);
+    return ids;
+}
+
+Lines chosen_lines(const Session& s) {
+    Lines lines;
+    for (const StrokeLine& line : s.strokes)
+        if (s.journal.holds(line.id)) lines.push_back(&line);
+    return lines;
+}
+
+// What all lines have in common, or "" where they differ.
+template <class Of>
+std::string common(const Lines& lines, const Of& of) {
+    std::string value;
+    for (const StrokeLine* line : lines) {
+        if (!is_stroke(*line)) continue;
+        if (!value.empty() && value != of(*line)) return "";
+        value = of(*line);
+    }
+    return value;
+}
+
+void post(Session& s, EditStrokes edit, const Lines& lines) {
+    edit.ids = ids_of(lines);
+    s.painter->post(std::move(edit));
+}
+
+std::vector<std::string> ink_names(const Session& s) {
+    std::vector<std::string> names = s.inks;
+    for (const ink::Ink& own : s.own_inks) names.push_back(own.name);
+    return names;
+}
+
+void look_at_outline(Session& s) {
+    Box box;
+    for (const OutlinePoint& p : s.journal.outline) box.add(Vec3(p.position));
+    if (s.journal.outline.empty()) return;
+    const Vec3 margin(0.15 * box.diagonal() + 1e-3);
+    s.view.orbit.frame({box.lo - margin, box.hi + margin});
+}
+
+// What can be done with the chosen entries; what is left of the row below them.
+void edit_chosen(Session& s) {
     Ui& ui = s.ui;
+    const Lines lines = chosen_lines(s);
+    if (lines.empty()) return;
+    const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (ui.button(line.hidden ? "Show" : "Hide", line.hidden ? "Paints it again in its place" : "The other strokes are painted again without it", half))
-        s.painter->post(EditStroke{.id = line.id, .hidden = !line.hidden});
+    if (lines.size() > 1) ui.note(ui.tr_sentence(std::to_string(lines.size()) + " entries chosen"));
+    if (ui.button(hidden ? "Show" : "Hide", hidden ? "Paints it again in its place" : "The other strokes are painted again without it", half))
+        post(s, {.hidden = !hidden}, lines);
     ImGui::SameLine();
-    if (ui.button("Delete", "Takes the stroke away and paints the others again", half))
-        s.painter->post(EditStroke{.id = line.id, .remove = true});
-    if (line.action != stroke::Action::stroke) return;
-    if (!line.on_palette && ui.choice("Move", s.shift_stroke, "Then drag it over the model with the left button", 2 * half + 8)) s.shift_stroke = !s.shift_stroke;
-    std::string brush = line.brush, ink = line.ink;
-    if (ui.combo("Change brush", brush, s.brushes)) s.painter->post(EditStroke{.id = line.id, .brush = brush});
-    std::vector<std::string> inks = s.inks;
-    for (const ink::Ink& own : s.own_inks) inks.push_back(own.name);
-    if (ui.combo("Change ink", ink, inks)) s.painter->post(EditStroke{.id = line.id, .ink = ink});
+    if (ui.button("Delete", "Takes the stroke away and paints the others again", half)) post(s, {.remove = true}, lines);
+    if (std::none_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); })) return;
+    const bool on_model = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return !l->on_palette; });
+    if (on_model && ui.choice("Move", s.journal.moves, "Then drag it over the model with the left button", 2 * half + 8)) s.journal.moves = !s.journal.moves;
+    std::string brush = common(lines, [](const StrokeLine& l) { return brush::sized_name(l.brush).base; }), ink = common(lines, [](const StrokeLine& l) { return l.ink; });
+    if (brush.empty()) brush = "Several brushes";
+    if (ink.empty()) ink = "Several inks";
+    if (ui.combo("Change brush", brush, s.brushes)) post(s, {.brush = brush}, lines);
+    if (ui.combo("Change ink", ink, ink_names(s))) post(s, {.ink = ink}, lines);
 }
 
-void stroke_row(Session& s, const StrokeLine& line, std::size_t number) {
-    const float size = s.ui.px(42);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::PushID(static_cast<int>(line.id));
-    const bool chosen = s.selected == line.id;
-    if (ImGui::Selectable("##row", chosen, 0, ImVec2(0, size))) {
-        s.selected = chosen ? 0 : line.id;
-        s.shift_stroke = false;
+// The same as a menu at the cursor.
+void context_menu(Session& s) {
+    Ui& ui = s.ui;
+    if (!ImGui::BeginPopupContextItem("entry menu")) return;
+    const Lines lines = chosen_lines(s);
+    const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
+    const bool strokes = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); });
+    const bool grouped = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->group.id != 0; });
+    if (ui.menu_item(hidden ? "Show" : "Hide")) post(s, {.hidden = !hidden}, lines);
+    if (ui.menu_item("Move", nullptr, s.journal.moves, strokes)) s.journal.moves = !s.journal.moves;
+    if (strokes && ui.begin_menu("Brush")) {
+        for (const std::string& name : s.brushes)
+            if (ui.menu_item(name.c_str())) post(s, {.brush = name}, lines);
+        ImGui::EndMenu();
     }
-    s.ui.mark("stroke " + std::to_string(number));
-    draw_way(s, line, ImVec2(at.x, at.y), size);
-    char text[96];
+    if (strokes && ui.begin_menu("Ink")) {
+        for (const std::string& name : ink_names(s))
+            if (ui.menu_item(name.c_str())) post(s, {.ink = name}, lines);
+        ImGui::EndMenu();
+    }
+    if (ui.menu_item("Look at it", nullptr, false, !s.journal.outline.empty())) look_at_outline(s);
+    ImGui::Separator();
+    if (ui.menu_item("Group", nullptr, false, lines.size() > 1)) post(s, {.group = ui.tr("Group")}, lines);
+    if (ui.menu_item("Ungroup", nullptr, false, grouped)) post(s, {.group = ""}, lines);
+    ImGui::Separator();
+    if (ui.menu_item("Delete", name_of(s.keys.chord(Act::delete_stroke)).c_str())) post(s, {.remove = true}, lines);
+    ImGui::EndPopup();
+}
+
+// A click chooses the row alone; with Ctrl it is added or taken out, with Shift all from the last one on.
+void choose_row(Session& s, const JournalRow& row) {
+    JournalState& j = s.journal;
+    std::set<std::uint64_t> ids;
+    for (const std::size_t i : row.lines) ids.insert(s.strokes[i].id);
+    const bool all = std::all_of(ids.begin(), ids.end(), [&](std::uint64_t id) { return j.holds(id); });
+    const ImGuiIO& io = ImGui::GetIO();
+    std::set<std::uint64_t> chosen = io.KeyCtrl || io.KeyShift ? j.selected : std::set<std::uint64_t>{};
+    const auto anchor = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == j.anchor; });
+    if (io.KeyShift && anchor != s.strokes.end()) {
+        const auto from = static_cast<std::size_t>(anchor - s.strokes.begin());
+        for (std::size_t i = std::min(from, row.lines.front()); i <= std::max(from, row.lines.back()); ++i) chosen.insert(s.strokes[i].id);
+    } else if (all && (io.KeyCtrl || j.selected.size() == ids.size())) {
+        for (const std::uint64_t id : ids) chosen.erase(id);
+    } else {
+        chosen.insert(ids.begin(), ids.end());
+    }
+    if (!io.KeyShift) {
+        j.anchor = s.strokes[row.lines.back()].id;
+        j.anchor_inside = row.inside;
+    }
+    select_entries(s, std::move(chosen));
+}
+
+struct RowText {
+    std::string title, below;
+};
+
+RowText text_of(const Session& s, const StrokeLine& line, std::size_t number) {
     static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe", "Wash"};
-    if (line.action != stroke::Action::stroke) std::snprintf(text, sizeof text, "%zu   %s", number, s.ui.tr(actions[static_cast<int>(line.action)]));
-    else std::snprintf(text, sizeof text, "%zu   %.0f mm%s%s", number, line.length * 1e3, line.erases ? "   " : "", line.erases ? s.ui.tr("erased") : "");
-    if (line.on_palette) std::snprintf(text, sizeof text, "%zu   %s", number, s.ui.tr("Palette"));
+    std::string title = std::to_string(number) + "   ";
+    char length[32];
+    std::snprintf(length, sizeof length, "%.0f mm", line.length * 1e3);
+    if (line.on_palette) title += s.ui.tr("Palette");
+    else if (!is_stroke(line)) title += s.ui.tr(actions[static_cast<int>(line.action)]);
+    else title += length + (line.erases ? std::string("   ") + s.ui.tr("erased") : std::string());
+    if (stroke::keeps_texels(line.action)) return {title, line.label};
+    const char* between = line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ";
+    return {title, s.ui.title(line.brush) + between + s.ui.tr(line.ink.c_str())};
+}
+
+// The triangle before a group, which opens and closes it.
+void fold_arrow(Session& s, std::uint64_t group, const std::string& name, float size) {
+    const bool open = s.journal.open_groups.contains(group);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (ImGui::InvisibleButton("##open", ImVec2(s.ui.px(kIndent), size))) open ? void(s.journal.open_groups.erase(group)) : void(s.journal.open_groups.insert(group));
+    s.ui.mark("open " + name);
+    draw_fold_arrow(s.ui, ImVec2(at.x + 0.4f * s.ui.px(kIndent), at.y + 0.5f * size), open);
+    ImGui::SameLine(0, 0);
+}
+
+void draw_row(Session& s, const JournalRow& row) {
+    const float size = s.ui.px(kRowHeight);
+    Lines lines;
+    for (const std::size_t i : row.lines) lines.push_back(&s.strokes[i]);
+    const StrokeLine& newest = *lines.back();
+    ImGui::PushID(static_cast<int>(row.group ? row.group : newest.id));
+    if (row.group) ImGui::PushID("group");
+    if (row.group) fold_arrow(s, row.group, newest.group.name, size);
+    if (row.inside) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + s.ui.px(kIndent));
+    const bool chosen = std::all_of(lines.begin(), lines.end(), [&](const StrokeLine* l) { return s.journal.holds(l->id); });
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (ImGui::Selectable("##row", chosen, 0, ImVec2(0, size))) choose_row(s, row);
+    if (ImGui::IsItemClicked(1) && !chosen) choose_row(s, row);
+    const std::string name = row.group ? "group " + newest.group.name : "stroke " + std::to_string(row.lines.front() + 1);
+    s.ui.mark(name);
+    const bool over = ImGui::IsItemHovered();
+    context_menu(s);
+    RowText text;
+    if (row.group) {
+        draw_group(s, lines, at, size);
+        const auto n = static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); }));
+        text = {newest.group.name, s.ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke" : " strokes"))};
+    } else {
+        draw_entry(s, newest, at, size);
+        text = text_of(s, newest, row.lines.front() + 1);
+    }
+    const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     const float x = at.x + size + s.ui.px(10), line_height = ImGui::GetTextLineHeight();
     ImDrawList* draw = ImGui::GetWindowDrawList();
-    draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), line.hidden ? s.ui.faint : s.ui.strong, text);
-    const std::string what = stroke::keeps_texels(line.action) ? line.label : s.ui.title(line.brush) + (line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ") + s.ui.tr(line.ink.c_str());
-    const std::string shown = s.ui.fitted(what, at.x + ImGui::GetContentRegionAvail().x - x);
-    draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, shown.c_str());
-    if (ImGui::IsItemHovered() && !line.label.empty()) ImGui::SetTooltip("%s", line.label.c_str());
-    else if (ImGui::IsItemHovered() && shown != what) ImGui::SetTooltip("%s", what.c_str());
-    if (chosen) edit_row(s, line);
+    const float room = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x - x;
+    const std::string title = s.ui.fitted(text.title, room), below = s.ui.fitted(text.below, room);
+    draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), hidden ? s.ui.faint : s.ui.strong, title.c_str());
+    draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, below.c_str());
+    if (over && !row.group && !newest.label.empty()) ImGui::SetTooltip("%s", newest.label.c_str());
+    else if (over && (title != text.title || below != text.below)) ImGui::SetTooltip("%s\n%s", text.title.c_str(), text.below.c_str());
+    // Below the row that was clicked last.
+    if (newest.id == s.journal.anchor && s.journal.holds(newest.id) && row.inside == s.journal.anchor_inside) edit_chosen(s);
+    if (row.group) ImGui::PopID();
     ImGui::PopID();
+}
+
+void list(Session& s) {
+    const std::vector<JournalRow> rows = journal_rows(s.strokes, s.journal.open_groups);
+    const float height = s.ui.px(kRowHeight) + ImGui::GetStyle().ItemSpacing.y;
+    // Rows are of one height but for the one with the buttons below it.
+    const auto edited = std::find_if(rows.begin(), rows.end(), [&](const JournalRow& row) {
+        return s.journal.holds(s.journal.anchor) && s.strokes[row.lines.back()].id == s.journal.anchor && row.inside == s.journal.anchor_inside;
+    });
+    const auto clipped = [&](std::size_t from, std::size_t to) {
+        if (from >= to) return;
+        ImGuiListClipper clipper;
+        clipper.Begin(static_cast<int>(to - from), height);
+        while (clipper.Step())
+            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) draw_row(s, rows[from + static_cast<std::size_t>(i)]);
+    };
+    const auto at = static_cast<std::size_t>(edited - rows.begin());
+    clipped(0, at);
+    if (edited == rows.end()) return;
+    draw_row(s, *edited);
+    clipped(at + 1, rows.size());
 }
 
 }  // namespace
@@ -94,20 +307,7 @@ void journal_panel(Session& s, float top, float bottom, float left) {
     ui.heading("Journal");
     if (s.strokes.empty()) ui.note(ui.tr("Every stroke you paint is listed here, and can be hidden, changed or taken out later."));
     ImGui::BeginChild("strokes");
-    const float row = ui.px(42) + ImGui::GetStyle().ItemSpacing.y;
-    ImGuiListClipper clipper;
-    // Rows are of one height but for the chosen one, so only long lists are clipped, unchosen.
-    const bool clip = s.strokes.size() > 200 && s.selected == 0;
-    if (clip) {
-        clipper.Begin(static_cast<int>(s.strokes.size()), row);
-        while (clipper.Step())
-            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-                const std::size_t k = s.strokes.size() - 1 - static_cast<std::size_t>(i);
-                stroke_row(s, s.strokes[k], k + 1);
-            }
-    } else {
-        for (std::size_t k = s.strokes.size(); k-- > 0;) stroke_row(s, s.strokes[k], k + 1);
-    }
+    list(s);
     ImGui::EndChild();
     ImGui::End();
 }

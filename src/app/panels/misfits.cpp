@@ -21,7 +21,7 @@ void misfit_dialog(Session& s) {
         const std::string why = ui.tr_sentence(misfit.reason);
         const float room = ImGui::GetContentRegionAvail().x, right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);
         ImGui::PushID(static_cast<int>(misfit.stroke));
-        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.selected == misfit.stroke)) s.selected = misfit.stroke;
+        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.journal.holds(misfit.stroke))) select_entries(s, {misfit.stroke});
         ImGui::PopID();
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - right);
         ImGui::TextDisabled("%s", why.c_str());
@@ -35,8 +35,11 @@ void misfit_dialog(Session& s) {
     const bool keep = ui.primary_button("Keep them", 120);
     end_dialog(s);
     if (back) return open_former(s);
-    if (hide)
-        for (const stroke::Misfit& misfit : s.misfits) s.painter->post(EditStroke{.id = misfit.stroke, .hidden = true, .joined = &misfit != &s.misfits.front()});
+    if (hide) {
+        EditStrokes edit{.hidden = true};
+        for (const stroke::Misfit& misfit : s.misfits) edit.ids.push_back(misfit.stroke);
+        s.painter->post(std::move(edit));
+    }
     if (hide || keep) s.show_misfits = false;
 }
 

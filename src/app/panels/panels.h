@@ -4,6 +4,8 @@
 
 /// What is drawn round and over the model. Each function draws one panel and writes what
 /// the person changed into the session.
+struct ImVec2;
+
 namespace tuft::app {
 
 /// Heights and widths in pixels for a scale of 1.
@@ -54,6 +56,8 @@ double height_range(const Session& s);
 /// sRGB colour (ImU32) of a full film of this ink on porcelain.
 /// A column of the window between two heights, `width` in units of the display scale; ends with ImGui::End.
 void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom);
+/// The triangle of what can be folded: down when it is open, to the right else.
+void draw_fold_arrow(const Ui& ui, const ImVec2& centre, bool open);
 unsigned ink_colour(const Session& s, const std::string& ink);
 unsigned ink_colour(const ink::Ink& ink);
 /// Of the ink that the next stroke lays down.

@@ -281,6 +281,13 @@ void curve_section(Session& s) {
 
 }  // namespace
 
+void draw_fold_arrow(const Ui& ui, const ImVec2& c, bool open) {
+    const float r = ui.px(4);
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    if (open) draw->AddTriangleFilled(ImVec2(c.x - r, c.y - 0.6f * r), ImVec2(c.x + r, c.y - 0.6f * r), ImVec2(c.x, c.y + 0.8f * r), ui.strong);
+    else draw->AddTriangleFilled(ImVec2(c.x - 0.6f * r, c.y - r), ImVec2(c.x + 0.8f * r, c.y), ImVec2(c.x - 0.6f * r, c.y + r), ui.strong);
+}
+
 void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom) {
     ImGui::SetNextWindowPos(ImVec2(left, top));
     ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), bottom - top));

@@ -153,23 +153,19 @@ void ghost_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
         }
 }
 
-// The chosen stroke where it lies; while it is moved, where it would lie.
+// Where the chosen ink would lie while it is moved: dots round it. What is turned away is faint.
 void shift_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
-    const auto line = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == s.selected; });
-    if (line == s.strokes.end() || line->places.size() < 2) return;
+    const JournalState& j = s.journal;
+    if (!j.from || !j.to) return;
     const mesh::SurfaceQuery& query = *s.painter->model().query;
-    std::vector<ImVec2> points;
-    for (const Vec3f& place : line->places) {
-        Vec3 p(place);
-        if (s.shift_from && s.shift_to) {
-            const RigidMove m = shift_between(*s.shift_from, *s.shift_to);
-            p = m.to + m.rotation * (p - m.from);
-        }
-        const auto on = query.closest_point(p);
-        if (on) points.push_back(on_screen(s, c, on->position));
+    const RigidMove m = shift_between(*j.from, *j.to);
+    for (const OutlinePoint& p : j.outline) {
+        const auto on = query.closest_point(m.to + m.rotation * (Vec3(p.position) - m.from));
+        if (!on) continue;
+        const Vec3 to_eye = c.parallel_height > 0 ? -c.forward : c.eye - on->position;
+        const unsigned alpha = glm::dot(on->normal, to_eye) > 0 ? 255 : 60;
+        draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(1.6f), (alpha << IM_COL32_A_SHIFT) | (IM_COL32(255, 140, 26, 0)), 6);
     }
-    draw->AddPolyline(points.data(), static_cast<int>(points.size()), IM_COL32(20, 20, 24, 150), 0, s.ui.px(3.5f));
-    draw->AddPolyline(points.data(), static_cast<int>(points.size()), s.shift_from ? IM_COL32(255, 150, 30, 255) : s.ui.accent, 0, s.ui.px(1.6f));
 }
 
 struct Stop {

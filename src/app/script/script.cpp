@@ -189,7 +189,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         e.kind = Event::Kind::scroll;
         e.steps = std::atof(word.c_str());
         add(e, 0.02);
-    } else if (c.name == "click") {
+    } else if (c.name == "click" || c.name == "right-click") {
         const Ui::Place* place = s.ui.find(word);
         if (!place && waited < kLabelWait) return false;
         if (!place) fail(c, "'" + word + "' is not on the screen");
@@ -198,7 +198,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
             last_place_ = {place->x, place->y};
             return false;
         }
-        click(place->x, place->y);
+        click(place->x, place->y, c.name == "right-click" ? 1 : 0);
     } else if (c.name == "set") studio.set(word, c.words[1]);
     else if (c.name == "undo") press_key("ctrl+z", c.line);
     else if (c.name == "redo") press_key("ctrl+shift+z", c.line);

@@ -24,6 +24,7 @@
 ///   type TEXT
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
+///   right-click LABEL       the same with the right button, for its menu
 ///   set NAME VALUE          texels (of the model asked about), brush, brush-size, ink, shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
 ///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise), writing-mirror, writing-laying, string, radial, mirror, carry, tool, language, theme, scale, left-handed, keymap, section, section-axis,
@@ -47,7 +48,7 @@ namespace {
 // Least and most words after the command.
 const std::map<std::string, std::pair<int, int>> kCommands{
     {"open", {1, 1}}, {"revise", {1, 1}}, {"wait-ready", {0, 1}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
-    {"stroke", {2, 10000}}, {"rate", {1, 1}}, {"key", {1, 1}}, {"hold", {1, 1}}, {"type", {1, 1}}, {"scroll", {1, 1}}, {"click", {1, 1}}, {"set", {2, 2}},
+    {"stroke", {2, 10000}}, {"rate", {1, 1}}, {"key", {1, 1}}, {"hold", {1, 1}}, {"type", {1, 1}}, {"scroll", {1, 1}}, {"click", {1, 1}}, {"right-click", {1, 1}}, {"set", {2, 2}},
     {"undo", {0, 0}}, {"redo", {0, 0}}, {"save", {1, 1}}, {"export", {1, 1}}, {"close", {0, 0}}, {"screenshot", {1, 1}},
     {"expect", {1, 2}}, {"await", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"resize", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};
 

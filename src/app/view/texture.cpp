@@ -13,6 +13,9 @@ using Rgba = std::array<std::uint8_t, 4>;
 
 constexpr int kVeil = 42;                            // percent of the veil's colour
 constexpr std::array<int, 3> kVeilColour{64, 104, 178};  // sRGB
+constexpr int kRimTexels = 2;                        // charts lie further apart than that
+constexpr std::array<int, 3> kMarkColour{255, 140, 26};  // sRGB
+constexpr int kMarked[] = {0, 40, 90};               // percent of it: where there is none, ink, its rim
 
 // Averages are of light, not of its code values.
 struct SrgbTable {
@@ -138,6 +141,41 @@ void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Painting& 
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) continue_over_seams(veil_, slot, painting);
 }
 
+std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::Painting& painting) {
+    const atlas::TexelMap& map = painting.model().texels;
+    const auto per_side = static_cast<int>(map.tiles_per_side), most = per_side * atlas::kTile;
+    std::vector<std::array<int, 2>> inked;
+    for (const auto& [slot, tile] : marks)
+        for (int t = 0; t < atlas::kTileTexels; ++t)
+            if (tile[static_cast<std::size_t>(t)] == kInked) {
+                const auto at = static_cast<int>(map.tile_of_slot[slot]);
+                inked.push_back({at % per_side * atlas::kTile + t % atlas::kTile, at / per_side * atlas::kTile + t / atlas::kTile});
+            }
+    for (const auto& [x0, y0] : inked)
+        for (int dy = -kRimTexels; dy <= kRimTexels; ++dy)
+            for (int dx = -kRimTexels; dx <= kRimTexels; ++dx) {
+                const int x = x0 + dx, y = y0 + dy;
+                if (dx * dx + dy * dy > kRimTexels * kRimTexels || x < 0 || y < 0 || x >= most || y >= most) continue;
+                const std::uint32_t slot = map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
+                const auto t = static_cast<std::size_t>(y % atlas::kTile * atlas::kTile + x % atlas::kTile);
+                if (slot == kNone || map.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+                std::uint8_t& mark = marks[slot][t];
+                if (mark == kNotMarked) mark = kRim;
+            }
+    std::set<std::uint32_t> changed;
+    for (const auto& [tile, old] : marks_of_tile_) changed.insert(tile);
+    marks_ = std::move(marks);
+    marks_of_tile_.clear();
+    for (const auto& [slot, tile] : marks_) marks_of_tile_[map.tile_of_slot[slot]] = &tile;
+    for (const auto& [tile, fresh] : marks_of_tile_) changed.insert(tile);
+    std::vector<render::TilePixels> tiles;
+    for (const std::uint32_t index : changed) {
+        tiles.push_back(tile(index));
+        tiles.back().boxes = boxes_of(index, map);
+    }
+    return tiles;
+}
+
 void Texture::refresh_all(const stroke::Painting& painting) {
     colour_ = ink::compose_srgb8(painting.stack(), painting.model().texels, painting.substrate(), painting.compose_options());
     refresh_heights(painting.stack().touched_slots(), painting);
@@ -146,8 +184,13 @@ void Texture::refresh_all(const stroke::Painting& painting) {
 std::array<std::uint8_t, 4> Texture::texel(std::size_t x, std::size_t y) const {
     const std::size_t at = y * colour_.size + x;
     Rgba out{colour_.texels[3 * at], colour_.texels[3 * at + 1], colour_.texels[3 * at + 2], height_[at]};
-    if (veil_.empty() || veil_[at] == 0) return out;
-    for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(out[c] + veil_[at] * kVeil * (kVeilColour[c] - out[c]) / (255 * 100));
+    if (!veil_.empty() && veil_[at] != 0)
+        for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(out[c] + veil_[at] * kVeil * (kVeilColour[c] - out[c]) / (255 * 100));
+    if (marks_of_tile_.empty()) return out;
+    const auto marked = marks_of_tile_.find(static_cast<std::uint32_t>(y / atlas::kTile * (padded_ / atlas::kTile) + x / atlas::kTile));
+    if (marked == marks_of_tile_.end()) return out;
+    if (const int part = kMarked[(*marked->second)[y % atlas::kTile * atlas::kTile + x % atlas::kTile]])
+        for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(out[c] + part * (kMarkColour[c] - out[c]) / 100);
     return out;
 }
 

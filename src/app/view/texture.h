@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -24,6 +25,14 @@ class Texture {
     void show_wetness(bool on, const stroke::Painting& painting);
     /// Veils what the mask leaves out; null: nothing.
     void show_veil(const stroke::MaskTexels* mask, const stroke::Painting& painting);
+    /// Texels to be highlighted, by slot.
+    enum Mark : std::uint8_t { kNotMarked, kInked, kRim };
+    using Marks = std::map<std::uint32_t, std::array<std::uint8_t, atlas::kTileTexels>>;
+    /// Highlights the inked texels, with a rim of two texels round them, in the place of what was highlighted before;
+    /// returns every tile that changed by it.
+    std::vector<render::TilePixels> show_marks(Marks marks, const stroke::Painting& painting);
+    /// What is highlighted, with its rim.
+    const Marks& marks() const { return marks_; }
     /// Everything anew, for another look of the painting as a whole.
     void refresh_all(const stroke::Painting& painting);
     /// Brings slots up to date and returns every tile that changed by it.
@@ -44,6 +53,8 @@ class Texture {
     std::vector<std::uint8_t> height_;  ///< [size²]
     std::unordered_map<std::uint32_t, std::vector<render::GlBox>> boxes_;  ///< by tile, of those that changed so far
     std::vector<std::uint8_t> veil_;    ///< [size²], 0–255; empty: none
+    Marks marks_;
+    std::unordered_map<std::uint32_t, const std::array<std::uint8_t, atlas::kTileTexels>*> marks_of_tile_;
 };
 
 }  // namespace tuft::app

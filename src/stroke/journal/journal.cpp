@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/bounds.h"
 #include "core/error.h"
@@ -23,6 +24,7 @@ constexpr double kLongestStroke = 1e8;    // seconds; clocks of devices that cou
 constexpr double kLongestDirection = 1e6;  // of a vector that shall be normalised; the least is its inverse
 constexpr double kMostPressure = 10;      // of the working depth
 constexpr double kMostTilt = 1.6;         // radians: a holder lies flat
+constexpr std::uint64_t kMostGroupId = std::uint64_t{1} << 62;  // ids in files are signed
 constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe", "wash"};
 
 nlohmann::json json_of(const Settings& s) {
@@ -75,6 +77,17 @@ std::vector<TapeEdge> tape_of(const nlohmann::json& j) {
     for (std::size_t i = 0; i < j.size(); i += 4)
         tape.push_back({{j[i].get<double>(), j[i + 1].get<double>()}, {j[i + 2].get<double>(), j[i + 3].get<double>()}});
     return tape;
+}
+
+EntryGroup group_of(const nlohmann::json& j) {
+    const auto id = j.find("group");
+    if (id == j.end()) return {};
+    const auto name = j.find("group_name");
+    if (!id->is_number_unsigned() || id->get<std::uint64_t>() == 0 || id->get<std::uint64_t>() > kMostGroupId || name == j.end() || !name->is_string())
+        throw Error("the group of a journal's entry cannot be read");
+    EntryGroup group{id->get<std::uint64_t>(), name->get<std::string>()};
+    check_name(group.name, "group");
+    return group;
 }
 
 }  // namespace
@@ -138,6 +151,10 @@ std::string entry_json(const Stroke& entry) {
         j["amount"] = entry.extent.amount;
         if (entry.extent.side != 0) j["side"] = entry.extent.side;
     }
+    if (entry.group.id != 0) {
+        j["group"] = entry.group.id;
+        j["group_name"] = entry.group.name;
+    }
     return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -165,6 +182,7 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     }
     entry.trace.tape.clear();
     if (const auto tape = j.find("tape"); tape != j.end()) entry.trace.tape = tape_of(*tape);
+    entry.group = group_of(j);
     const auto action = j.find("action");
     if (action == j.end()) return;
     if (!action->is_string()) throw Error("the action of a journal's entry cannot be read");
@@ -267,6 +285,35 @@ Stroke action_after(const std::vector<Stroke>& entries, Action action) {
     entry.action = action;
     entry.trace.flat = false;
     return entry;
+}
+
+std::string group_name(const std::filesystem::path& file) {
+    std::string name = file.filename().string();
+    const auto readable = [](const std::string& text) {
+        try {
+            check_name(text, "group");
+            return true;
+        } catch (const Error&) {
+            return false;
+        }
+    };
+    if (name.size() > kMaxNameBytes) {
+        name.resize(kMaxNameBytes);
+        for (int i = 0; i < 4 && !readable(name); ++i) name.pop_back();  // the rest of a character
+    }
+    if (readable(name)) return name;
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+    return name.empty() ? "?" : name;
+}
+
+std::uint64_t Journal::next_group_id() const {
+    std::set<std::uint64_t> used;
+    for (const std::vector<Stroke>* entries : {&strokes_, &undone_})
+        for (const Stroke& s : *entries) used.insert(s.group.id);
+    std::uint64_t id = next_id_;
+    while (used.contains(id)) ++id;
+    return id;
 }
 
 const Stroke& Journal::append(Stroke stroke) {

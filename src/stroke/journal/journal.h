@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,17 @@ void check_extent(const Extent& extent, Action action);
 /// are none.
 void check_trace(const Trace& trace);
 
+/// Entries that belong together, such as the strokes of one drawing: they are listed, hidden, moved, changed and
+/// deleted as one.
+struct EntryGroup {
+    std::uint64_t id = 0;     ///< of no other group in its journal; 0: none
+    std::string name;         ///< for people, such as the drawing's file; the same in all entries of the group
+
+    bool operator==(const EntryGroup&) const = default;
+};
+/// A file's name as a name of a group: UTF-8 of at most `kMaxNameBytes`, what is no readable text replaced by '?'.
+std::string group_name(const std::filesystem::path& file);
+
 /// An entry of the journal: a stroke, or an action between strokes. An action has no samples;
 /// it names a brush, and for a dip the ink. Drying, fills and changes of layers and masks leave the brush
 /// as it is and need not name one.
@@ -60,6 +72,7 @@ struct Stroke {
     MaskEdit mask_edit = {};  ///< of `Action::mask`
     Fill fill = {};           ///< of `Action::fill`, which names its first ink as strokes do
     Extent extent = {};       ///< of a dip or a wipe
+    EntryGroup group = {};    ///< that it belongs to
 };
 
 /// The settings of an entry as above, with the entry's action, seconds and extent as more keys.
@@ -96,6 +109,11 @@ class Journal {
     const std::vector<Stroke>& undone() const { return undone_; }
     bool can_undo() const { return !strokes_.empty(); }
     bool can_redo() const { return !undone_.empty(); }
+
+    /// The id that the next appended entry gets.
+    std::uint64_t next_id() const { return next_id_; }
+    /// An id that no group of this journal has.
+    std::uint64_t next_group_id() const;
 
     const std::vector<Stroke>& strokes() const { return strokes_; }
     bool empty() const { return strokes_.empty(); }

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "projects.h"
+#include "paths.h"
+
+namespace tuft::app {
+
+namespace fs = std::filesystem;
+
+/// The real program, played by scripts without a display.
+struct Ran {
+    int status = -1;
+    std::string out, err;
+};
+
+class StudioProgram : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::path(testing::TempDir()) / ("tuft_studio_" + std::to_string(getpid()) + "_" +
+                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        const Ran probe = studio("quit\n");
+        if (probe.err.find("no OpenGL") != std::string::npos) GTEST_SKIP() << probe.err;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+    static std::string read(const fs::path& file) {
+        std::ifstream in(file, std::ios::binary);
+        std::ostringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
+
+    // Arguments for exec: a shell that sets the surroundings and becomes the program.
+    std::string command(const std::string& script, const std::string& options) {
+        std::ofstream(path("script.txt")) << script;
+        return "cd '" + folder_.string() + "'; export TUFT_DATA='" + source_folder() + "' XDG_STATE_HOME='" + path("state") +
+               "'; unset DISPLAY; exec '" + studio_program() + "' " + options + " --script '" + path("script.txt") + "' >'" + path(".out") +
+               "' 2>'" + path(".err") + "'";
+    }
+    Ran studio(const std::string& script, const std::string& options = "--headless --size 860x520") {
+        const int raw = std::system(("bash -c \"" + command(script, options) + "\"").c_str());
+        return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")), read(path(".err"))};
+    }
+    nlohmann::json tuft(const std::string& arguments) const {
+        return test::tuft(arguments, path("tuft.json"));
+    }
+
+    fs::path folder_;
+};
+
+inline const std::string kBowl = "open " + source_folder() + "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\nexpect model\n";
+inline const std::string kTwoStrokes =
+    "stroke 46%,58% 50%,61% 54%,58%\nset brush goat-medium\nset ink cinnabar\nstroke 44%,57%,0.2 47%,60%,0.6 51%,58%,0.1\nwait-ready\nexpect strokes 2\n";
+
+}  // namespace tuft::app
