@@ -18,6 +18,6 @@ cd "$work"
 for name in painting bowl welcome atlas car; do
   "$studio" --headless --size 1280x720 --script "$here/$name.txt"
 done
-python3 "$here/moving.py" studio-painting.png 728x390+290+190 560x300 frame-*.png
+python3 "$here/moving.py" studio-painting.png 728x390+306+190 560x300 frame-*.png
 mv studio-*.png "$out"
 echo "The pictures are in $out"

@@ -97,10 +97,7 @@ void loop(app::Display& display, const Options& options) {
     if (!options.script.empty()) script.emplace(options.script);
     app::Studio studio;
     app::Session& session = studio.session();
-    if (display.scale() > session.wanted.scale) {
-        session.wanted.scale = display.scale();
-        session.restyle = true;
-    }
+    session.help.by_itself = !script;
     if (!options.file.empty()) app::open_path(session, options.file);
     app::EventQueue events;
     std::string title;
@@ -119,6 +116,7 @@ void loop(app::Display& display, const Options& options) {
         }
         if (const auto size = script ? script->take_size() : std::nullopt) display.resize(size->first, size->second);
         if (std::string trouble = display.take_trouble(); !trouble.empty()) app::say(session, std::move(trouble));
+        studio.set_content_scale(display.scale());  // another one on another monitor
         const double now = display.now();
         if (script) script->before_frame(studio, events, now);
         studio.frame(events, display.width(), display.height(), display.framebuffer(), now);

@@ -86,6 +86,16 @@ void follow_layers(Session& s, const stroke::LayerTable& now, bool outside) {
     if (s.layer != before) s.layer_opacity = -1;
 }
 
+// Settings are pairs of words: blanks in a title become '_'.
+std::string as_word(std::string title) {
+    std::replace(title.begin(), title.end(), ' ', '_');
+    return title;
+}
+std::string from_word(std::string word) {
+    std::replace(word.begin(), word.end(), '_', ' ');
+    return word;
+}
+
 }  // namespace
 
 void say(Session& s, std::string message) {
@@ -220,6 +230,7 @@ void open_in_use(Session& s, OpenAs as) {
 void open_path(Session& s, const fs::path& path) {
     if (path.extension() == ".toml") return open_ink(s, path);
     if (const std::string e = path.extension().string(); e == ".svg" || e == ".inkml") return open_writing(s, path);
+    if (const std::string e = lower(path.extension().string()); e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff") return pin_reference(s, path);
     if (has_unkept_work(s)) return leave(s, {Leaving::To::open, path});
     s.pictures.rest();
     s.in_use.reset();
@@ -255,6 +266,7 @@ void open_former(Session& s) {
 
 bool close_dialog(Session& s) {
     if (s.files.shown()) s.files.close();
+    else if (s.help.manual) s.help.manual = false;
     else if (s.key_asked) s.key_asked.reset();
     else if (s.show_keys) s.show_keys = false;
     else if (s.show_about) s.show_about = false;
@@ -267,7 +279,9 @@ bool close_dialog(Session& s) {
     else if (s.leaving) s.leaving.reset();
     else if (s.in_use) s.in_use.reset();
     else if (s.inspected) s.inspected.reset();
+    else if (s.sure_to_delete) s.sure_to_delete = false;
     else if (!s.lost.empty() && !s.painter) s.lost.erase(s.lost.begin());  // later
+    else if (!s.snapshots.compared.empty()) compare_with(s, "");
     else if (!s.journal.selected.empty()) select_entries(s, {});
     else return false;
     return true;
@@ -299,6 +313,8 @@ void close_model(Session& s) {
     s.painter.reset();
     s.strokes.clear();
     s.journal = {};
+    s.references.images.clear();  // the textures are the context's until it goes
+    s.snapshots = {.swipe = s.snapshots.swipe};
     s.misfits.clear();
     s.former.clear();
     s.show_misfits = s.show_colours = false;
@@ -350,6 +366,8 @@ void poll_session(Session& s) {
         s.last = {};
         if (!find_ink(s, s.ink)) s.ink = "carbon";
         s.model_is_new = true;
+        for (const io::Attachment& image : s.painter->carried_references()) s.references.images.push_back(from_attachment(image));
+        if (s.help.by_itself && !s.help.seen && s.help.step < 0) start_guide(s);
         s.keeps_view = revised;
         s.former = s.revises;
         s.symmetry.centre = s.painter->model().mesh->bounds.centre();
@@ -372,6 +390,10 @@ void poll_painter(Session& s) {
             if (s.journal.holds(line.id)) there.insert(line.id);
         select_entries(s, std::move(there));
     }
+    if (u.snapshots) s.snapshots.lines = std::move(*u.snapshots);
+    if (u.snapshot_picture) s.snapshots.picture = std::move(*u.snapshot_picture);
+    u.snapshots.reset();
+    u.snapshot_picture.reset();
     if (u.outline) s.journal.outline = std::move(*u.outline);
     u.outline.reset();
     if (u.own_inks) s.own_inks = std::move(*u.own_inks);
@@ -380,6 +402,8 @@ void poll_painter(Session& s) {
         s.palette.fresh = true;
         u.palette.reset();
     }
+    if (u.not_saved) s.files.return_with(u.not_saved->first, u.not_saved->second);
+    u.not_saved.reset();
     if (u.looks) s.looks = std::move(*u.looks);
     if (!u.picked.empty()) take_picked(s, u.picked);
     for (std::string& message : u.messages) say(s, std::move(message));
@@ -427,6 +451,42 @@ std::string project_name(const Session& s) {
     return s.last.project.empty() || is_unnamed(s.last.project) ? fs::path(s.painter->source()).stem().string() : s.last.project.stem().string();
 }
 
+void pin_reference(Session& s, const fs::path& path) {
+    if (!s.painter) return say(s, "Open a model first; then images can be pinned beside it.");
+    try {
+        ReferenceImage image = read_reference(path);
+        References& all = s.references;
+        if (all.images.size() >= io::kMostAttachments) return say(s, "There are as many images as a project can hold; take one off first.");
+        const auto same = std::find_if(all.images.begin(), all.images.end(), [&](const ReferenceImage& r) { return r.id == image.id; });
+        if (same != all.images.end()) {
+            same->shown = true;
+            return say(s, "This image is pinned already.");
+        }
+        const double step = 0.04 * static_cast<double>(all.images.size() % 6);
+        image.at += Vec2(step);
+        all.hidden = false;
+        s.painter->post(AttachToProject{io::kReferences, to_attachment(image)});
+        all.images.push_back(std::move(image));
+    } catch (const Error& error) {
+        say(s, error.what());
+    }
+}
+
+void compare_with(Session& s, const std::string& id) {
+    SnapshotState& all = s.snapshots;
+    all.compared = id;
+    all.ready = false;
+    all.picture.reset();
+    if (id.empty() || !s.painter) return;
+    s.view.atlas = false;
+    s.painter->post(ShowSnapshot{id});
+}
+
+void fold_panels(Session& s) {
+    s.tools_shown = s.journal_shown = !(s.tools_shown || s.journal_shown);
+    store_settings(s);
+}
+
 namespace {
 
 double number_within(const std::string& text, double lo, double hi) {
@@ -441,7 +501,14 @@ void load_settings(Session& s) {
     for (std::string key, value; in >> key >> value;) {
         if (key == "language") s.wanted.language = value == "chinese" ? Language::chinese : Language::english;
         else if (key == "theme") s.wanted.theme = value == "light" ? Theme::light : Theme::dark;
-        else if (key == "scale") s.wanted.scale = static_cast<float>(number_within(value, 0.75, 3));
+        else if (key == "own_scale") {
+            s.wanted.scale = static_cast<float>(number_within(value, 0.75, 3));
+            s.wanted.own_scale = true;
+        } else if (key == "guide_seen") s.help.seen = value == "1";
+        else if (key == "panels") {
+            s.tools_shown = value.find('t') != std::string::npos;
+            s.journal_shown = value.find('j') != std::string::npos;
+        } else if (key.rfind("section:", 0) == 0) s.ui.sections[from_word(key.substr(8))] = value == "1";
         else if (key == "left_handed") s.wanted.left_handed = value == "1";
         else if (key.rfind("key:", 0) == 0) s.keys.restore(key.substr(4), value);
         else if (key == "pen_least") s.hand.pen_least = number_within(value, 0.0, 0.9);
@@ -457,10 +524,14 @@ void load_settings(Session& s) {
 void store_settings(const Session& s) {
     std::ostringstream out;
     out << "language " << (s.wanted.language == Language::chinese ? "chinese" : "english") << "\ntheme "
-        << (s.wanted.theme == Theme::light ? "light" : "dark") << "\nscale " << s.wanted.scale << "\nleft_handed "
+        << (s.wanted.theme == Theme::light ? "light" : "dark") << "\nleft_handed "
         << s.wanted.left_handed << "\nkeymap " << (s.keymap == Keymap::maya ? "maya" : "blender") << "\npen_least " << s.hand.pen_least << "\npen_full "
         << s.hand.pen_full << "\npen_gamma " << s.hand.pen_gamma << "\ncap_speed " << s.cap.speed << "\ncap_level " << s.cap.level
         << "\ncap_eye " << s.cap.moves_eye << '\n';
+    if (s.wanted.own_scale) out << "own_scale " << s.wanted.scale << '\n';
+    out << "guide_seen " << s.help.seen << "\n";
+    out << "panels -" << (s.tools_shown ? "t" : "") << (s.journal_shown ? "j" : "") << '\n';
+    for (const auto& [title, open] : s.ui.sections) out << "section:" << as_word(title) << ' ' << open << '\n';
     for (const auto& [word, chord] : s.keys.changes()) out << "key:" << word << ' ' << chord << '\n';
     const std::string text = out.str();
     try {

@@ -7,10 +7,13 @@
 #include <vector>
 
 #include "app/document/curve.h"
+#include "app/document/help_state.h"
 #include "app/document/journal_state.h"
 #include "app/document/opening.h"
 #include "app/document/painter.h"
 #include "app/document/pictures.h"
+#include "app/document/references.h"
+#include "app/document/snapshots.h"
 #include "app/document/state_folder.h"
 #include "app/document/writing.h"
 #include "app/input/hand.h"
@@ -117,6 +120,7 @@ struct Session {
     std::optional<InUse> in_use;           ///< a project that another program has: asked what to do
     std::optional<Leaving> leaving;        ///< asked about, while some work is in memory only
     std::string left_behind;               ///< what became of work that could not be kept when it was closed, "" if all was
+    bool sure_to_delete = false;           ///< the first of them: that is asked once more
     std::vector<std::filesystem::path> samples, recent;
     Pictures pictures;
 
@@ -131,6 +135,7 @@ struct Session {
     Writing writing;
     std::vector<std::vector<GhostPoint>> ghost;  ///< where the writing would lie now
     CurveSettings curve_settings;
+    bool tools_shown = true, journal_shown = true;  ///< panels that are not folded away
     bool more_hand = false;                ///< all settings of the hand are shown
     double highest = 0;                    ///< micrometres, of the ink seen so far
     bool carry = false;                    ///< ink lasts from stroke to stroke
@@ -174,6 +179,10 @@ struct Session {
     brush::TuftState tuft;                 ///< drawn: pressed, or hovering
     double depth = 0;                      ///< metres of the unbent tip below the surface
     bool pressed = false;
+
+    References references;
+    SnapshotState snapshots;
+    HelpState help;
 
     FileDialog files;
     ExportChoice export_choice;
@@ -234,6 +243,15 @@ void save_as(Session& s, const std::filesystem::path& path);
 Vec4f section_plane(const Session& s);
 /// What the window's title and status say about the project.
 std::string project_name(const Session& s);
+
+/// Pins an image file over the view.
+void pin_reference(Session& s, const std::filesystem::path& path);
+/// Shows a snapshot beside the work; "": none.
+void compare_with(Session& s, const std::string& snapshot);
+/// Begins the guided first minute.
+void start_guide(Session& s);
+/// Folds both panels away, or brings them back when both are.
+void fold_panels(Session& s);
 
 void load_settings(Session& s);
 void store_settings(const Session& s);

@@ -59,6 +59,10 @@ Studio::~Studio() {
 void Studio::drop_graphics() {
     scene_.reset();
     view_.reset();
+    compare_scene_.reset();
+    compare_view_.reset();
+    for (ReferenceImage& image : session_.references.images) image.texture = 0;
+    session_.snapshots.texture = 0;
     session_.pictures.release();
 }
 
@@ -73,6 +77,7 @@ void Studio::make_graphics() {
         const stroke::Model& m = s.painter->model();
         scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
         s.painter->post(SendTexture{});
+        if (comparing()) compare_with(s, s.snapshots.compared);
     }
     say(s, "The graphics driver was reset; the picture was made anew, and no stroke is lost.");
 }
@@ -105,14 +110,17 @@ void Studio::layout(int width, int height) {
     Session& s = session_;
     const float top = ImGui::GetFrameHeight() + s.ui.px(4);
     // Where there is no room for both, the model is worth more than the list.
-    const int tools = static_cast<int>(s.ui.px(kToolWidth)), whole = static_cast<int>(s.ui.px(kJournalWidth));
-    s.journal_fits = static_cast<float>(width - tools - whole) >= s.ui.px(kLeastView);
-    const int journal = s.journal_fits ? whole : 0;
+    const int strip = static_cast<int>(s.ui.px(kStripWidth));
+    const int beside = static_cast<int>(s.ui.px(kToolWidth)), whole = static_cast<int>(s.ui.px(kJournalWidth));
+    s.journal_fits = static_cast<float>(width - strip - beside - whole) >= s.ui.px(kLeastView);
+    const int tools = strip + (s.tools_shown || s.show_colours || (!s.journal_fits && s.show_journal) ? beside : 0);
+    const int journal = s.journal_fits && s.journal_shown ? whole : 0;
     const int left = s.wanted.left_handed ? journal : tools;
     s.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
               std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
     s.atlas_area = {};
-    if (!s.view.atlas || !s.painter) return;
+    layout_comparison();
+    if (!s.view.atlas || !s.painter || comparing()) return;
     s.atlas_area = s.area;
     s.area.width /= 2;
     s.atlas_area.x += s.area.width + 1;
@@ -121,7 +129,7 @@ void Studio::layout(int width, int height) {
 
 bool Studio::dialog_open() const {
     const Session& s = session_;
-    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_about || s.show_misfits || s.in_use || s.leaving ||
+    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_about || s.help.manual || s.show_misfits || s.in_use || s.leaving ||
            s.files.shown();
 }
 
@@ -134,12 +142,19 @@ void Studio::panels() {
         const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
         const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
         const bool swapped = !s.journal_fits && s.show_journal && !s.show_colours;
-        (s.show_colours ? colours_panel : swapped ? journal_panel : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : 0);
-        if (s.journal_fits) journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
+        const float strip = s.ui.px(kStripWidth), screen = ImGui::GetIO().DisplaySize.x;
+        tool_strip(s, top, bottom, s.wanted.left_handed ? screen - strip : 0);
+        if (s.show_colours || s.tools_shown || swapped) (s.show_colours ? colours_panel : swapped ? journal_panel : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : strip);
+        if (s.journal_fits && s.journal_shown) journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
         status_bar(s, bottom);
+        panel_handles(s);
         tuft_inset(s);
         update_palette_picture();
         palette_panel(s);
+        references_over_view(s);
+        swipe_line(s);
+        comparison_bar(s);
+        guide(s);
         view_marks(s, camera());
         atlas_marks(s, atlas_cursor());
     } else {
@@ -153,14 +168,16 @@ void Studio::panels() {
     else if (!s.lost.empty() && !s.painter) recovery_dialog(s);
     export_dialog(s);
     settings_dialog(s);
+    manual_dialog(s);
     keys_dialog(s);
     about_dialog(s);
     misfit_dialog(s);
-    if (const auto path = s.files.draw(s.ui)) {
+    if (const auto path = s.files.draw(s.ui, s.pictures)) {
         if (s.files.purpose() == FileDialog::Purpose::open) open_path(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::save) save_as(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::revise) revise_with(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::writing) open_writing(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::reference) pin_reference(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::ink) open_ink(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::save_ink) save_ink(s, *path);
         else if (s.painter)
@@ -277,6 +294,7 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
     f.framebuffer = framebuffer;
     f.x = s.area.x;
     f.y = height - s.area.y - s.area.height;
+    draw_comparison(f, height);
     view_->draw(*scene_, f);
     draw_atlas(f.look.options, framebuffer, height);
 }
@@ -309,9 +327,18 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     now_ = now;
     framebuffer_ = framebuffer;
     height_ = height;
+    if (const float scale = scale_for(content_scale_, width, height); !s.wanted.own_scale && s.wanted.scale != scale) {
+        s.wanted.scale = scale;
+        s.restyle = true;
+    }
+    if (std::exchange(s.ui.sections_changed, false)) store_settings(s);
     if (s.restyle) {
         s.restyle = false;
         if (const std::string missing = s.ui.prepare(s.wanted); !missing.empty()) say(s, missing);
+        if (s.wanted.language != s.ui.settings().language) {  // there is no font for it
+            s.wanted.language = s.ui.settings().language;
+            store_settings(s);
+        }
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
     }

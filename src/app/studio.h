@@ -35,6 +35,8 @@ class Studio {
     /// Ends the stroke in hand and keeps everything; the project's picture is made once more where it is
     /// older than the strokes.
     void finish();
+    /// What the display asks for as a scale of text.
+    void set_content_scale(float scale) { content_scale_ = scale; }
     /// Changes a setting by its name in scripts. Throws `Error` for a name or value that is unknown.
     void set(const std::string& name, const std::string& value);
     /// The last frame is on the screen at `now`.
@@ -95,6 +97,11 @@ class Studio {
     bool shift_press(const Event& event);
     void shift_release(const Event& event);
     void keep_picture();
+    bool comparing() const;
+    bool on_work(const Event& event) const;
+    void layout_comparison();
+    void take_snapshot_picture();
+    void draw_comparison(const render::GlView::Frame& of_work, int height);
     Aim aim_of(const Event& event) const;
     render::GlCamera camera() const;
     render::GlSolid tuft_solid() const;
@@ -102,12 +109,16 @@ class Studio {
     Session session_;
     std::unique_ptr<render::GlScene> scene_;
     std::unique_ptr<render::GlView> view_;
+    std::unique_ptr<render::GlScene> compare_scene_;  ///< a snapshot's, while the work is compared with it
+    std::unique_ptr<render::GlView> compare_view_;
     std::optional<stroke::Model> plate_;      ///< of the palette, once it was shown
     bool on_plate_ = false;                   ///< the hand is over it
     std::optional<Hand> hand_;
     std::optional<Event> line_start_;         ///< where a new control point was set
     stroke::Placement ghost_placement_;
     double ghost_scale_ = 0;
+    render::GlCamera ghost_camera_;
+    Vec4f ghost_section_{0};
     std::vector<stroke::Lead> lead_;
     std::optional<stroke::LeanedLead> leaned_lead_;
     std::string lead_brush_;
@@ -117,6 +128,7 @@ class Studio {
     std::optional<brush::Tuft> preview_;
     std::string preview_brush_;
     ModelView colours_shown_ = ModelView::glaze;
+    float content_scale_ = 1;
     double now_ = 0, last_event_ = 0, last_turn_ = -1, picture_due_ = 0;
     std::size_t strokes_seen_ = 0, frames_ = 0, draw_every_ = 1;
     unsigned framebuffer_ = 0;  ///< of the newest frame

@@ -100,7 +100,7 @@ void atlas_marks(const Session& s, const std::optional<Vec2>& cursor) {
     const stroke::Model& m = s.painter->model();
     const auto print = [&](const char* between) {
         char text[160];
-        const int n = std::snprintf(text, sizeof text, s.ui.tr("%u charts"), m.atlas.n_charts);
+        const int n = std::snprintf(text, sizeof text, s.ui.tr(m.atlas.n_charts == 1 ? "%u chart" : "%u charts"), m.atlas.n_charts);
         if (const atlas::AtlasReport* report = s.painter->atlas_report())
             std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "%s%s %.3f%s%s %.0f %%", between, s.ui.tr("stretch"), report->l2_stretch,
                           between, s.ui.tr("used"), 100 * report->utilisation);

@@ -113,7 +113,7 @@ void Studio::press(const Event& e) {
         drag_ = e.button == 0 ? Drag::turn : e.button == 2 ? Drag::pan : Drag::zoom;
     else if (e.button == 0 && alt) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     else if (e.button != 0 && s.keymap == Keymap::blender) drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
-    if (drag_ != Drag::none || e.button != 0) return;
+    if (drag_ != Drag::none || e.button != 0 || !on_work(e)) return;
     if (shift_press(e)) return;
     if (s.tool != Tool::mask && s.tool != Tool::pick) select_entries(s, {});  // ink is shown as it is while one paints
     if (s.tool == Tool::writing) return lay_writing();
@@ -254,6 +254,7 @@ void Studio::perform(Act act) {
         case Act::atlas: s.view.atlas = !s.view.atlas; break;
         case Act::see_through: s.view.see_through = !s.view.see_through; break;
         case Act::next_shading: s.view.shown = static_cast<ModelView>((static_cast<int>(s.view.shown) + 1) % kModelViews); break;
+        case Act::panels: fold_panels(s); break;
         default: break;
     }
 }

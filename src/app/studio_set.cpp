@@ -85,10 +85,13 @@ void Studio::set(const std::string& name, const std::string& value) {
         s.view.section_at = std::clamp(number, 0.02, 1.0);
     } else if (name == "atlas") s.view.atlas = on;
     else if (name == "draw-every") draw_every_ = static_cast<std::size_t>(std::clamp(number, 1.0, 1000.0));
+    else if (name == "guide") on ? start_guide(s) : void(s.help.step = -1);
+    else if (name == "swipe") s.snapshots.swipe = number > 0, s.snapshots.line_at = std::clamp(number, 0.02, 0.98);
     else if (name == "see-through") s.view.see_through = on;
     else if (name == "language") s.wanted.language = one_of({"english", "chinese"}) ? Language::chinese : Language::english, s.restyle = true;
     else if (name == "theme") s.wanted.theme = one_of({"dark", "light"}) ? Theme::light : Theme::dark, s.restyle = true;
-    else if (name == "scale") s.wanted.scale = static_cast<float>(std::clamp(number, 0.75, 3.0)), s.restyle = true;
+    else if (name == "scale") s.wanted.scale = static_cast<float>(std::clamp(number, 0.75, 3.0)), s.wanted.own_scale = true, s.restyle = true;
+    else if (name == "panels") s.tools_shown = s.journal_shown = on;
     else throw Error("unknown setting '" + name + "'");
 }
 

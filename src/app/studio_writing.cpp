@@ -2,10 +2,16 @@
 #include <cmath>
 
 #include "app/studio.h"
+#include "app/view/visibility.h"
 #include "core/units.h"
 
 /// Placing writing and drawings with the mouse.
 namespace tuft::app {
+namespace {
+
+constexpr double kGhostTolerance = 2e-3;  // of the model's size: where it is seen edge-on, draped lines lie over its grooves
+
+}  // namespace
 
 std::optional<stroke::Placement> Studio::writing_placement() const {
     const Session& s = session_;
@@ -33,12 +39,20 @@ void Studio::watch_writing() {
         return;
     }
     const stroke::Placement& old = ghost_placement_;
-    if (placement->origin == old.origin && placement->right == old.right && placement->down == old.down && placement->laying == old.laying &&
-        ghost_scale_ == s.writing.scale)
-        return;
+    const render::GlCamera seen_from = camera();
+    const Vec4f section = section_plane(s);
+    const bool same = placement->origin == old.origin && placement->right == old.right && placement->down == old.down && placement->laying == old.laying &&
+                      ghost_scale_ == s.writing.scale;
+    if (same && seen_from == ghost_camera_ && section == ghost_section_) return;
     ghost_placement_ = *placement;
     ghost_scale_ = s.writing.scale;
-    s.ghost = ghost_lines(*s.painter->model().query, s.writing, *placement);
+    ghost_camera_ = seen_from;
+    ghost_section_ = section;
+    const mesh::SurfaceQuery& query = *s.painter->model().query;
+    if (!same) s.ghost = ghost_lines(query, s.writing, *placement);
+    const double tolerance = kGhostTolerance * s.painter->model().mesh->bounds.diagonal();
+    for (auto& line : s.ghost)
+        for (GhostPoint& point : line) point.seen = is_seen(query, seen_from, section, point.position, tolerance);
 }
 
 void Studio::writing_wheel(const Event& e) {

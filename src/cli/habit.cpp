@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
+#include "core/counted.h"
 #include "core/files.h"
 #include "io/inkml.h"
 #include "stroke/hand/habit.h"
@@ -34,8 +35,8 @@ int run(const Habit& a) {
                                     {"pressure_ratio", ratio},
                                     {"linear", {{m[0][0], m[1][0]}, {m[0][1], m[1][1]}}}});
     else
-        fmt::print("wrote {}: {} strokes in {} pieces; mean pressure x {:.2f}, slant {:+.2f}, width x {:.2f}, height x {:.2f}\n",
-                   a.output.string(), written.size(), habit.pieces.size(), ratio, m[1][0], m[0][0], m[1][1]);
+        fmt::print("wrote {}: {} in {}; mean pressure x {:.2f}, slant {:+.2f}, width x {:.2f}, height x {:.2f}\n",
+                   a.output.string(), counted(written.size(), "stroke"), counted(habit.pieces.size(), "piece"), ratio, m[1][0], m[0][0], m[1][1]);
     return 0;
 }
 

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
+#include "core/counted.h"
 #include "core/files.h"
 #include "core/units.h"
 #include "io/read_model.h"
@@ -143,9 +144,9 @@ int inspect_project(const Inspect& a) {
     }
     const Vec3 size = model.mesh.bounds.size() / kMillimetre;
     fmt::print("{}: project by {}, of {}\n", a.file.string(), project.written_by(), model.source);
-    fmt::print("{} triangles, {:.1f} x {:.1f} x {:.1f} mm; atlas {} x {}, {} charts, texel {:.3f} mm\n",
-               model.mesh.n_triangles(), size.x, size.y, size.z, model.atlas.size, model.atlas.size,
-               model.atlas.n_charts, model.atlas.texel_size / kMillimetre);
+    fmt::print("{}, {:.1f} x {:.1f} x {:.1f} mm; atlas {} x {}, {}, texel {:.3f} mm\n",
+               counted(model.mesh.n_triangles(), "triangle"), size.x, size.y, size.z, model.atlas.size, model.atlas.size,
+               counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
     if (layers != stroke::LayerTable{})
         for (auto l = layers.layers.rbegin(); l != layers.layers.rend(); ++l)
             fmt::print("  layer   {:>4}  {}, opacity {:g}{}{}{}\n", l->id, l->name, l->opacity,
@@ -155,7 +156,7 @@ int inspect_project(const Inspect& a) {
     for (const stroke::Stroke& s : strokes) {
         if (s.group.id != 0 && s.group.id != group) {
             const GroupSum& sum = groups.at(s.group.id);
-            fmt::print("  group   {:>4}  {}: {} stroke{}{}\n", s.group.id, sum.name, sum.strokes, sum.strokes == 1 ? "" : "s",
+            fmt::print("  group   {:>4}  {}: {}{}\n", s.group.id, sum.name, counted(sum.strokes, "stroke"),
                        sum.hidden == sum.entries ? " (hidden)" : "");
         }
         group = s.group.id;
@@ -266,8 +267,8 @@ int run(const Inspect& a) {
         return 0;
     }
     const atlas::Atlas& in_file = uvs.atlas;
-    fmt::print("UVs: {} charts on {}, seams {:.1f} x the diagonal; stretch L2 {:.4f}, Linf {:.2f}; {:.0f} % used\n",
-               quality.charts, in_file.pages > 1 ? fmt::format("{} UDIM pages", in_file.pages) : "one page",
+    fmt::print("UVs: {} on {}, seams {:.1f} x the diagonal; stretch L2 {:.4f}, Linf {:.2f}; {:.0f} % used\n",
+               counted(quality.charts, "chart"), in_file.pages > 1 ? fmt::format("{} UDIM pages", in_file.pages) : "one page",
                quality.seam_length, quality.l2_stretch, quality.linf_stretch, 100 * quality.utilisation);
     fmt::print("     {} flipped triangles, {} without room; at {} x {} texels {} overlap, gap {}\n", quality.flips,
                quality.roomless_triangles, kPage, kPage, quality.overlapping_texels, quality.smallest_gap);

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/place.h"
 #include "cli/steps.h"
+#include "core/counted.h"
 #include "core/files.h"
 #include "core/units.h"
 
@@ -117,8 +118,8 @@ int run(const Paint& a) {
         }
     } catch (const Cancelled&) {
         if (project)
-            console.note(fmt::format("{} holds the {} strokes that were finished", a.project.string(),
-                                     project->n_strokes()));
+            console.note(fmt::format("{} holds the {} that {} finished", a.project.string(), counted(project->n_strokes(), "stroke"),
+                                     project->n_strokes() == 1 ? "was" : "were"));
         throw;
     }
     if (project && !strokes.empty())
@@ -156,9 +157,9 @@ int run(const Paint& a) {
         j["peak_mb"] = peak_megabytes();
         print_json(j);
     } else {
-        fmt::print("painted {} strokes ({} stamps, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {} charts, texel {:.3f} mm\n",
-                   reports.size(), stamps, given * ink::kFilmUnit * 1e9, painted, model.atlas.size,
-                   model.atlas.size, model.atlas.n_charts, model.atlas.texel_size / kMillimetre);
+        fmt::print("painted {} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
+                   counted(reports.size(), "stroke"), counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted, model.atlas.size,
+                   model.atlas.size, counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
         for (const auto& path : {a.project, a.exported, a.preview, a.forces})
             if (!path.empty()) fmt::print("wrote {}\n", path.string());
         std::fflush(stdout);

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
+#include "core/counted.h"
 #include "io/export_maps.h"
 #include "io/image.h"
 #include "io/inkml.h"
@@ -134,8 +135,8 @@ int run(const Replay& a) {
                          {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
         print_json(j);
     } else {
-        fmt::print("replayed {} strokes, {} of them miss the model; atlas {} x {}\n", reports.size(),
-                   missed, model.atlas.size, model.atlas.size);
+        fmt::print("replayed {}, {} of them miss{} the model; atlas {} x {}\n", counted(reports.size(), "stroke"),
+                   missed, missed == 1 ? "es" : "", model.atlas.size, model.atlas.size);
     }
     return 0;
 }

@@ -6,6 +6,7 @@
 #include "atlas/atlas_picture.h"
 #include "cli/commands.h"
 #include "cli/steps.h"
+#include "core/counted.h"
 #include "core/units.h"
 #include "io/export.h"
 #include "io/image.h"
@@ -43,7 +44,7 @@ int run(const Unwrap& a) {
     }
     const atlas::Atlas& made = unwrapped.atlas;
     const std::string pages = made.pages > 1 ? fmt::format("{} pages of ", made.pages) : "";
-    fmt::print("{} charts at {}{} x {}, texel {:.3f} mm, {:.0f} % used{}\n", r.charts, pages,
+    fmt::print("{} at {}{} x {}, texel {:.3f} mm, {:.0f} % used{}\n", counted(r.charts, "chart"), pages,
                made.page_size(), made.page_size(), unwrapped.atlas.texel_size / kMillimetre, 100 * r.utilisation,
                unwrapped.atlas.from_file ? " (the file's own UVs)" : "");
     fmt::print("stretch L2 {:.4f}, Linf {:.2f}; seams {:.1f} x the diagonal; flips {}, overlapping texels {}, triangles without room {}\n",

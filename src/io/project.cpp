@@ -445,6 +445,18 @@ std::string Project::shown_substrate() const {
     });
 }
 
+void Project::put_attachment(const std::string& kind, const Attachment& attachment) {
+    state_->change([&](SQLite::Database& db) { store_attachment(db, kind, attachment); });
+}
+
+void Project::remove_attachment(const std::string& kind, const std::string& name) {
+    state_->change([&](SQLite::Database& db) { tuft::io::remove_attachment(db, kind, name); });
+}
+
+std::vector<Attachment> Project::attachments(const std::string& kind) const {
+    return state_->run([&](SQLite::Database& db) { return load_attachments(db, state_->path, kind); });
+}
+
 void Project::append(std::span<const stroke::Stroke> strokes) {
     state_->change([&](SQLite::Database& db) { store_strokes(db, state_->path, strokes); });
 }

@@ -15,6 +15,7 @@
 #include "core/progress.h"
 #include "core/units.h"
 #include "ink/canvas.h"
+#include "io/attachments.h"
 #include "io/project_lock.h"
 #include "mesh/triangle_mesh.h"
 #include "stroke/journal/journal.h"
@@ -130,6 +131,11 @@ class Project {
     std::vector<PresetText> recolours() const;
     void put_shown_substrate(const std::string& toml);
     std::string shown_substrate() const;
+
+    /// What the project carries of a kind, by name (io/attachments.h). One of the same name is replaced.
+    void put_attachment(const std::string& kind, const Attachment& attachment);
+    void remove_attachment(const std::string& kind, const std::string& name);
+    std::vector<Attachment> attachments(const std::string& kind) const;
 
     /// Adds finished strokes after the last one, in one transaction. Their ids must be new.
     void append(std::span<const stroke::Stroke> strokes);

@@ -74,6 +74,12 @@ StoredTexels store_canvases(SQLite::Database& db, std::span<const stroke::LayerT
 std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::filesystem::path& path,
                                                std::size_t n_slots, std::uint64_t& hash, const ProgressFn& progress);
 
+/// What a project carries (attachments.cpp). The caller opens the transaction.
+inline constexpr std::size_t kMostAbout = std::size_t{1} << 16;
+void store_attachment(SQLite::Database& db, const std::string& kind, const Attachment& attachment);
+void remove_attachment(SQLite::Database& db, const std::string& kind, const std::string& name);
+std::vector<Attachment> load_attachments(SQLite::Database& db, const std::filesystem::path& path, const std::string& kind);
+
 /// Marks the project as one of `format`, unless it is of a higher one.
 void raise_format(SQLite::Database& db, int format);
 

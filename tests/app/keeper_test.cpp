@@ -150,5 +150,30 @@ TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
     EXPECT_EQ(io::Project::open(path_).strokes().size(), 9u);
 }
 
+TEST_F(KeeperTest, WhatGoesAlongWithTheWorkIsInEachOfItsFiles) {
+    const io::Attachment image{"0001", R"({"name":"leaf.png"})", {'a', 'b'}}, other{"0002", "{}", {}};
+    keeper_.attach(io::kReferences, image);
+    keeper_.attach(io::kReferences, other);
+    keeper_.attach(io::kSnapshots, image);
+    keeper_.detach(io::kReferences, "0002");
+    EXPECT_EQ(keeper_.start(folder_ / "named.tuft", "sheet.ply", {}, painting_), "");
+    for (const auto& file : {path_, folder_ / "named.tuft"}) {
+        EXPECT_EQ(io::Project::open(file).attachments(io::kReferences), std::vector<io::Attachment>{image}) << file;
+        EXPECT_EQ(io::Project::open(file).attachments(io::kSnapshots), std::vector<io::Attachment>{image}) << file;
+    }
+    // A full disk keeps it out of the file until there is room.
+    std::vector<char> noise(100'000);  // which does not compress
+    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<char>(i * i * 2654435761u >> 13);
+    {
+        const FullDisk disk(std::filesystem::file_size(folder_ / "named.tuft"));
+        keeper_.attach(io::kReferences, {"0003", "{}", noise});
+    }
+    EXPECT_NE(keeper_.trouble(), "");
+    EXPECT_TRUE(keeper_.behind());
+    keeper_.rewrite("sheet.ply", {}, painting_);
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(io::Project::open(folder_ / "named.tuft").attachments(io::kReferences).size(), 2u);
+}
+
 }  // namespace
 }  // namespace tuft::app

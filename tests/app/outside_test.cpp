@@ -212,7 +212,7 @@ class TwoPrograms : public testing::Test {
     }
     Ran studio(const std::string& script, const std::string& name) const {
         std::ofstream(folder_ / (name + ".txt")) << script;
-        return shell("'" + studio_program() + "' --headless --size 860x520 --script " + name + ".txt", name);
+        return shell("'" + studio_program() + "' --headless --size 884x520 --script " + name + ".txt", name);
     }
     void wait_for(const std::string& file) const {
         for (double t = 0; t < kLongest && !fs::exists(folder_ / file); t += 0.05) std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -277,7 +277,7 @@ TEST_F(TwoPrograms, QuittingAsksWhereWorkIsNotOnDiskAndOffersItLater) {
     second.join();
     EXPECT_EQ(one.status, 1);
     EXPECT_NE(one.err.find("could not be written; the work is in "), std::string::npos) << one.err;
-    const Ran next = studio("await label \"Go on with it\"\nclick \"Go on with it\"\nwait 0.2\nwait-ready\nexpect strokes " + n(1) + "\nexpect kept\n", "one");
+    const Ran next = studio("await label Continue\nclick Continue\nwait 0.2\nwait-ready\nexpect strokes " + n(1) + "\nexpect kept\n", "one");
     EXPECT_EQ(next.status, 0) << next.err;
 }
 

@@ -51,7 +51,7 @@ class StudioProgram : public testing::Test {
                "'; unset DISPLAY; exec '" + studio_program() + "' " + options + " --script '" + path("script.txt") + "' >'" + path(".out") +
                "' 2>'" + path(".err") + "'";
     }
-    Ran studio(const std::string& script, const std::string& options = "--headless --size 860x520") {
+    Ran studio(const std::string& script, const std::string& options = "--headless --size 884x520") {
         const int raw = std::system(("bash -c \"" + command(script, options) + "\"").c_str());
         return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")), read(path(".err"))};
     }

@@ -295,9 +295,9 @@ TEST_F(StudioProgram, ABrushDippedOnOneSideReplays) {
 }
 
 TEST_F(StudioProgram, InksMixOnThePaletteAndTheMixtureReplays) {
-    const Ran ran = studio(kBowl + "set palette on\nwait 0.1\nset palette-tool pour\nset ink cinnabar\nmove 370,150\npress\nrelease\nwait-ready\n"
-                                   "set ink gamboge\nmove 440,150\npress\nrelease\nwait-ready\nset palette-tool brush\nclick \"Rinse the brush\"\nwait-ready\n"
-                                   "stroke 355,150 455,150 360,155\nwait-ready\nexpect strokes 4\nset palette off\nset wet on\nstroke 52%,60% 57%,61%\nwait-ready\nexpect strokes 5\n"
+    const Ran ran = studio(kBowl + "set palette on\nwait 0.1\nset palette-tool pour\nset ink cinnabar\nmove 398,150\npress\nrelease\nwait-ready\n"
+                                   "set ink gamboge\nmove 468,150\npress\nrelease\nwait-ready\nset palette-tool brush\nclick \"Rinse the brush\"\nwait-ready\n"
+                                   "stroke 383,150 483,150 388,155\nwait-ready\nexpect strokes 4\nset palette off\nset wet on\nstroke 52%,60% 57%,61%\nwait-ready\nexpect strokes 5\n"
                                    "undo\nwait-ready\nundo\nwait-ready\nexpect strokes 3\nredo\nredo\nwait-ready\nexpect strokes 5\nexpect kept\nsave work.tuft\nwait-ready\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
@@ -371,7 +371,7 @@ TEST_F(StudioProgram, NoSampleOfTheHandIsLostUnderLoad) {
 
 TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
     const std::string script = kBowl + kTwoStrokes + "screenshot ready.png\nmove 47%,58%\npress\nmove 50%,59%\nwait 100\n";
-    const std::string line = command(script, "--headless --size 860x520");
+    const std::string line = command(script, "--headless --size 884x520");
     const pid_t child = fork();
     if (child == 0) {
         execl("/bin/bash", "bash", "-c", line.c_str(), nullptr);
@@ -383,7 +383,7 @@ TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
     kill(child, SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);
-    const Ran again = studio("wait 0.2\nexpect label \"Go on with it\"\nclick \"Go on with it\"\nwait 0.2\nwait-ready\nexpect strokes 2\n"
+    const Ran again = studio("wait 0.2\nexpect label Continue\nclick Continue\nwait 0.2\nwait-ready\nexpect strokes 2\n"
                              "stroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\nsave work.tuft\nwait-ready\n");
     ASSERT_EQ(again.status, 0) << again.err;
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"],
@@ -391,7 +391,7 @@ TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
     // Saved under a name: nothing is offered any more.
     const Ran third = studio("wait 0.4\nnames\n");
     EXPECT_NE(third.out.find("Open..."), std::string::npos) << third.err;
-    EXPECT_EQ(third.out.find("Go on with it"), std::string::npos);
+    EXPECT_EQ(third.out.find("Continue"), std::string::npos);
 }
 
 // A model or project that it opened in place of the bowl is a project of its own.

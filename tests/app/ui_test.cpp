@@ -67,7 +67,7 @@ TEST(UiText, AllChineseTextsAreThereForWhatTheKeysAreCalled) {
 
 // What the panels' sources give to the functions that show it, but for keys and names that are the same in both.
 TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
-    const std::regex shown(R"re((?:button|choice|toggle|slider|heading|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
+    const std::regex shown(R"re((?:button|choice|toggle|slider|heading|section|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
     const std::regex words("[a-z]{3}");
     std::size_t seen = 0;
     for (const auto& file : std::filesystem::recursive_directory_iterator(source_folder() + "/src/app")) {
@@ -82,6 +82,25 @@ TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
         }
     }
     EXPECT_GT(seen, 150u);
+}
+
+TEST(UiScale, FollowsTheDisplayAndTheSizeOfThePicture) {
+    EXPECT_EQ(scale_for(1, 1280, 720), 1);
+    EXPECT_EQ(scale_for(1, 1920, 1080), 1);
+    EXPECT_EQ(scale_for(1, 3840, 2160), 2);
+    EXPECT_EQ(scale_for(1, 3840, 2060), 2) << "less the desktop's bars";
+    EXPECT_EQ(scale_for(1, 2560, 1440), 1.25f);
+    EXPECT_EQ(scale_for(1, 3840, 1080), 1) << "a wide one is not a sharp one";
+    EXPECT_EQ(scale_for(1.5f, 1280, 720), 1.5f);
+    EXPECT_EQ(scale_for(1, 320, 240), 1);
+    EXPECT_EQ(scale_for(8, 8192, 8192), 3);
+}
+
+TEST(ChineseFont, IsFoundByItsNameTheBestOneFirst) {
+    EXPECT_EQ(find_chinese_font({{"DejaVuSans.ttf", "a"}, {"NotoSansMono-Regular.ttf", "b"}}), "");
+    EXPECT_EQ(find_chinese_font({{"uming.ttc", "u"}, {"NotoSansCJK-Regular.ttc", "n"}}), "n");
+    EXPECT_EQ(find_chinese_font({{"DejaVuSans.ttf", "a"}, {"SarasaGothicCJK-Light.ttc", "s"}}), "s") << "one that is not known";
+    EXPECT_EQ(find_chinese_font({{"README-CJK.txt", "t"}}), "");
 }
 
 // Names in files, such as "iron-red", are not what a person reads.

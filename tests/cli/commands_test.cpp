@@ -28,6 +28,19 @@ TEST_F(Commands, PaintLeavesProjectModelAndPicture) {
     EXPECT_TRUE(ran.err.empty()) << ran.err;  // no progress where there is no terminal
 }
 
+TEST_F(Commands, OneOfAThingIsNamedAsOne) {
+    write("s.inkml", stroke_file());
+    const Ran unwrapped = tuft("unwrap " + model("sheet.ply") + " -o " + path("m.obj") + " --atlas-size 256");
+    const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft"));
+    const Ran inspected = tuft("inspect " + path("p.tuft")), replayed = tuft("replay " + path("p.tuft"));
+    EXPECT_EQ(unwrapped.out.substr(0, 11), "1 chart at ") << unwrapped.out;
+    for (const std::string& out : {painted.out, inspected.out, replayed.out}) {
+        EXPECT_NE(out.find("1 stroke"), std::string::npos) << out;
+        EXPECT_EQ(out.find("1 strokes"), std::string::npos) << out;
+        EXPECT_EQ(out.find(" 1 charts"), std::string::npos) << out;
+    }
+}
+
 TEST_F(Commands, ReplayMakesTheSameTexelsForAnyThreadCount) {
     write("s.inkml", stroke_file());
     const Ran painted = tuft("paint " + model("sphere.ply") + " --strokes " + path("s.inkml") +

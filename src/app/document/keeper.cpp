@@ -50,6 +50,7 @@ void Keeper::take_presets(const io::Project& project) {
 void Keeper::adopt(io::Project project, std::vector<stroke::EntryMark> on_disk) {
     attempt([&] {
         take_presets(project);
+        take_attachments(project);
         project.listen({});
         project_ = std::move(project);
         on_disk_ = std::move(on_disk);
@@ -96,6 +97,7 @@ std::string Keeper::start(const std::filesystem::path& path, const std::string& 
                                                       io::store_looks(fresh, painting);
                                                       for (const auto& preset : brushes_) fresh.put_brush(preset);
                                                       for (const auto& preset : inks_) fresh.put_ink(preset);
+                                                      for (const auto& [key, attachment] : attached_) fresh.put_attachment(key.first, attachment);
                                                       fresh.append(painting.journal().strokes());
                                                       if (!painting.journal().empty())
                                                           fresh.save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
@@ -184,6 +186,33 @@ void Keeper::add(const stroke::Stroke& stroke) {
 void Keeper::catch_up(std::span<const stroke::Stroke> entries) {
     pending_.assign(entries.begin(), entries.end());
     attempt([&] { flush(); });
+}
+
+void Keeper::attach(const std::string& kind, const io::Attachment& attachment) {
+    attached_.insert_or_assign({kind, attachment.name}, attachment);
+    change([&] { project_->put_attachment(kind, attachment); });
+}
+
+void Keeper::detach(const std::string& kind, const std::string& name) {
+    attached_.erase({kind, name});
+    change([&] { project_->remove_attachment(kind, name); });
+}
+
+std::vector<io::Attachment> Keeper::attachments(const std::string& kind) const {
+    std::vector<io::Attachment> found;
+    for (const auto& [key, attachment] : attached_)
+        if (key.first == kind) found.push_back(attachment);
+    return found;
+}
+
+std::optional<io::Attachment> Keeper::attachment(const std::string& kind, const std::string& name) const {
+    const auto at = attached_.find({kind, name});
+    return at == attached_.end() ? std::nullopt : std::optional(at->second);
+}
+
+void Keeper::take_attachments(const io::Project& project) {
+    for (const char* kind : {io::kReferences, io::kSnapshots})
+        for (io::Attachment& attachment : project.attachments(kind)) attached_.insert_or_assign({kind, attachment.name}, std::move(attachment));
 }
 
 void Keeper::remove(std::uint64_t id) {

@@ -45,6 +45,13 @@ class Keeper {
     void catch_up(std::span<const stroke::Stroke> entries);
     /// Stores what the painting is shown as.
     void store_looks(const stroke::Painting& painting);
+    /// Stores what goes along with the work (io/attachments.h), in the place of one of that kind and name; and takes it out.
+    void attach(const std::string& kind, const io::Attachment& attachment);
+    void detach(const std::string& kind, const std::string& name);
+    std::vector<io::Attachment> attachments(const std::string& kind) const;  ///< by name
+    std::optional<io::Attachment> attachment(const std::string& kind, const std::string& name) const;
+    /// Takes over what another project carries.
+    void take_attachments(const io::Project& project);
     void remove(std::uint64_t id);
     void set_hidden(std::uint64_t id, bool hidden);
     /// A change could not be written: the file has another journal until `start` writes it anew.
@@ -88,6 +95,7 @@ class Keeper {
     std::vector<stroke::Stroke> pending_;
     std::vector<stroke::EntryMark> on_disk_;
     std::map<std::string, std::string> brushes_, inks_;  ///< TOML by name
+    std::map<std::pair<std::string, std::string>, io::Attachment> attached_;  ///< by kind and name
     std::string trouble_;
     bool behind_ = false, overtaken_ = false, viewing_ = false;
 };

@@ -99,6 +99,7 @@ void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn
     work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
     io::use_presets(project, *work.painting);
     work.keeper.take_presets(project);
+    work.keeper.take_attachments(project);
     const std::vector<stroke::Stroke> strokes = project.strokes();
     const std::vector<stroke::StrokeReport> reports = work.painting->replay(strokes, progress);
     const mesh::TriangleMesh mesh = project.model().mesh;
@@ -172,6 +173,7 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, OpenAs
         work.keeper.adopt(std::move(project), std::move(marks));
     } else {
         work.keeper.take_presets(project);
+        work.keeper.take_attachments(project);
         keep(work, session);
         work.note = why.empty() ? "This is a copy; it has no name yet." : "This is a copy that has no name yet: " + why;
     }

@@ -36,6 +36,8 @@ Painter::Painter(Work work) : work_(std::move(work)) {
         refresh(palette_, *work_.painting);
         update_.palette = palette_;
     }
+    carried_ = work_.keeper.attachments(io::kReferences);
+    publish_snapshots();
     steps_.assign(work_.painting->journal().strokes().size(), Step{.made = 1});
     publish(true);
     thread_ = std::thread([this] { run(); });
@@ -101,6 +103,9 @@ Update Painter::take() {
     update_.brush_colour = out.brush_colour;
     update_.looks.reset();
     update_.outline.reset();
+    update_.snapshots.reset();
+    update_.snapshot_picture.reset();
+    update_.not_saved.reset();
     update_.picked.clear();
     update_.wet = out.wet;
     update_.undo_seconds = out.undo_seconds;
@@ -154,7 +159,9 @@ namespace {
 // What a person who only looks at a project may not ask for.
 bool changes_work(const Command& command) {
     return std::visit(Overloaded{[](const BeginStroke&) { return true; }, [](const PaintDrawing&) { return true; }, [](const CareForBrush&) { return true; },
-                                 [](const UndoStroke&) { return true; }, [](const RedoStroke&) { return true; }, [](const EditStroke&) { return true; },
+                                 [](const UndoStroke&) { return true; }, [](const RedoStroke&) { return true; }, [](const EditStrokes&) { return true; },
+                                 [](const AttachToProject&) { return true; }, [](const DetachFromProject&) { return true; }, [](const TakeSnapshot&) { return true; },
+                                 [](const RenameSnapshot&) { return true; }, [](const RestoreSnapshot&) { return true; },
                                  [](const FillModel&) { return true; }, [](const ChangeLayers&) { return true; }, [](const ChangeMasks&) { return true; },
                                  [](const auto&) { return false; }},
                       command);
@@ -175,6 +182,9 @@ void Painter::perform(Command& command) {
                                   work_.keeper.start(c.path, work_.source, work_.frame, *work_.painting);
                               say(fault.empty() ? "Saved as " + c.path.string() : fault);
                               publish();
+                              if (fault.empty()) return;
+                              const std::lock_guard lock(mutex_);
+                              update_.not_saved = {c.path, fault};
                           },
                           [this](RetryKeeping&) {
                               work_.keeper.retry(work_.source, work_.frame, *work_.painting);
@@ -190,7 +200,15 @@ void Painter::perform(Command& command) {
                           [this](RecolourInk& c) { recolour(c); }, [this](ShowOn& c) { show_on(c); },
                           [this](ChangeMasks& c) { change_masks(c); }, [this](ShowMask& c) { show_mask(c); },
                           [this](ExportModel& c) { export_model(c); }, [this](EditStrokes& c) { edit(c); },
-                          [this](HighlightStrokes& c) { highlight(c); }},
+                          [this](HighlightStrokes& c) { highlight(c); },
+                          [this](AttachToProject& c) { work_.keeper.attach(c.kind, c.attachment); publish(); },
+                          [this](DetachFromProject& c) {
+                              work_.keeper.detach(c.kind, c.name);
+                              publish_snapshots();
+                              publish();
+                          },
+                          [this](TakeSnapshot& c) { take_snapshot(c); }, [this](RenameSnapshot& c) { rename_snapshot(c); },
+                          [this](ShowSnapshot& c) { show_snapshot(c); }, [this](RestoreSnapshot& c) { restore_snapshot(c); }},
                command);
 }
 

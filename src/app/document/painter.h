@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/document/keeper.h"
+#include "app/document/snapshots.h"
 #include "app/document/writing.h"
 #include "app/view/texture.h"
 #include "stroke/hand/symmetry.h"
@@ -141,7 +142,30 @@ struct EditStrokes {
 struct HighlightStrokes {
     std::vector<std::uint64_t> ids;
 };
-using Command = std::variant<BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, CareForBrush, UndoStroke, RedoStroke, SaveProject, RetryKeeping,
+/// Keeps something along with the work (io/attachments.h), or takes it out.
+struct AttachToProject {
+    std::string kind;
+    io::Attachment attachment;
+};
+struct DetachFromProject {
+    std::string kind, name;
+};
+/// Keeps the journal as it is now under a name.
+struct TakeSnapshot {
+    std::string name;
+};
+struct RenameSnapshot {
+    std::string id, name;
+};
+/// Paints a snapshot beside the work and hands over its picture.
+struct ShowSnapshot {
+    std::string id;
+};
+/// Puts a snapshot in the place of the journal; undone as one.
+struct RestoreSnapshot {
+    std::string id;
+};
+using Command = std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot, BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, CareForBrush, UndoStroke, RedoStroke, SaveProject, RetryKeeping,
                              ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
 
 /// A stroke for the list.
@@ -192,9 +216,12 @@ struct Update {
     stroke::MaskTable masks;
     std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones
     std::optional<Looks> looks;
+    std::optional<std::vector<SnapshotLine>> snapshots;
+    std::optional<SnapshotPicture> snapshot_picture;
     std::optional<std::vector<OutlinePoint>> outline;  ///< of what was asked to be highlighted
     std::string picked;           ///< name of an ink just picked up or taken in
     bool wet = false;             ///< some ink is
+    std::optional<std::pair<std::filesystem::path, std::string>> not_saved;  ///< where a project could not be saved, and why
     std::string trouble;          ///< why work is not being kept, ""
     std::size_t unkept = 0;       ///< strokes that wait in memory for that
     bool behind = false;          ///< and so does a change of one
@@ -238,6 +265,8 @@ class Painter {
     const stroke::Model& model() const { return *work_.model; }  ///< never changes
     /// The texture as it was at the start; once.
     render::MapPixels take_pixels() { return std::move(work_.pixels); }
+    /// What the project carried of a kind when it was opened.
+    const std::vector<io::Attachment>& carried_references() const { return carried_; }
     /// Figures of the model's atlas; nullptr while they are measured, which the first call begins.
     const atlas::AtlasReport* atlas_report();
     const std::string& source() const { return work_.source; }
@@ -251,10 +280,15 @@ class Painter {
         std::optional<stroke::Stroke> after;  ///< none: taken out
         bool in_rows = false;                 ///< the file's rows can follow it; else it is written anew
     };
+    /// The whole journal, before and after.
+    struct Journals {
+        std::vector<stroke::Stroke> before, after;
+    };
     /// What one undo takes back.
     struct Step {
         std::size_t made = 0;                 ///< entries at the journal's end
         std::vector<Change> changes;          ///< or these, in the journal's order
+        std::optional<Journals> journals;     ///< or this
         bool joined = false;                  ///< and the step before it
     };
     void run();
@@ -287,7 +321,14 @@ class Painter {
     void highlight(const HighlightStrokes& command);
     void rewrite(std::vector<stroke::Stroke> strokes);
     void put(const std::vector<Change>& changes, bool back);
-    void take_presets(stroke::Painting& painting);
+    void put_journal(const std::vector<stroke::Stroke>& entries);
+    void publish_snapshots();
+    void take_snapshot(const TakeSnapshot& command);
+    void rename_snapshot(const RenameSnapshot& command);
+    void show_snapshot(const ShowSnapshot& command);
+    void restore_snapshot(const RestoreSnapshot& command);
+    std::vector<stroke::Stroke> snapshot_entries(const std::string& id) const;
+    void take_presets(stroke::Painting& painting, const std::vector<stroke::Stroke>& entries);
     void replace_painting(std::unique_ptr<stroke::Painting> painting);
     void look_outside();
     void take_outside();
@@ -313,6 +354,7 @@ class Painter {
     std::optional<std::array<std::uint8_t, 3>> brush_colour_;
     double undo_seconds_ = 0;
     double asked_ = 0, last_publish_ = 0;
+    std::vector<io::Attachment> carried_;     ///< reference images at the start
     std::vector<Step> steps_, undone_;        ///< the last one at the back
     std::vector<StrokeLine> lines_;
 

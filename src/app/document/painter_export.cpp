@@ -25,7 +25,7 @@ void Painter::export_model(const ExportModel& command) {
         model = std::make_unique<stroke::Model>(
             stroke::rescale_model(stroke::prepare_model(*work_.model->mesh, work_.model->atlas, options.progress), options));
         resized = std::make_unique<stroke::Painting>(*model);
-        take_presets(*resized);
+        take_presets(*resized, {});
         resized->replay(work_.painting->journal().strokes(), progress("Exporting"));
         painting = resized.get();
     }

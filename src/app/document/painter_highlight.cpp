@@ -62,7 +62,7 @@ void Painter::highlight(const HighlightStrokes& command) {
     auto shown = std::chrono::steady_clock::now();
     try {
         stroke::Painting blank(*work_.model);
-        take_presets(blank);
+        take_presets(blank, {});
         for (const stroke::Stroke& s : work_.painting->journal().strokes()) {
             const bool paints = s.action == stroke::Action::stroke || s.action == stroke::Action::fill;
             if (s.action == stroke::Action::mask) blank.paint(s);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <chrono>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -42,6 +41,7 @@ void Painter::undo() {
         const Step& step = steps_.back();
         more = step.joined;
         if (!step.changes.empty()) put(step.changes, true);
+        if (step.journals) put_journal(step.journals->before);
         for (std::size_t i = 0; i < step.made && work_.painting->journal().can_undo(); ++i) {
             const std::uint64_t id = work_.painting->journal().strokes().back().id;
             work_.painting->undo();
@@ -59,6 +59,7 @@ void Painter::redo() {
     for (bool more = true; more && !undone_.empty(); more = !undone_.empty() && undone_.back().joined) {
         const Step& step = undone_.back();
         if (!step.changes.empty()) put(step.changes, false);
+        if (step.journals) put_journal(step.journals->after);
         for (std::size_t i = 0; i < step.made; ++i)
             if (work_.painting->redo()) work_.keeper.add(work_.painting->journal().strokes().back());
         steps_.push_back(std::move(undone_.back()));
@@ -106,7 +107,7 @@ void Painter::put(const std::vector<Change>& changes, bool back) {
     if (back)
         for (const Change& change : changes) change.after ? void(*at(change) = change.before) : void(strokes.insert(at(change), change.before));
     else
-        for (const Change& change : std::views::reverse(changes)) change.after ? void(*at(change) = *change.after) : void(strokes.erase(at(change)));
+        for (auto change = changes.rbegin(); change != changes.rend(); ++change) change->after ? void(*at(*change) = *change->after) : void(strokes.erase(at(*change)));
     rewrite(std::move(strokes));
     // Rows can only be hidden and taken out: other changes, and several at once, write the file anew, whole or not at all.
     const Change& first = changes.front();
@@ -116,15 +117,24 @@ void Painter::put(const std::vector<Change>& changes, bool back) {
     else work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
 }
 
-// Ground, brushes, inks and looks as the journal's strokes were painted with.
-void Painter::take_presets(stroke::Painting& painting) {
+// Puts other entries in the place of the whole journal.
+void Painter::put_journal(const std::vector<stroke::Stroke>& entries) {
+    rewrite(entries);
+    work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
+}
+
+// Ground and looks of the work, and the brushes and inks that its entries and these use.
+void Painter::take_presets(stroke::Painting& painting, const std::vector<stroke::Stroke>& entries) {
     stroke::Painting& own = *work_.painting;
     painting.use_substrate(own.painted_on());
     if (own.shown_elsewhere()) painting.show_on(own.substrate());
-    for (const stroke::Stroke& s : own.journal().strokes()) {
-        if (stroke::has_brush(s.action)) painting.use_brush(own.brush(s.trace.brush));
-        if (!s.trace.ink.empty()) painting.use_ink(own.ink(s.trace.ink));
-    }
+    for (const ink::Ink& ink : own_inks_) painting.use_ink(ink);  // also those that no entry uses now
+    for (const std::vector<stroke::Stroke>* of : {&own.journal().strokes(), &entries})
+        for (const stroke::Stroke& s : *of) {
+            if (stroke::has_brush(s.action)) painting.use_brush(own.brush(s.trace.brush));
+            if (!s.trace.ink.empty()) painting.use_ink(own.ink(s.trace.ink));
+            for (const std::string& ink : stroke::inks_of(s)) painting.use_ink(own.ink(ink));
+        }
     for (const auto& [name, wanted] : own.recolours()) {
         painting.use_ink(own.ink(name));
         painting.recolour(name, wanted);
@@ -135,11 +145,7 @@ void Painter::take_presets(stroke::Painting& painting) {
 void Painter::rewrite(std::vector<stroke::Stroke> strokes) {
     stroke::Painting& old = *work_.painting;
     auto painting = std::make_unique<stroke::Painting>(*work_.model);
-    take_presets(*painting);
-    for (const stroke::Stroke& s : strokes) {  // a change may name new ones
-        if (stroke::has_brush(s.action)) painting->use_brush(old.brush(s.trace.brush));
-        for (const std::string& ink : stroke::inks_of(s)) painting->use_ink(old.ink(ink));
-    }
+    take_presets(*painting, strokes);  // a change may name new ones
     painting->replay(std::move(strokes), progress("Painting again"));
     painting->restore_undone(old.journal().undone());
     replace_painting(std::move(painting));

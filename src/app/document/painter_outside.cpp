@@ -59,6 +59,7 @@ void Painter::take_outside() {
     if (merged.news > 0 && !viewing)
         say("Another program changed this project; " + std::to_string(merged.news) + (merged.news == 1 ? " change of it is taken in." : " changes of it are taken in."));
     publish(true);
+    publish_snapshots();
     publish_looks();
 }
 
@@ -69,7 +70,7 @@ void Painter::paint_merged(const io::Project& file, const stroke::MergedJournal&
     };
     const auto fresh = [&] {
         auto painting = std::make_unique<stroke::Painting>(*work_.model);
-        take_presets(*painting);
+        take_presets(*painting, {});
         io::use_presets(file, *painting);
         return painting;
     };

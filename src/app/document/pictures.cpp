@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
+constexpr std::size_t kMostPixels = std::size_t{1} << 26;  // of a picture that a small one is made of
+
 // Averages whole boxes of pixels; the picture is cut to the shape wanted.
 std::vector<std::uint8_t> shrink(int width, int height, const std::vector<std::uint8_t>& rgb) {
     constexpr int w = Pictures::kWidth, h = Pictures::kHeight;
@@ -117,6 +119,13 @@ std::vector<std::uint8_t> Pictures::make(const Job& job) {
                 rgb.insert(rgb.end(), {image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
             return rgb;
         }
+    }
+    if (const std::string e = fs::path(job.file).extension().string(); e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff" || e == ".exr") {
+        const io::Image8 image = io::read_image8(job.file, kMostPixels);
+        std::vector<std::uint8_t> rgb;
+        for (std::size_t i = 0; i < image.pixels.size(); i += static_cast<std::size_t>(image.channels))
+            for (int k = 0; k < 3; ++k) rgb.push_back(image.pixels[i + static_cast<std::size_t>(image.channels < 3 ? 0 : k)]);
+        return shrink(image.width, image.height, rgb);
     }
     const ProgressFn progress = [this](std::string_view, double) { return !stop_.load(); };
     mesh::TriangleMesh mesh;

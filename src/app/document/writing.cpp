@@ -120,7 +120,7 @@ std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query
             lines.emplace_back();
             ++next;
         }
-        if (laid[i].on_surface) lines.back().push_back({laid[i].position, laid[i].normal});
+        if (laid[i].on_surface) lines.back().push_back({.position = laid[i].position, .normal = laid[i].normal});
         else if (!lines.back().empty()) lines.emplace_back();
     }
     return lines;

@@ -64,6 +64,7 @@ PlacedWriting placed_writing(const Writing& writing, const stroke::Placement& pl
 /// most `most` samples in all.
 struct GhostPoint {
     Vec3 position, normal;
+    bool seen = true;             ///< nothing of the model lies before it
 };
 std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& writing, const stroke::Placement& placement,
                                                  std::size_t most = 3000);

@@ -14,7 +14,7 @@ enum class Act {
     brush, line, curve, writing, eraser, fill, pick, mask,
     lighter, heavier, smaller, larger, lean_left, lean_right, lean_away, lean_near, upright,
     frame_all, frame_cursor, front, back, right, left, top, bottom, parallel,
-    see_through, atlas, palette, next_shading,
+    see_through, atlas, palette, next_shading, panels,
     count
 };
 

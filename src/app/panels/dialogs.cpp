@@ -103,7 +103,7 @@ void open_dialog(Session& s) {
     const double texel = expected_texel(m.area * factor * factor, s.open_options.atlas_size);
     ImGui::TextDisabled("%s", print(ui.tr("one texel is about %.2f mm"), texel * 1e3).c_str());
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", ui.tr("Painted on"));
+    ImGui::TextDisabled("%s", ui.tr("Material"));
     ImGui::SameLine(ui.px(150));
     ui.combo("Surface", s.open_options.substrate, s.substrates, 160);
     if (m.has_colours) {
@@ -141,30 +141,45 @@ void opening_progress(Session& s) {
 
 void recovery_dialog(Session& s) {
     if (s.lost.empty()) return;
-    if (!begin_dialog(s, "Unfinished work", 480)) return end_dialog(s);
+    if (!begin_dialog(s, s.sure_to_delete ? "Delete this work?" : "Your work is still here", 480)) return end_dialog(s);
     Ui& ui = s.ui;
     const LostWork work = s.lost.front();
-    ui.wrapped(ui.tr("The program ended before this work was saved under a name. It is complete to the last finished stroke."));
+    ui.wrapped(ui.tr("tuft studio stopped before you saved this. Nothing is lost: every stroke that you finished is here."));
     ImGui::Dummy(ImVec2(0, ui.px(2)));
     if (const unsigned texture = s.pictures.texture(work.project)) {
         ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), ImVec2(ui.px(180), ui.px(120)));
         ImGui::Dummy(ImVec2(0, ui.px(2)));
     }
     fact(s, "Model", fs::path(work.source).filename().string());
-    fact(s, "Project", is_unnamed(work.project) ? ui.tr("not named yet") : work.project.string());
+    fact(s, "Project", is_unnamed(work.project) ? ui.tr("not saved under a name yet") : work.project.string());
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    ui.buttons_at_right({{"Discard", 100}, {"Later", 100}, {"Go on with it", 140}});
-    const bool drop = ui.button("Discard", "Removes this work for good, unless it lies in a project of its own", 100);
-    ImGui::SameLine();
-    const bool later = ui.button("Later", "It is offered again at the next start", 100);
-    ImGui::SameLine();
-    const bool go_on = ui.primary_button("Go on with it", 140);
+    bool go_on = false, later = false, drop = false;
+    if (s.sure_to_delete) {
+        ui.wrapped(ui.tr("It cannot be brought back."));
+        ui.buttons_at_right({{"Keep it", 120}, {"Delete for good", 140}});
+        drop = ui.button("Delete for good", nullptr, 140);
+        ImGui::SameLine();
+        if (ui.primary_button("Keep it", 120)) s.sure_to_delete = false;
+    } else {
+        // A project of its own stays where it is; only the offer goes.
+        const bool unnamed = is_unnamed(work.project);
+        const char* away = unnamed ? "Delete..." : "Leave it";
+        ui.buttons_at_right({{away, 100}, {"Not now", 100}, {"Continue", 140}});
+        const bool leave = ui.button(away, unnamed ? "Removes this work for good" : "The project stays where it is; it is not offered again", 100);
+        ImGui::SameLine();
+        later = ui.button("Not now", "It is offered again at the next start", 100);
+        ImGui::SameLine();
+        go_on = ui.primary_button("Continue", 140);
+        drop = leave && !unnamed;
+        s.sure_to_delete = leave && unnamed;
+    }
     end_dialog(s);
     if (go_on) {
         forget_lost_work(work, false);
         open_path(s, work.project);
     } else if (drop) {
         forget_lost_work(work, true);
+        s.sure_to_delete = false;
     }
     if (go_on || later || drop) s.lost.erase(s.lost.begin());
 }
@@ -185,13 +200,13 @@ void settings_dialog(Session& s) {
     ImGui::SameLine();
     if (ui.choice("Light", w.theme == Theme::light, nullptr, 120)) w.theme = Theme::light, changed = true;
     ui.heading("Size of text and buttons");
-    for (const float scale : {1.0f, 1.25f, 1.5f, 2.0f}) {
+    if (ui.choice("Automatic", !w.own_scale, "As the display asks for it", 100)) w.own_scale = false, changed = true;
+    for (const float scale : {1.0f, 1.25f, 1.5f, 2.0f, 2.5f, 3.0f}) {
         char label[16];
         std::snprintf(label, sizeof label, "%.0f %%", 100.0 * static_cast<double>(scale));
-        if (ui.choice(label, std::abs(w.scale - scale) < 0.01f, nullptr, 72)) w.scale = scale, changed = true;
-        ImGui::SameLine();
+        if (scale != 2.5f) ImGui::SameLine();
+        if (ui.choice(label, w.own_scale && std::abs(w.scale - scale) < 0.01f, nullptr, 64)) w.scale = scale, w.own_scale = changed = true;
     }
-    ImGui::NewLine();
     ui.heading("Mouse and hand");
     if (ui.choice("As in Blender", s.keymap == Keymap::blender, "Turn with the middle button", 150)) s.keymap = Keymap::blender, changed = true;
     ImGui::SameLine();

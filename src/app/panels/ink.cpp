@@ -100,22 +100,19 @@ void two_inks(Session& s) {
 
 void ink_section(Session& s) {
     Ui& ui = s.ui;
-    ui.heading("Ink");
+    if (!ui.section("Ink", true, ui.tr(s.ink.c_str()))) return;
     swatches(s);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(ui.tr(s.ink.c_str()));
     const float half = part_of_row(s, 2);
     if (ui.button("Load...", "An ink from a file", half)) s.files.show(FileDialog::Purpose::ink, {});
     ImGui::SameLine();
-    if (ui.button("Keep...", "Writes the ink in hand to a file, for other work", half)) s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
-    if (ui.choice("Palette", s.palette.shown, "A plate on which brushes mix inks (P)", part_of_row(s, 1))) show_palette(s, !s.palette.shown);
+    if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", half)) s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
     ui.toggle("Wet ink", s.wet, "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.wet || s.last.wet) {
         if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
         ImGui::SameLine();
         if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1))) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush});
     }
-    ui.toggle("Carry ink over", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
+    ui.toggle("Don't reload", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
     if (s.carry) care(s);
     else two_inks(s);
 }

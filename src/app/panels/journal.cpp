@@ -110,7 +110,7 @@ void post(Session& s, EditStrokes edit, const Lines& lines) {
     s.painter->post(std::move(edit));
 }
 
-std::vector<std::string> ink_names(const Session& s) {
+std::vector<std::string> all_inks(const Session& s) {
     std::vector<std::string> names = s.inks;
     for (const ink::Ink& own : s.own_inks) names.push_back(own.name);
     return names;
@@ -143,13 +143,14 @@ void edit_chosen(Session& s) {
     if (brush.empty()) brush = "Several brushes";
     if (ink.empty()) ink = "Several inks";
     if (ui.combo("Change brush", brush, s.brushes)) post(s, {.brush = brush}, lines);
-    if (ui.combo("Change ink", ink, ink_names(s))) post(s, {.ink = ink}, lines);
+    if (ui.combo("Change ink", ink, all_inks(s))) post(s, {.ink = ink}, lines);
 }
 
 // The same as a menu at the cursor.
 void context_menu(Session& s) {
     Ui& ui = s.ui;
     if (!ImGui::BeginPopupContextItem("entry menu")) return;
+    ui.in_menu = true;
     const Lines lines = chosen_lines(s);
     const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     const bool strokes = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); });
@@ -162,16 +163,17 @@ void context_menu(Session& s) {
         ImGui::EndMenu();
     }
     if (strokes && ui.begin_menu("Ink")) {
-        for (const std::string& name : ink_names(s))
+        for (const std::string& name : all_inks(s))
             if (ui.menu_item(name.c_str())) post(s, {.ink = name}, lines);
         ImGui::EndMenu();
     }
-    if (ui.menu_item("Look at it", nullptr, false, !s.journal.outline.empty())) look_at_outline(s);
+    if (ui.menu_item("Zoom to it", nullptr, false, !s.journal.outline.empty())) look_at_outline(s);
     ImGui::Separator();
     if (ui.menu_item("Group", nullptr, false, lines.size() > 1)) post(s, {.group = ui.tr("Group")}, lines);
     if (ui.menu_item("Ungroup", nullptr, false, grouped)) post(s, {.group = ""}, lines);
     ImGui::Separator();
     if (ui.menu_item("Delete", name_of(s.keys.chord(Act::delete_stroke)).c_str())) post(s, {.remove = true}, lines);
+    ui.in_menu = false;
     ImGui::EndPopup();
 }
 
@@ -222,7 +224,7 @@ void fold_arrow(Session& s, std::uint64_t group, const std::string& name, float 
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::InvisibleButton("##open", ImVec2(s.ui.px(kIndent), size))) open ? void(s.journal.open_groups.erase(group)) : void(s.journal.open_groups.insert(group));
     s.ui.mark("open " + name);
-    draw_fold_arrow(s.ui, ImVec2(at.x + 0.4f * s.ui.px(kIndent), at.y + 0.5f * size), open);
+    s.ui.fold_arrow(at.x + 0.4f * s.ui.px(kIndent), at.y + 0.5f * size, open);
     ImGui::SameLine(0, 0);
 }
 
@@ -267,7 +269,7 @@ void draw_row(Session& s, const JournalRow& row) {
     ImGui::PopID();
 }
 
-void list(Session& s) {
+void draw_rows(Session& s) {
     const std::vector<JournalRow> rows = journal_rows(s.strokes, s.journal.open_groups);
     const float height = s.ui.px(kRowHeight) + ImGui::GetStyle().ItemSpacing.y;
     // Rows are of one height but for the one with the buttons below it.
@@ -304,10 +306,15 @@ void journal_panel(Session& s, float top, float bottom, float left) {
         if (ui.button("Stop")) s.painter->stop_long_work();
     }
     layers_section(s);
+    references_section(s);
+    snapshots_section(s);
     ui.heading("Journal");
     if (s.strokes.empty()) ui.note(ui.tr("Every stroke you paint is listed here, and can be hidden, changed or taken out later."));
-    ImGui::BeginChild("strokes");
-    list(s);
+    // The list has room for its scrollbar beside the rows.
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::SetNextWindowContentSize(ImVec2(width, 0));
+    ImGui::BeginChild("strokes", ImVec2(width + ImGui::GetStyle().ScrollbarSize + ui.px(2), 0));
+    draw_rows(s);
     ImGui::EndChild();
     ImGui::End();
 }

@@ -58,8 +58,8 @@ void keys_dialog(Session& s) {
     key_rows(s);
     ImGui::EndChild();
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    ui.buttons_at_right({{"As shipped", 130}, {"Close", 110}});
-    if (ui.button("As shipped", nullptr, 130, !s.keys.shipped())) {
+    ui.buttons_at_right({{"Reset", 130}, {"Close", 110}});
+    if (ui.button("Reset", nullptr, 130, !s.keys.shipped())) {
         s.keys = {};
         store_settings(s);
     }

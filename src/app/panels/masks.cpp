@@ -65,7 +65,7 @@ void mask_section(Session& s) {
         ImGui::AlignTextToFramePadding();
         if (mask) ImGui::TextUnformatted(mask->name.c_str());
         ImGui::SameLine();
-        if (s.ui.button("Let go", "Strokes leave ink everywhere again", 0)) choose_mask(s, 0);
+        if (s.ui.button("Mask off", "Strokes leave ink everywhere again", 0)) choose_mask(s, 0);
         return;
     }
     Ui& ui = s.ui;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/panels/icons.h"
 #include "app/panels/panels.h"
 
 namespace tuft::app {
@@ -49,9 +50,29 @@ void view_menu(Session& s) {
     if (s.ui.menu_item("Atlas beside the model", name_of(s.keys.chord(Act::atlas)).c_str(), s.view.atlas)) s.view.atlas = !s.view.atlas;
     if (!s.journal_fits && s.ui.menu_item("Journal and layers", nullptr, s.show_journal, s.painter != nullptr)) s.show_journal = !s.show_journal;
     if (s.ui.menu_item("Palette", name_of(s.keys.chord(Act::palette)).c_str(), s.palette.shown, s.painter != nullptr)) show_palette(s, !s.palette.shown);
+    if (s.ui.menu_item("Settings of the tools", nullptr, s.tools_shown, s.painter != nullptr)) s.tools_shown = !s.tools_shown, store_settings(s);
+    if (s.ui.menu_item("Journal", nullptr, s.journal_shown, s.painter != nullptr && s.journal_fits)) s.journal_shown = !s.journal_shown, store_settings(s);
+    if (s.ui.menu_item("Fold the panels", name_of(s.keys.chord(Act::panels)).c_str(), false, s.painter != nullptr)) fold_panels(s);
     if (s.ui.menu_item("See through the brush", name_of(s.keys.chord(Act::see_through)).c_str(), s.view.see_through)) s.view.see_through = !s.view.see_through;
     if (s.ui.menu_item("Side view of the tuft", nullptr, s.view.inset)) s.view.inset = !s.view.inset;
     ImGui::EndMenu();
+}
+
+// Changes to the other language; its name is in that language.
+void language_button(Session& s) {
+    Ui& ui = s.ui;
+    const bool english = s.wanted.language == Language::english;
+    // Without a font for them the characters are drawn.
+    const float height = 0.8f * ImGui::GetFontSize(), width = ui.px(64);
+    const bool drawn = english && !ui.has_chinese;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (ImGui::Button(drawn ? "##language" : english ? "\xe4\xb8\xad\xe6\x96\x87##language" : "English##language", ImVec2(width, 0))) {
+        s.wanted.language = english ? Language::chinese : Language::english;
+        s.restyle = true;
+        store_settings(s);
+    }
+    ui.mark("Language button");
+    if (drawn) draw_zhongwen(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * (width - 2.2f * height), at.y + 0.5f * (ImGui::GetFrameHeight() - height)), height, ui.strong);
 }
 
 void shading_combo(Session& s) {
@@ -76,6 +97,8 @@ void menu_bar(Session& s) {
         edit_menu(s);
         view_menu(s);
         if (s.ui.begin_menu("Help")) {
+            if (s.ui.menu_item("Manual")) s.help.manual = true;
+            if (s.ui.menu_item("The first minute, step by step", nullptr, s.help.step >= 0, s.painter != nullptr)) start_guide(s);
             if (s.ui.menu_item("Keys and mouse", name_of(s.keys.chord(Act::keys)).c_str())) s.show_keys = true;
             if (s.ui.menu_item("About tuft studio")) s.show_about = true;
             ImGui::EndMenu();
@@ -84,16 +107,17 @@ void menu_bar(Session& s) {
             const std::string name = project_name(s) + (s.last.viewing ? s.ui.tr(" (a view)") : "");
             const float width = ImGui::GetWindowWidth();
             const float text = ImGui::CalcTextSize(name.c_str()).x, x = std::max(0.5f * (width - text), ImGui::GetCursorPosX() + s.ui.px(8));
-            if (x + text < width - s.ui.px(130 + 140 + 34)) {
+            if (x + text < width - s.ui.px(130 + 140 + 34 + 72)) {
                 ImGui::SetCursorPosX(x);
                 ImGui::TextUnformatted(name.c_str());
             }
-            ImGui::SetCursorPosX(width - s.ui.px(130 + 140 + 24));
-            ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(8), s.ui.px(2)));
-            ImGui::SetCursorPosY(ImGui::GetCursorPosY() + s.ui.px(3));
-            shading_combo(s);
-            ImGui::PopStyleVar();
         }
+        ImGui::SetCursorPosX(ImGui::GetWindowWidth() - s.ui.px((s.painter ? 130 + 140 + 16 : 0) + 64 + 12));
+        ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(8), s.ui.px(2)));
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + s.ui.px(3));
+        if (s.painter) shading_combo(s);
+        language_button(s);
+        ImGui::PopStyleVar();
         ImGui::EndMainMenuBar();
     }
     ImGui::PopStyleVar();

@@ -4,14 +4,15 @@
 
 /// What is drawn round and over the model. Each function draws one panel and writes what
 /// the person changed into the session.
-struct ImVec2;
-
 namespace tuft::app {
 
 /// Heights and widths in pixels for a scale of 1.
-inline constexpr float kToolWidth = 256, kJournalWidth = 256, kStatusHeight = 30;
+inline constexpr float kStripWidth = 58, kToolWidth = 226, kJournalWidth = 252, kStatusHeight = 30;
 
 void menu_bar(Session& s);
+/// The column of tools at the window's edge.
+void tool_strip(Session& s, float top, float bottom, float left);
+/// What the chosen tool, the brush and the ink are set to.
 void tool_panel(Session& s, float top, float bottom, float left);
 /// In place of the tools: what is painted with which ink is shown as, and on which material.
 void colours_panel(Session& s, float top, float bottom, float left);
@@ -32,6 +33,17 @@ void export_dialog(Session& s);
 void settings_dialog(Session& s);
 void keys_dialog(Session& s);
 void about_dialog(Session& s);
+/// The built-in manual.
+void manual_dialog(Session& s);
+/// The guided first minute, a box over the view.
+void guide(Session& s);
+/// Reference images over the view; their list.
+void references_over_view(Session& s);
+void references_section(Session& s);
+/// The list of snapshots; what is done with the one that the work is compared with; the line between the two.
+void snapshots_section(Session& s);
+void comparison_bar(Session& s);
+void swipe_line(Session& s);
 /// The palette over the view, where it is shown.
 void palette_panel(Session& s);
 /// The tuft from the side with the surface under it, and what the hand feels.
@@ -55,9 +67,10 @@ double height_range(const Session& s);
 
 /// sRGB colour (ImU32) of a full film of this ink on porcelain.
 /// A column of the window between two heights, `width` in units of the display scale; ends with ImGui::End.
-void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom);
-/// The triangle of what can be folded: down when it is open, to the right else.
-void draw_fold_arrow(const Ui& ui, const ImVec2& centre, bool open);
+/// What is in it keeps its width when a scrollbar comes. A panel that does not scroll fits what it holds.
+void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom, bool scrolls = true);
+/// At the view's edges: fold away or bring back the panels beside it.
+void panel_handles(Session& s);
 unsigned ink_colour(const Session& s, const std::string& ink);
 unsigned ink_colour(const ink::Ink& ink);
 /// Of the ink that the next stroke lays down.

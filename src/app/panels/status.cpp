@@ -11,8 +11,8 @@ namespace tuft::app {
 namespace {
 
 // As much of it as there is room for; the rest under the cursor.
-void one_line(const Session& s, const std::string& text) {
-    const std::string shown = s.ui.fitted(text, ImGui::GetContentRegionAvail().x);
+void one_line(const Session& s, const std::string& text, float room) {
+    const std::string shown = s.ui.fitted(text, std::max(0.0f, room));
     ImGui::TextUnformatted(shown.c_str());
     if (shown == text || !ImGui::IsItemHovered()) return;
     ImGui::BeginTooltip();
@@ -22,37 +22,70 @@ void one_line(const Session& s, const std::string& text) {
     ImGui::EndTooltip();
 }
 
+struct ToolText {
+    const char *name, *hint;
+};
+
+// What the left button does now.
+ToolText text_of_tool(const Session& s) {
+    if (s.journal.moves) return {"Move", "Drag the chosen ink over the model    Esc: leave it"};
+    switch (s.tool) {
+        case Tool::brush: return {"Brush", "Drag: paint    [ and ]: pressure    Shift: size"};
+        case Tool::line: return {"Line", "Drag: a line    Shift: steps of 15\xc2\xb0    Drag its ends: change it"};
+        case Tool::curve: return {"Curve", "Click: set points    Enter: paint    Esc: drop them"};
+        case Tool::writing: return {"Place", s.writing.empty() ? "Choose writing or a drawing in the panel" : "Click: place it    Wheel: size    Shift + wheel: turn"};
+        case Tool::eraser: return {"Eraser", "Drag: take ink off    [ and ]: pressure"};
+        case Tool::fill:
+            return {"Fill", s.fill.region == stroke::Region::all ? "Click: fill the model" : s.fill.region == stroke::Region::part ? "Click: fill the part there" : "Click: fill the chart there"};
+        case Tool::pick: return {"Pick", "Click: the ink there becomes one of your own"};
+        case Tool::mask: return {"Mask", s.mask_choice.kind == stroke::MaskKind::lasso ? "Draw round a part of the model" : "Click on the model to make a mask"};
+    }
+    return {"", ""};
+}
+
+// Text after what is on the line already, as far as it fits before `end`.
+void put(const Session& s, const std::string& text, unsigned colour, float end) {
+    ImGui::SameLine(0, s.ui.px(16));
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    one_line(s, text, end - ImGui::GetCursorScreenPos().x);
+    ImGui::PopStyleColor();
+}
+
 }  // namespace
 
 void status_bar(Session& s, float top) {
+    const Ui& ui = s.ui;
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0, top));
     ImGui::SetNextWindowSize(ImVec2(screen.x, screen.y - top));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(12), s.ui.px(6)));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(12), ui.px(6)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGui::Begin("###status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                                            ImGuiWindowFlags_NoBringToFrontOnFocus);
     s.message_time += ImGui::GetIO().DeltaTime;
+    const float end = screen.x - ui.px(12);
+    const ToolText tool = text_of_tool(s);
+    ImGui::TextUnformatted(ui.tr(tool.name));
+    put(s, ui.tr(tool.hint), ui.faint, end);
     if (!s.last.trouble.empty()) {
         const std::size_t n = s.last.unkept;
-        const std::string waits = n == 0 ? "" : " (" + s.ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ")";
-        ImGui::PushStyleColor(ImGuiCol_Text, s.ui.settings().theme == Theme::dark ? ImVec4(1, 0.55f, 0.42f, 1) : ImVec4(0.72f, 0.10f, 0.02f, 1));
-        one_line(s, s.ui.tr("Not kept on disk") + waits + ": " + s.last.trouble);
-        ImGui::PopStyleColor();
+        const std::string waits = n == 0 ? "" : " (" + ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ")";
+        const unsigned red = ui.settings().theme == Theme::dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
+        put(s, ui.tr("Not kept on disk") + waits + ": " + s.last.trouble, red, end);
     } else if (!s.message.empty() && s.message_time < 12) {
-        one_line(s, s.ui.tr_sentence(s.message));
+        put(s, ui.tr_sentence(s.message), ui.strong, end);
     } else {
-        ImGui::TextDisabled("%s", s.ui.tr(s.keymap == Keymap::blender
-                                              ? "Left: paint    Middle or right: turn    Shift+middle: move    Wheel: nearer    F1: all keys"
-                                              : "Left: paint    Alt+left: turn    Alt+middle: move    Alt+right: nearer    F1: all keys"));
-    }
-    if (s.painter) {
-        char text[160];
-        const stroke::Model& m = s.painter->model();
-        std::snprintf(text, sizeof text, s.ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size, m.atlas.texel_size * 1e3);
-        const float x = screen.x - ImGui::CalcTextSize(text).x - s.ui.px(14);
-        if (ImGui::GetItemRectMax().x + s.ui.px(24) < x) {
+        char text[160] = "";
+        if (s.painter) {
+            const stroke::Model& m = s.painter->model();
+            std::snprintf(text, sizeof text, ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size, m.atlas.texel_size * 1e3);
+        }
+        const float x = screen.x - ImGui::CalcTextSize(text).x - ui.px(14);
+        put(s, ui.tr(s.keymap == Keymap::blender ? "Middle or right: turn    Shift + middle: move    Wheel: nearer    F1: keys"
+                                                 : "Alt + left: turn    Alt + middle: move    Alt + right: nearer    F1: keys"),
+            ui.faint, x - ui.px(16));
+        if (ImGui::GetItemRectMax().x + ui.px(12) < x) {
             ImGui::SameLine(x);
             ImGui::TextDisabled("%s", text);
         }

@@ -67,7 +67,7 @@ void brush_cell(Session& s, const std::string& name, const std::string& sort, fl
     const bool over = ImGui::IsItemHovered();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 end(at.x + width, at.y + height);
-    draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : over ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), s.ui.px(4));
+    if (chosen || over) draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered), s.ui.px(4));
     if (chosen) draw->AddRect(at, end, s.ui.accent, s.ui.px(4), 0, s.ui.px(2));
     const brush::Preset& preset = preset_of(name);
     draw_tuft_icon(s, preset, hair_colour(sort), at, width, height);
@@ -77,35 +77,42 @@ void brush_cell(Session& s, const std::string& name, const std::string& sort, fl
     ImGui::SetTooltip("%s\n%s", s.ui.tr(name.c_str()), text);
 }
 
-// A row for each sort of hair, small to large; sorts with a single brush share the last one.
+// All brushes hang in rows, a group for each sort of hair from small to large, its name under it; sorts with a single
+// brush are a group together.
 void brush_rack(Session& s) {
-    s.ui.heading("Brush");
-    std::map<std::string, std::vector<std::string>> sorts;
-    for (const std::string& name : s.brushes) sorts[name.substr(0, name.find('-'))].push_back(name);
+    if (!s.ui.section("Brush", true, s.ui.tr(brush::sized_name(s.brush).base.c_str()))) return;
+    std::map<std::string, std::vector<std::string>> by_sort;
+    for (const std::string& name : s.brushes) by_sort[name.substr(0, name.find('-'))].push_back(name);
+    std::vector<std::pair<std::string, std::vector<std::string>>> groups;
     std::vector<std::string> single;
-    for (const auto& [sort, names] : sorts)
+    for (auto& [sort, names] : by_sort) {
         if (names.size() == 1) single.push_back(names.front());
-    const float label = s.ui.px(58), gap = s.ui.px(5);
-    const float width = (ImGui::GetContentRegionAvail().x - label - 2 * gap) / 3;
-    const auto row = [&](const char* title, std::vector<std::string> names) {
+        else groups.emplace_back(sort, names);
+    }
+    if (!single.empty()) groups.emplace_back("other", single);
+    const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = s.ui.px(8), letters = 0.8f * ImGui::GetFontSize();
+    // Tufts are thin: as many fit in a row as have room for one each.
+    const float cell = std::min(s.ui.px(26), (all - 3 * gap) / 10), row = s.ui.px(kRackHeight) + 1.2f * letters;
+    float x = 0, y = ImGui::GetCursorPosY();
+    for (auto& [sort, names] : groups) {
         std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) { return preset_of(a).length < preset_of(b).length; });
-        const float y = ImGui::GetCursorPosY();
-        ImGui::SetCursorPosY(y + 0.5f * (s.ui.px(kRackHeight) - ImGui::GetTextLineHeight()));
-        ImGui::TextDisabled("%s", s.ui.tr(title));
+        const char* title = s.ui.tr(sort.c_str());
+        const float text = ImGui::GetFont()->CalcTextSizeA(letters, 1e9f, 0, title).x;
+        const float width = cell * static_cast<float>(names.size()), taken = std::max(width, text);
+        if (x > 0 && x + width > all + 1) x = 0, y += row;
         for (std::size_t i = 0; i < names.size(); ++i) {
-            if (i % 3 == 0) ImGui::SetCursorPosY(y + static_cast<float>(i / 3) * (s.ui.px(kRackHeight) + gap));
-            else ImGui::SameLine(0, gap);
-            if (i % 3 == 0) ImGui::SetCursorPosX(ImGui::GetStyle().WindowPadding.x + label);
-            brush_cell(s, names[i], names[i].substr(0, names[i].find('-')), width);
+            ImGui::SetCursorPos(ImVec2(left + x + cell * static_cast<float>(i), y));
+            brush_cell(s, names[i], names[i].substr(0, names[i].find('-')), cell);
         }
-        ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + gap);
-    };
-    for (const auto& [sort, names] : sorts)
-        if (names.size() > 1) row(sort.c_str(), names);
-    if (!single.empty()) row("other", single);
+        ImGui::SetCursorPos(ImVec2(left + x, y + s.ui.px(kRackHeight)));
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float middle = std::min(at.x + 0.5f * (width - text), at.x + all - x - text);
+        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(middle, at.y), s.ui.faint, title);
+        x += taken + gap;
+    }
+    ImGui::SetCursorPos(ImVec2(left, y + row));
     brush::SizedName sized = brush::sized_name(s.brush);
     const double thick = 2 * preset_of(sized.base).radius;
-    ImGui::TextUnformatted(s.ui.tr(sized.base.c_str()));
     double now = thick * sized.factor;
     if (s.ui.slider("Tuft size", now, thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm", "How thick it is; its length goes with it", kMillimetre))
         size_brush(s, now / thick);
@@ -158,7 +165,7 @@ void pen_curve(Session& s) {
 
 void hand_section(Session& s) {
     Ui& ui = s.ui;
-    ui.heading("Hand");
+    if (!ui.section("Hand")) return;
     ui.slider("Pressure", s.hand.pressure, 0.02, 1, "%.2f", "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
     ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length", kMillimetre);
     if (ui.button(s.more_hand ? "Less" : "More...", nullptr, 80)) s.more_hand = !s.more_hand;
@@ -175,20 +182,20 @@ void hand_section(Session& s) {
 
 void symmetry_section(Session& s) {
     Ui& ui = s.ui;
-    ui.heading("Symmetry");
+    if (!ui.section("Symmetry", false)) return;
     ui.toggle("X", s.symmetry.mirror_x, "Mirror left and right; the copy is painted anew and meets the model as it is there");
     ImGui::SameLine();
     ui.toggle("Y", s.symmetry.mirror_y, "Mirror front and back");
     ImGui::SameLine();
     ui.toggle("Z", s.symmetry.mirror_z, "Mirror above and below");
     double n = s.symmetry.radial;
-    if (ui.slider("Copies round", n, 1, 16, "%.0f", "For plates and bowls; the axis stands upright through the middle"))
+    if (ui.slider("Radial copies", n, 1, 16, "%.0f", "For plates and bowls; the axis stands upright through the middle"))
         s.symmetry.radial = static_cast<int>(std::lround(n));
 }
 
 void section_section(Session& s) {
     Ui& ui = s.ui;
-    ui.heading("Look inside");
+    if (!ui.section("Look inside", false)) return;
     ui.toggle("Cut open", s.view.section, "Hides a part of the model; the brush reaches what is behind");
     if (!s.view.section) return;
     static const char* axes[] = {"Across", "Along", "From above"};
@@ -197,29 +204,6 @@ void section_section(Session& s) {
         if (ui.choice(axes[k], s.view.section_axis == k)) s.view.section_axis = k;
     }
     ui.slider("What stays", s.view.section_at, 0.02, 1, "%.2f");
-}
-
-void tool_buttons(Session& s) {
-    struct Entry {
-        Tool tool;
-        const char *name, *hint;
-    };
-    static constexpr Entry entries[] = {
-        {Tool::brush, "Brush", "Paint freely (B)"},
-        {Tool::line, "Line", "Straight as you see it, from press to release; Shift for steps of 15 degrees. Its ends can be moved afterwards (L)"},
-        {Tool::curve, "Curve", "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"},
-        {Tool::writing, "Place", "Lays writing or a drawing from a file where you click (T)"},
-        {Tool::eraser, "Eraser", "Takes ink off with the brush, as deep as it is pressed; a pen's other end does so too (E)"},
-        {Tool::fill, "Fill", "Lays the chosen ink over the whole model, a part or a chart where you click (G)"},
-        {Tool::pick, "Pick", "Click: the pigments that lie there become an ink of their own, in the proportions they have (I)"},
-        {Tool::mask, "Mask", "Says where strokes and fills may leave ink (M)"}};
-    const float third = (ImGui::GetContentRegionAvail().x / s.ui.settings().scale - 10) / 3;
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(2), s.ui.px(5)));
-    for (std::size_t i = 0; i < std::size(entries); ++i) {
-        if (i % 3) ImGui::SameLine(0, s.ui.px(5));
-        if (s.ui.choice(entries[i].name, s.tool == entries[i].tool, entries[i].hint, third)) s.tool = entries[i].tool;
-    }
-    ImGui::PopStyleVar();
 }
 
 void fill_section(Session& s) {
@@ -250,7 +234,7 @@ void writing_section(Session& s) {
     ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
     ui.toggle("Mirrored", w.mirrored);
     const std::tuple<stroke::Laying, const char*, const char*> layings[] = {
-        {stroke::Laying::drape, "Drape", "Bent round the surface, over its grooves, relief and gaps"},
+        {stroke::Laying::drape, "Drape", "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
         {stroke::Laying::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
         {stroke::Laying::project, "Straight", "Straight through the picture plane"}};
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
@@ -261,9 +245,8 @@ void writing_section(Session& s) {
     }
     ImGui::PopStyleVar();
     const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
-    if (names) ui.toggle("Brush and ink of the file", w.own_ink);
-    if (has_widths(w)) ui.toggle("Line widths of the drawing", w.own_width);
-    ui.note(ui.tr("Wheel: size    Shift + wheel: turn    Click: lay it down"));
+    if (names) ui.toggle("Its brush and ink", w.own_ink, "As the file names them; strokes scale with the drawing");
+    if (has_widths(w)) ui.toggle("Its line widths", w.own_width, "The brush is taken in the size that draws them");
 }
 
 // How the hand goes along lines and curves.
@@ -276,30 +259,23 @@ void curve_section(Session& s) {
     changed |= ui.slider("Lift in", c.taper_out, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
     changed |= ui.slider("Pace", c.speed, 0.01, 0.4, "%.0f mm/s", "Of the hand", kMillimetre);
     if (changed) s.curve.changed = true;
-    if (s.tool == Tool::curve) ui.note(ui.tr("Click to set points, Enter to paint, Esc to drop them."));
 }
 
 }  // namespace
 
-void draw_fold_arrow(const Ui& ui, const ImVec2& c, bool open) {
-    const float r = ui.px(4);
-    ImDrawList* draw = ImGui::GetWindowDrawList();
-    if (open) draw->AddTriangleFilled(ImVec2(c.x - r, c.y - 0.6f * r), ImVec2(c.x + r, c.y - 0.6f * r), ImVec2(c.x, c.y + 0.8f * r), ui.strong);
-    else draw->AddTriangleFilled(ImVec2(c.x - 0.6f * r, c.y - r), ImVec2(c.x + 0.8f * r, c.y), ImVec2(c.x - 0.6f * r, c.y + r), ui.strong);
-}
-
-void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom) {
+void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom, bool scrolls) {
+    const float pad = ImGui::GetStyle().WindowPadding.x, all = s.ui.px(width);
     ImGui::SetNextWindowPos(ImVec2(left, top));
-    ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), bottom - top));
+    ImGui::SetNextWindowSize(ImVec2(all, bottom - top));
+    ImGui::SetNextWindowContentSize(ImVec2(all - pad - std::max(pad, scrolls ? ImGui::GetStyle().ScrollbarSize + s.ui.px(6) : 0), 0));
     // The window is cleared to the panels' colour; to blend it over that again costs a software driver milliseconds.
     ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
-    ImGui::GetBackgroundDrawList()->AddRect(ImVec2(left, top), ImVec2(left + s.ui.px(width), bottom), ImGui::GetColorU32(ImGuiCol_Border));
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus | (scrolls ? 0 : ImGuiWindowFlags_NoScrollbar));
+    ImGui::GetBackgroundDrawList()->AddRect(ImVec2(left, top), ImVec2(left + all, bottom), ImGui::GetColorU32(ImGuiCol_Border));
 }
 
 void tool_panel(Session& s, float top, float bottom, float left) {
     begin_side_panel(s, "###tools", left, top, kToolWidth, bottom);
-    tool_buttons(s);
     curve_section(s);
     writing_section(s);
     fill_section(s);
@@ -311,6 +287,45 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     if (brushes) symmetry_section(s);
     section_section(s);
     ImGui::End();
+}
+
+namespace {
+
+// A narrow button in the middle of an edge of the view, with a triangle that points to where the panel goes or comes from.
+void handle(Session& s, const char* name, const char* hint, float x, bool to_left, bool& shown) {
+    Ui& ui = s.ui;
+    const float width = ui.px(11), height = ui.px(46), y = static_cast<float>(s.area.y) + 0.5f * (static_cast<float>(s.area.height) - height);
+    ImGui::SetNextWindowPos(ImVec2(x, y));
+    ImGui::SetNextWindowSize(ImVec2(width, height));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(3));
+    ImGui::SetNextWindowBgAlpha(0.75f);
+    ImGui::Begin((std::string("###handle ") + name).c_str(), nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                                                            ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    const bool pressed = ImGui::InvisibleButton("##handle", ImVec2(width, height));
+    ui.mark(name);
+    ui.hint(hint);
+    const ImVec2 c(x + 0.5f * width, y + 0.5f * height);
+    const float r = ui.px(3.5f), tip = to_left ? -r : r;
+    ImGui::GetWindowDrawList()->AddTriangleFilled(ImVec2(c.x + tip, c.y), ImVec2(c.x - tip, c.y - 1.3f * r), ImVec2(c.x - tip, c.y + 1.3f * r), ImGui::IsItemHovered() ? ui.strong : ui.faint);
+    ImGui::End();
+    ImGui::PopStyleVar(4);
+    if (!pressed) return;
+    shown = !shown;
+    store_settings(s);
+}
+
+}  // namespace
+
+void panel_handles(Session& s) {
+    const bool beside = !s.snapshots.compared.empty() && !s.snapshots.swipe && s.snapshots.width > 0;
+    const auto left = static_cast<float>(beside ? s.snapshots.x : s.area.x);
+    const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width) - s.ui.px(11);
+    const bool swapped = s.wanted.left_handed;
+    handle(s, "Fold the tools", "Puts the settings of the tools away, or brings them back (Tab: all panels)", swapped ? right : left, s.tools_shown != swapped, s.tools_shown);
+    if (s.journal_fits) handle(s, "Fold the journal", "Puts the journal away, or brings it back (Tab: all panels)", swapped ? left : right, s.journal_shown == swapped, s.journal_shown);
 }
 
 }  // namespace tuft::app

@@ -16,21 +16,26 @@ namespace {
 
 constexpr float kFontSize = 16;
 
-// The first of the files that lies in a font folder of the system.
-std::string find_font(const std::vector<std::string>& names) {
+// Path by file name of all fonts in the system's folders.
+std::map<std::string, std::string> list_fonts() {
     std::vector<fs::path> folders{"/usr/share/fonts", "/usr/local/share/fonts"};
     if (const char* home = std::getenv("HOME")) {
         folders.push_back(fs::path(home) / ".local/share/fonts");
         folders.push_back(fs::path(home) / ".fonts");
     }
+    if (const char* extra = std::getenv("TUFT_FONTS")) folders = {extra};
     std::map<std::string, std::string> found;
     for (const fs::path& folder : folders) {
         std::error_code ec;
         for (fs::recursive_directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec))
             found.emplace(it->path().filename().string(), it->path().string());
     }
-    for (const std::string& name : names)
-        if (const auto at = found.find(name); at != found.end()) return at->second;
+    return found;
+}
+
+std::string first_of(const std::map<std::string, std::string>& fonts, std::initializer_list<const char*> names) {
+    for (const char* name : names)
+        if (const auto at = fonts.find(name); at != fonts.end()) return at->second;
     return {};
 }
 
@@ -38,14 +43,35 @@ ImVec4 grey(float v, float alpha = 1) { return {v, v, v * 1.015f, alpha}; }
 
 }  // namespace
 
+float scale_for(float content, int width, int height) {
+    const float larger = std::min(static_cast<float>(width) / 1920, static_cast<float>(height) / 1080);
+    return std::clamp(std::max(content, std::round(4 * larger) / 4), 1.0f, 3.0f);
+}
+
+std::string find_chinese_font(const std::map<std::string, std::string>& fonts) {
+    if (std::string known = first_of(fonts, {"NotoSansCJK-Regular.ttc", "NotoSansCJKsc-Regular.otf", "NotoSansSC-Regular.otf", "NotoSansSC-Regular.ttf", "SourceHanSansSC-Regular.otf",
+                                             "SourceHanSansCN-Regular.otf", "SourceHanSans-Regular.ttc", "wqy-microhei.ttc", "wqy-zenhei.ttc", "LXGWWenKai-Regular.ttf",
+                                             "DroidSansFallbackFull.ttf", "DroidSansFallback.ttf", "NotoSerifCJK-Regular.ttc", "uming.ttc", "ukai.ttc"});
+        !known.empty())
+        return known;
+    // Others say in their names what they hold.
+    for (const auto& [name, path] : fonts) {
+        const bool font = name.ends_with(".ttf") || name.ends_with(".otf") || name.ends_with(".ttc");
+        for (const char* word : {"CJK", "SansSC", "SansCN", "SansHans", "SerifSC", "SerifCN", "wqy-", "simsun", "simhei", "msyh"})
+            if (font && name.find(word) != std::string::npos) return path;
+    }
+    return {};
+}
+
 std::string Ui::prepare(const UiSettings& settings) {
     settings_ = settings;
     ImGuiIO& io = ImGui::GetIO();
     io.Fonts->Clear();
     std::string missing;
     has_chinese = false;
-    const std::string latin = find_font({"NotoSans-Regular.ttf", "Inter-Regular.ttf", "Ubuntu-R.ttf", "Cantarell-Regular.otf",
-                                         "DejaVuSans.ttf", "LiberationSans-Regular.ttf", "FreeSans.ttf"});
+    const std::map<std::string, std::string> fonts = list_fonts();
+    const std::string latin = first_of(fonts, {"NotoSans-Regular.ttf", "Inter-Regular.ttf", "Ubuntu-R.ttf", "Cantarell-Regular.otf",
+                                               "DejaVuSans.ttf", "LiberationSans-Regular.ttf", "FreeSans.ttf"});
     static const ImWchar latin_range[] = {0x20, 0x17f, 0x2010, 0x2027, 0x2190, 0x2193, 0x00b0, 0x00b7, 0x03bc, 0x03bc, 0};
     const float size = std::round(kFontSize * settings.scale);
     if (latin.empty()) {
@@ -56,8 +82,7 @@ std::string Ui::prepare(const UiSettings& settings) {
     } else {
         io.Fonts->AddFontFromFileTTF(latin.c_str(), size, nullptr, latin_range);
     }
-    const std::string chinese = find_font({"NotoSansCJK-Regular.ttc", "NotoSansCJKsc-Regular.otf", "SourceHanSansSC-Regular.otf",
-                                           "wqy-microhei.ttc", "wqy-zenhei.ttc", "DroidSansFallbackFull.ttf", "uming.ttc"});
+    const std::string chinese = find_chinese_font(fonts);
     static ImVector<ImWchar> ranges;
     if (!chinese.empty()) {
         ranges.clear();
@@ -74,7 +99,7 @@ std::string Ui::prepare(const UiSettings& settings) {
         io.Fonts->AddFontFromFileTTF(chinese.c_str(), square, &config, ranges.Data);
         has_chinese = true;
     } else if (settings.language == Language::chinese) {
-        missing = "No Chinese font was found on this system; the interface stays in English.";
+        missing = "No Chinese font is installed. Install fonts-noto-cjk (Debian, Ubuntu), google-noto-sans-cjk-fonts (Fedora) or noto-fonts-cjk (Arch), then choose the language again.";
         settings_.language = Language::english;
     }
     large = latin.empty() ? io.Fonts->Fonts[0] : io.Fonts->AddFontFromFileTTF(latin.c_str(), std::round(1.6f * size), nullptr, latin_range);
@@ -118,7 +143,7 @@ void Ui::style() {
     s.ItemSpacing = {8, 6};
     s.ItemInnerSpacing = {8, 4};
     s.WindowTitleAlign = {0.02f, 0.5f};
-    s.ScrollbarSize = 12;
+    s.ScrollbarSize = 9;
     s.WindowBorderSize = 1;
     s.ScaleAllSizes(settings_.scale);
     accent = ImGui::ColorConvertFloat4ToU32(blue);
@@ -183,7 +208,9 @@ void Ui::begin_frame() {
 
 void Ui::mark(const std::string& name) {
     const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
-    if (ImGui::IsRectVisible(a, b)) places_[name] = {0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
+    if (!ImGui::IsRectVisible(a, b)) return;
+    if (const auto there = places_.find(name); there != places_.end() && there->second.on_top && !in_menu) return;
+    places_[name] = {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), in_menu};
 }
 
 const Ui::Place* Ui::find(const std::string& name) const {
@@ -257,6 +284,12 @@ bool Ui::choice(const char* label, bool chosen, const char* text, float width) {
 
 namespace {
 
+// The triangle of what can be folded: down when it is open, to the right else.
+void draw_arrow(ImDrawList* draw, ImVec2 c, float r, bool open, unsigned colour) {
+    if (open) draw->AddTriangleFilled(ImVec2(c.x - r, c.y - 0.6f * r), ImVec2(c.x + r, c.y - 0.6f * r), ImVec2(c.x, c.y + 0.8f * r), colour);
+    else draw->AddTriangleFilled(ImVec2(c.x - 0.6f * r, c.y - r), ImVec2(c.x + 0.8f * r, c.y), ImVec2(c.x - 0.6f * r, c.y + r), colour);
+}
+
 // What lies behind a slider: filled from zero, or from its lower end, to the value, so that the number on it can be
 // read wherever the value stands. ImGui draws the number and, as narrow as it is here, the grab.
 void draw_slider_ground(float lo, float hi, float value, float grab) {
@@ -278,7 +311,7 @@ bool Ui::slider(const char* label, double& value, double lo, double hi, const ch
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(tr(label));
     hint(text);
-    ImGui::SameLine(px(124));
+    ImGui::SameLine(px(112));
     auto v = static_cast<float>(value / unit);
     ImGui::SetNextItemWidth(-1);
     const std::string name = std::string("##") + label;
@@ -319,6 +352,8 @@ bool Ui::menu_item(const char* label, const char* shortcut, bool chosen, bool en
     return pressed;
 }
 
+void Ui::fold_arrow(float x, float y, bool open) const { draw_arrow(ImGui::GetWindowDrawList(), ImVec2(x, y), px(4), open, strong); }
+
 bool Ui::begin_menu(const char* label) {
     const bool open = ImGui::BeginMenu(id(label).c_str());
     if (!open) mark(label);
@@ -334,6 +369,26 @@ void Ui::heading(const char* text) {
     ImGui::GetWindowDrawList()->AddLine(ImVec2(at.x, at.y - px(3)), ImVec2(at.x + ImGui::GetContentRegionAvail().x, at.y - px(3)),
                                         ImGui::GetColorU32(ImGuiCol_Separator));
     ImGui::Dummy(ImVec2(0, px(1)));
+}
+
+bool Ui::section(const char* title, bool open, const char* value) {
+    if (const auto known = sections.find(title); known != sections.end()) open = known->second;
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight() + px(4));
+    if (ImGui::InvisibleButton((std::string("##fold ") + title).c_str(), size)) {
+        sections[title] = open = !open;
+        sections_changed = true;
+    }
+    mark(std::string("fold ") + title);
+    const unsigned colour = ImGui::IsItemHovered() ? strong : faint;
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw_arrow(draw, ImVec2(at.x + px(5), at.y + 0.5f * ImGui::GetTextLineHeight()), px(4), open, colour);
+    draw->AddText(ImVec2(at.x + px(15), at.y), colour, tr(title));
+    if (value) {
+        const std::string shown = fitted(value, size.x - px(25) - ImGui::CalcTextSize(tr(title)).x);
+        draw->AddText(ImVec2(at.x + size.x - ImGui::CalcTextSize(shown.c_str()).x, at.y), strong, shown.c_str());
+    }
+    draw->AddLine(ImVec2(at.x, at.y + size.y - px(1)), ImVec2(at.x + size.x, at.y + size.y - px(1)), ImGui::GetColorU32(ImGuiCol_Separator));
+    return open;
 }
 
 void Ui::wrapped(const std::string& text) {

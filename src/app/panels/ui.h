@@ -20,8 +20,16 @@ struct UiSettings {
     Language language = Language::english;
     Theme theme = Theme::dark;
     float scale = 1;              ///< of all sizes
+    bool own_scale = false;       ///< chosen by the person; else it follows the display
     bool left_handed = false;     ///< tools on the right
 };
+
+/// The scale for a picture of that size on a display that asks for `content`: what it asks for, and at least as much
+/// as the picture is larger than 1920 × 1080, in quarters, 1 to 3.
+float scale_for(float content, int width, int height);
+
+/// A font with Chinese characters among these files, the best one first; "" when there is none.
+std::string find_chinese_font(const std::map<std::string, std::string>& path_by_name);
 
 /// Widgets in the house's look, with translated texts and hints. They are named by their
 /// English text; where each was drawn is kept, so that a script can find it.
@@ -45,6 +53,7 @@ class Ui {
     void begin_frame();
     bool enter = false;           ///< Enter was pressed: the primary button of the dialog takes it
     bool in_dialog = false;
+    bool in_menu = false;         ///< what is drawn now is a menu over the rest: its names go before those below
     bool modal = false;           ///< a dialog is open: what lies behind it says nothing
     bool button(const char* label, const char* hint = nullptr, float width = 0, bool enabled = true);
     /// Pixels of a button's width: at least `least` at a scale of 1, and as much as the text needs.
@@ -58,6 +67,13 @@ class Ui {
     bool menu_item(const char* label, const char* shortcut = nullptr, bool chosen = false, bool enabled = true);
     bool begin_menu(const char* label);
     void heading(const char* text);
+    /// A heading that a click folds and unfolds; true when what is under it is to be drawn. `open`: as shipped; `value`:
+    /// what is chosen there, already in the chosen language, at the heading's right end.
+    bool section(const char* title, bool open = true, const char* value = nullptr);
+    /// The triangle of such a heading with its middle at a place of the window, pixels.
+    void fold_arrow(float x, float y, bool open) const;
+    std::map<std::string, bool> sections;  ///< open or not, of those that were clicked
+    bool sections_changed = false;         ///< since the last look
     void hint(const char* text);
     void wrapped(const std::string& text);
     /// Small grey text.
@@ -67,6 +83,7 @@ class Ui {
     void mark(const std::string& name);
     struct Place {
         double x = 0, y = 0;      ///< pixels, centre
+        bool on_top = false;      ///< in a menu that lies over the rest
     };
     /// Where the widget of that name was in the last frame; nullptr: it was not drawn.
     const Place* find(const std::string& name) const;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "app/panels/panels.h"
+#include "app/view/visibility.h"
 
 namespace tuft::app {
 namespace {
@@ -140,31 +141,26 @@ void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
     }
 }
 
-// Where the writing would lie; what is turned away is faint.
+// Where the writing would lie, as far as it is seen.
 void ghost_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     if (s.tool != Tool::writing) return;
-    const float width = s.ui.px(1.6f);
     for (const auto& line : s.ghost)
-        for (std::size_t i = 1; i < line.size(); ++i) {
-            const Vec3 to_eye = c.parallel_height > 0 ? -c.forward : c.eye - line[i].position;
-            const bool seen = glm::dot(line[i].normal, to_eye) > 0;
-            draw->AddLine(on_screen(s, c, line[i - 1].position), on_screen(s, c, line[i].position),
-                          seen ? IM_COL32(255, 150, 30, 230) : IM_COL32(255, 150, 30, 50), width);
-        }
+        for (std::size_t i = 1; i < line.size(); ++i)
+            if (line[i - 1].seen && line[i].seen)
+                draw->AddLine(on_screen(s, c, line[i - 1].position), on_screen(s, c, line[i].position), IM_COL32(255, 150, 30, 230), s.ui.px(1.6f));
 }
 
-// Where the chosen ink would lie while it is moved: dots round it. What is turned away is faint.
+// Where the chosen ink would lie while it is moved: dots round it.
 void shift_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const JournalState& j = s.journal;
     if (!j.from || !j.to) return;
     const mesh::SurfaceQuery& query = *s.painter->model().query;
     const RigidMove m = shift_between(*j.from, *j.to);
+    const Vec4f section = section_plane(s);
+    const double tolerance = 2e-3 * s.painter->model().mesh->bounds.diagonal();
     for (const OutlinePoint& p : j.outline) {
         const auto on = query.closest_point(m.to + m.rotation * (Vec3(p.position) - m.from));
-        if (!on) continue;
-        const Vec3 to_eye = c.parallel_height > 0 ? -c.forward : c.eye - on->position;
-        const unsigned alpha = glm::dot(on->normal, to_eye) > 0 ? 255 : 60;
-        draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(1.6f), (alpha << IM_COL32_A_SHIFT) | (IM_COL32(255, 140, 26, 0)), 6);
+        if (on && is_seen(query, c, section, on->position, tolerance)) draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(1.6f), IM_COL32(0, 190, 255, 255), 6);
     }
 }
 

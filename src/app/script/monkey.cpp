@@ -20,7 +20,7 @@ constexpr std::size_t kAtOnce = 40;  // events, before it looks at the screen ag
 constexpr int kKeys[] = {GLFW_KEY_Z, GLFW_KEY_Y, GLFW_KEY_HOME, GLFW_KEY_1, GLFW_KEY_3, GLFW_KEY_7, GLFW_KEY_5, GLFW_KEY_LEFT_BRACKET,
                          GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_LEFT, GLFW_KEY_UP, GLFW_KEY_B, GLFW_KEY_L, GLFW_KEY_X, GLFW_KEY_ESCAPE,
                          GLFW_KEY_PERIOD, GLFW_KEY_F1, GLFW_KEY_BACKSLASH, GLFW_KEY_E, GLFW_KEY_C, GLFW_KEY_G, GLFW_KEY_I, GLFW_KEY_M,
-                         GLFW_KEY_T, GLFW_KEY_P, GLFW_KEY_U, GLFW_KEY_V, GLFW_KEY_ENTER, GLFW_KEY_DELETE, GLFW_KEY_BACKSPACE};
+                         GLFW_KEY_T, GLFW_KEY_P, GLFW_KEY_TAB, GLFW_KEY_U, GLFW_KEY_V, GLFW_KEY_ENTER, GLFW_KEY_DELETE, GLFW_KEY_BACKSPACE};
 constexpr int kDialogs[] = {GLFW_KEY_O, GLFW_KEY_S, GLFW_KEY_E};
 
 template <class List>

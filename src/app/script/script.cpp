@@ -237,6 +237,8 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     else if (c.name == "report") report(studio, now);
     else if (c.name == "names") {
         for (const std::string& name : s.ui.names()) std::printf("%s\n", name.c_str());
+    } else if (c.name == "places") {
+        for (const std::string& name : s.ui.names()) std::printf("%.1f %.1f %s\n", s.ui.find(name)->x, s.ui.find(name)->y, name.c_str());
     } else if (c.name == "quit") leave(s, {});
     return true;
 }

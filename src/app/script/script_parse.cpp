@@ -41,6 +41,7 @@
 ///                           the last undo, the peak of memory and where the view is, on standard output
 ///   lose-graphics           as if the graphics driver had been reset
 ///   names                   labels that can be clicked, on standard output
+///   places                  the same after the pixels where each lies
 ///   quit
 namespace tuft::app {
 namespace {
@@ -50,7 +51,7 @@ const std::map<std::string, std::pair<int, int>> kCommands{
     {"open", {1, 1}}, {"revise", {1, 1}}, {"wait-ready", {0, 1}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
     {"stroke", {2, 10000}}, {"rate", {1, 1}}, {"key", {1, 1}}, {"hold", {1, 1}}, {"type", {1, 1}}, {"scroll", {1, 1}}, {"click", {1, 1}}, {"right-click", {1, 1}}, {"set", {2, 2}},
     {"undo", {0, 0}}, {"redo", {0, 0}}, {"save", {1, 1}}, {"export", {1, 1}}, {"close", {0, 0}}, {"screenshot", {1, 1}},
-    {"expect", {1, 2}}, {"await", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"resize", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"quit", {0, 0}}};
+    {"expect", {1, 2}}, {"await", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"resize", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"places", {0, 0}}, {"quit", {0, 0}}};
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 constexpr double kMostNumber = 1e6;  // of a place, in pixels or per cent

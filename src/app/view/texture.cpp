@@ -14,8 +14,8 @@ using Rgba = std::array<std::uint8_t, 4>;
 constexpr int kVeil = 42;                            // percent of the veil's colour
 constexpr std::array<int, 3> kVeilColour{64, 104, 178};  // sRGB
 constexpr int kRimTexels = 2;                        // charts lie further apart than that
-constexpr std::array<int, 3> kMarkColour{255, 140, 26};  // sRGB
-constexpr int kMarked[] = {0, 40, 90};               // percent of it: where there is none, ink, its rim
+constexpr std::array<int, 3> kMarkColour{0, 190, 255};  // sRGB
+constexpr int kMarked[] = {0, 22, 92};               // percent of it: where there is none, ink, its rim
 
 // Averages are of light, not of its code values.
 struct SrgbTable {

@@ -1,0 +1,191 @@
+#include <epoxy/gl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/panels/icons.h"
+#include "app/panels/panels.h"
+#include "io/image.h"
+
+/// Reference images over the view, and their list.
+namespace tuft::app {
+namespace {
+
+constexpr int kMostAcross = 2048;  // pixels of a texture
+
+void keep_reference(Session& s, const ReferenceImage& r) { s.painter->post(AttachToProject{io::kReferences, to_attachment(r)}); }
+
+// RGB of the picture, made smaller by whole steps until it suits a graphics card.
+std::vector<std::uint8_t> fitted_pixels(const io::Image8& image, int step, int width, int height) {
+    std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    const auto c = static_cast<std::size_t>(image.channels);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (std::size_t k = 0; k < 3; ++k) {
+                unsigned sum = 0;
+                for (int j = 0; j < step; ++j)
+                    for (int i = 0; i < step; ++i) {
+                        const std::size_t at = static_cast<std::size_t>(y * step + j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x * step + i);
+                        sum += image.pixels[c * at + (c < 3 ? 0 : k)];
+                    }
+                rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) + k] = static_cast<std::uint8_t>(sum / static_cast<unsigned>(step * step));
+            }
+    return rgb;
+}
+
+unsigned reference_texture(Session& s, ReferenceImage& r) {
+    if (r.texture || r.broken) return r.texture;
+    try {
+        const io::Image8 image = io::decode_image8(r.bytes, r.name, std::size_t{1} << 26);
+        r.pixels_across = image.width;
+        r.pixels_down = image.height;
+        const int step = 1 + (std::max(image.width, image.height) - 1) / kMostAcross, width = std::max(1, image.width / step), height = std::max(1, image.height / step);
+        const std::vector<std::uint8_t> rgb = fitted_pixels(image, image.width < step || image.height < step ? 1 : step, width, height);
+        glGenTextures(1, &r.texture);
+        glBindTexture(GL_TEXTURE_2D, r.texture);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, width, height, 0, GL_RGB, GL_UNSIGNED_BYTE, rgb.data());
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        glGenerateMipmap(GL_TEXTURE_2D);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    } catch (const std::exception& error) {
+        r.broken = true;
+        say(s, error.what());
+    }
+    return r.texture;
+}
+
+void remove_reference(Session& s, std::size_t i) {
+    ReferenceImage& r = s.references.images[i];
+    if (r.texture) glDeleteTextures(1, &r.texture);
+    s.painter->post(DetachFromProject{io::kReferences, r.id});
+    s.references.images.erase(s.references.images.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+// A part of it stays in the view, wherever it is dragged.
+void keep_in_view(ReferenceImage& r, double aspect) {
+    r.width = std::clamp(r.width, kLeastReference, kMostReference);
+    r.at.x = std::clamp(r.at.x, 0.04 - r.width, 0.96);
+    r.at.y = std::clamp(r.at.y, 0.04 - r.width * aspect, 0.94);
+}
+
+// The bar over an image that the cursor is on.
+bool image_bar(Session& s, ReferenceImage& r, float width) {
+    Ui& ui = s.ui;
+    bool removed = false;
+    ImGui::SetCursorPos(ImVec2(ui.px(6), ui.px(6)));
+    ImGui::BeginGroup();
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, IM_COL32(30, 30, 32, 210));
+    ImGui::SetNextItemWidth(std::max(ui.px(40), std::min(ui.px(120), width - ui.px(90))));
+    auto opacity = static_cast<float>(100 * r.opacity);
+    if (ImGui::SliderFloat("##opacity", &opacity, 5, 100, "%.0f %%", ImGuiSliderFlags_AlwaysClamp)) r.opacity = static_cast<double>(opacity) / 100;
+    if (ImGui::IsItemDeactivatedAfterEdit()) keep_reference(s, r);
+    ui.mark("Opacity of " + r.name);
+    ImGui::PopStyleColor();
+    ImGui::SameLine(0, ui.px(4));
+    removed = ImGui::Button("\xc3\x97", ImVec2(ImGui::GetFrameHeight(), 0));
+    ui.mark("Unpin " + r.name);
+    ui.hint("Takes the image off; the file stays where it is");
+    ImGui::EndGroup();
+    return removed;
+}
+
+// One image as a window of its own; true when it is to go.
+bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
+    Ui& ui = s.ui;
+    const unsigned texture = reference_texture(s, r);
+    if (!r.shown || !texture || r.pixels_across <= 0) return false;
+    const auto across = static_cast<double>(s.area.width), down = static_cast<double>(s.area.height);
+    const double aspect = across * r.pixels_down / r.pixels_across / down;  // its height in parts of the view's, for a width of 1
+    keep_in_view(r, aspect);
+    const ImVec2 at(static_cast<float>(s.area.x + r.at.x * across), static_cast<float>(s.area.y + r.at.y * down));
+    const ImVec2 size(static_cast<float>(r.width * across), static_cast<float>(r.width * aspect * down));
+    ImGui::SetNextWindowPos(at);
+    ImGui::SetNextWindowSize(size);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(4, 4));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+    ImGui::Begin(("###reference " + r.id).c_str(), nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
+                                                                ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImVec2 end(at.x + size.x, at.y + size.y);
+    draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at, end, ImVec2(0, 0), ImVec2(1, 1), IM_COL32(255, 255, 255, static_cast<int>(std::lround(255 * r.opacity))));
+    const bool over = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
+    const float corner = ui.px(16);
+    ImGui::SetCursorPos(ImVec2(0, 0));
+    ImGui::InvisibleButton("##move", size);
+    ImGui::SetItemAllowOverlap();
+    ui.mark("reference " + r.name);
+    const bool grabbed = ImGui::IsItemActivated();
+    if (grabbed) {
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
+        s.references.held = index;
+        s.references.sizing = mouse.x > end.x - corner && mouse.y > end.y - corner;
+    }
+    const bool held = s.references.held == index && ImGui::IsItemActive();
+    if (held && !grabbed) {
+        const ImVec2 way = ImGui::GetIO().MouseDelta;
+        if (s.references.sizing) r.width += static_cast<double>(way.x) / across;
+        else r.at += Vec2(static_cast<double>(way.x) / across, static_cast<double>(way.y) / down);
+    }
+    if (ImGui::IsItemDeactivated() && s.references.held == index) {
+        s.references.held.reset();
+        keep_reference(s, r);
+    }
+    bool removed = false;
+    if (over) {
+        draw->AddRect(at, end, ui.accent, 0, 0, ui.px(1.5f));
+        draw->AddTriangleFilled(ImVec2(end.x, end.y - corner), end, ImVec2(end.x - corner, end.y), ui.accent);
+        if (size.x > ui.px(110) && size.y > ui.px(60)) removed = image_bar(s, r, size.x);
+        if (const float wheel = ImGui::GetIO().MouseWheel; wheel != 0) {
+            r.width = std::clamp(r.width * std::pow(1.06, static_cast<double>(wheel)), kLeastReference, kMostReference);
+            keep_reference(s, r);
+        }
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(3);
+    return removed;
+}
+
+}  // namespace
+
+void references_over_view(Session& s) {
+    References& all = s.references;
+    if (all.hidden || !s.painter) return;
+    for (std::size_t i = 0; i < all.images.size(); ++i)
+        if (draw_reference(s, all.images[i], i)) {
+            remove_reference(s, i);
+            break;
+        }
+}
+
+void references_section(Session& s) {
+    Ui& ui = s.ui;
+    if (!ui.section("References", false)) return;
+    References& all = s.references;
+    for (std::size_t i = 0; i < all.images.size(); ++i) {
+        ReferenceImage& r = all.images[i];
+        ImGui::PushID(r.id.c_str());
+        if (ImGui::Checkbox("##shown", &r.shown)) keep_reference(s, r);
+        ui.mark("show " + r.name);
+        ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
+        const float right = ImGui::GetFrameHeight() + ui.px(6), room = ImGui::GetContentRegionAvail().x - right;
+        const float x = ImGui::GetCursorPosX();
+        ImGui::TextUnformatted(ui.fitted(r.name, room).c_str());
+        ImGui::SameLine(x + room + ui.px(6));
+        const bool gone = ImGui::Button("\xc3\x97", ImVec2(ImGui::GetFrameHeight(), 0));
+        ui.mark("remove " + r.name);
+        ui.hint("Takes the image off; the file stays where it is");
+        ImGui::PopID();
+        if (gone) return remove_reference(s, i);
+    }
+    if (ui.button("Add an image...", "Pins it over the view, to paint after. It is kept in the project", 0)) s.files.show(FileDialog::Purpose::reference, {});
+    if (all.images.empty()) return;
+    ImGui::SameLine();
+    ui.toggle("Hide all", all.hidden);
+}
+
+}  // namespace tuft::app
