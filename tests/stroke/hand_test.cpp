@@ -45,9 +45,9 @@ TEST(HandFilter, AStepIsFollowedWithoutOvershoot) {
         const double t = i * 1e-3, x = filter(f, 1.0, t, o);
         EXPECT_GE(x, last);
         EXPECT_LE(x, 1);
-        // A fixed cutoff is a first-order lag of time constant 1/(2π f); backward Euler is off
-        // by dt/(2 tau e) at most, 1 ms against 80 ms.
-        EXPECT_NEAR(x, -std::expm1(-2 * std::numbers::pi * 2 * t), 3e-3);
+        // A fixed cutoff is a first-order lag of time constant 1/(2π f). The step is a ramp of 1 ms between two
+        // samples: half of it later, but for (dt/tau)²/24 = 7e-6.
+        EXPECT_NEAR(x, -std::expm1(-2 * std::numbers::pi * 2 * (t - 0.5e-3)), 1e-5);
         last = x;
     }
     EXPECT_NEAR(last, 1, 1e-6);

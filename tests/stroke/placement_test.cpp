@@ -279,7 +279,7 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     EXPECT_NEAR(led.samples[touch].position.x, 0.003, 1e-12);
     EXPECT_NEAR(led.samples[touch + 100].position.x, 0.01 + 0.003, 1e-12);  // depth 4 mm
     // The tip touches where the trace begins, and trails while the hand presses.
-    EXPECT_EQ(led.samples[0].pressure, 0);
+    EXPECT_NEAR(led.samples[0].pressure, 0, 1e-6);
     EXPECT_NEAR(led.samples[0].position.x, 0, 1e-3) << "the shortest lead of the table";
     for (std::size_t i = 1; i <= touch; ++i) {
         EXPECT_GT(led.samples[i].pressure, led.samples[i - 1].pressure);

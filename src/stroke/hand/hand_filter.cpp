@@ -4,14 +4,24 @@
 #include <cmath>
 #include <numbers>
 
+#include "stroke/hand/tractrix.h"
+
 namespace tuft::stroke {
 namespace {
 
 constexpr double kShortestStep = 1e-3;  // seconds; what a time that does not rise counts as
 
-double weight(double cutoff, double dt) {
-    const double tau = 1 / (2 * std::numbers::pi * cutoff);
-    return dt / (dt + tau);
+double time_constant(double cutoff) { return 1 / (2 * std::numbers::pi * cutoff); }
+
+// Part of the way to a constant goal that a low-pass goes in dt.
+double share(double cutoff, double dt) { return -std::expm1(-dt / time_constant(cutoff)); }
+
+// A low-pass y of a signal that goes evenly from x0 to x1 in dt, solved exactly: y' = (x - y) / τ.
+template <class V>
+V low_pass(const V& y, const V& x0, const V& x1, double dt, double cutoff) {
+    const double tau = time_constant(cutoff);
+    const V lag = (tau / dt) * (x1 - x0);
+    return x1 - lag + std::exp(-dt / tau) * (y - x0 + lag);
 }
 
 double size(double v) { return std::abs(v); }
@@ -23,13 +33,15 @@ double next_time(double before, double time) {
     return time > before ? time : before + kShortestStep;
 }
 
-// Moves the tip behind the hand; returns the length of the string in use.
-double drag(Vec3& tip, const Vec3& hand, double length) {
-    const Vec3 string = hand - tip;
-    const double reach = glm::length(string);
-    if (reach <= length) return reach;
-    tip = hand - string * (length / reach);
-    return length;
+// Rotation vector, radians, and back.
+Vec3 turn_of(const Quat& q) {
+    const Vec3 v{q.x, q.y, q.z};
+    const double sine = glm::length(v);
+    return sine > 0 ? (q.w < 0 ? -2.0 : 2.0) * std::atan2(sine, std::abs(q.w)) / sine * v : Vec3{0};
+}
+Quat rotation_by(const Vec3& turn) {
+    const double angle = glm::length(turn);
+    return angle > 0 ? glm::angleAxis(angle, turn / angle) : Quat{1, 0, 0, 0};
 }
 
 String::Grip grip_at(String& state, double travel) {
@@ -52,9 +64,9 @@ V filter(OneEuro<V>& s, const V& sample, double time, const OneEuroOptions& o) {
     time = next_time(s.time, time);
     const double dt = time - s.time;
     const V rate = (sample - s.raw) / dt;
-    s.rate = s.moved ? s.rate + weight(o.rate_cutoff, dt) * (rate - s.rate) : rate;
+    s.rate = s.moved ? s.rate + share(o.rate_cutoff, dt) * (rate - s.rate) : rate;
     s.moved = true;
-    s.value += weight(o.cutoff + o.beta * size(s.rate), dt) * (sample - s.value);
+    s.value = low_pass(s.value, s.raw, sample, dt, o.cutoff + o.beta * size(s.rate));
     s.raw = sample;
     s.time = time;
     return s.value;
@@ -71,11 +83,13 @@ Quat filter(OneEuroTurn& s, const Quat& sample, double time, const OneEuroOption
     }
     time = next_time(s.time, time);
     const double dt = time - s.time;
-    const Quat turn = glm::conjugate(s.raw) * sample;
-    const double angle = 2 * std::atan2(glm::length(Vec3(turn.x, turn.y, turn.z)), std::abs(turn.w));
-    s.rate = s.moved ? s.rate + weight(o.rate_cutoff, dt) * (angle / dt - s.rate) : angle / dt;
+    // In the tangent space at the sample.
+    const Vec3 before = turn_of(glm::conjugate(sample) * s.raw), value = turn_of(glm::conjugate(sample) * s.value);
+    const double rate = glm::length(before) / dt;
+    s.rate = s.moved ? s.rate + share(o.rate_cutoff, dt) * (rate - s.rate) : rate;
     s.moved = true;
-    s.value = glm::normalize(glm::slerp(s.value, sample, weight(o.cutoff + o.beta * s.rate, dt)));
+    const Vec3 left = low_pass(value, before, Vec3{0}, dt, o.cutoff + o.beta * s.rate);
+    s.value = glm::normalize(sample * rotation_by(left));
     s.raw = sample;
     s.time = time;
     return s.value;
@@ -113,10 +127,10 @@ TraceSample pull(String& s, const TraceSample& hand, double length) {
         s.tip = s.hand = hand.position;
     }
     s.travel += glm::length(hand.position - s.hand);
+    s.tip = drag_string(s.tip, s.hand, hand.position, length);
     s.hand = hand.position;
     s.past.push_back({s.travel, hand.pressure, hand.tilt});
-    const double behind = drag(s.tip, hand.position, length);
-    const String::Grip grip = grip_at(s, s.travel - behind);
+    const String::Grip grip = grip_at(s, s.travel - glm::distance(s.tip, s.hand));
     TraceSample out = hand;
     out.position = s.tip;
     out.pressure = grip.pressure;
@@ -149,10 +163,10 @@ brush::Pose pull(String& s, const brush::Pose& hand, double length) {
         s.started = true;
         s.tip = s.hand = hand.position;
     }
-    s.hand = hand.position;
     const Vec3 axis = hand.axis();
-    s.tip += glm::dot(hand.position - s.tip, axis) * axis;
-    drag(s.tip, hand.position, length);
+    const auto level = [&](const Vec3& p) { return p + glm::dot(hand.position - p, axis) * axis; };
+    s.tip = drag_string(level(s.tip), level(s.hand), hand.position, length);
+    s.hand = hand.position;
     return {.position = s.tip, .rotation = hand.rotation, .time = hand.time};
 }
 

@@ -12,9 +12,10 @@ namespace tuft::stroke {
 /// One-Euro filter (Casiez, Roussel and Vogel 2012): exponential smoothing whose cutoff
 /// frequency rises with the speed of the signal,
 ///
-///     x̂ += α (x − x̂),  α = 1 / (1 + τ/dt),  τ = 1 / (2π f),  f = cutoff + beta |v̂|
+///     x̂' = (x − x̂) / τ,  τ = 1 / (2π f),  f = cutoff + beta |v̂|
 ///
-/// with v̂ the difference quotient of the raw signal under the fixed cutoff `rate_cutoff`;
+/// solved exactly for a signal that goes evenly from sample to sample, so that the result is that of the motion
+/// whatever its samples' rate; v̂ is the difference quotient of the raw signal under the fixed cutoff `rate_cutoff`;
 /// it starts with the first difference. A vector has one cutoff, from the length of v̂, so a
 /// straight path stays straight. At constant speed v the output lies
 /// v / (2π (cutoff + beta v)) < 1 / (2π beta) behind, whatever the rate of the samples.
@@ -70,7 +71,7 @@ TraceSample smooth(HandFilter& state, const TraceSample& sample, const HandFilte
 brush::Pose smooth(HandFilter& state, const brush::Pose& pose, const HandFilterOptions& options = {});
 
 /// A tip pulled on a string: it stays where it is until the string is taut, then follows
-/// straight towards the hand. |hand − tip| ≤ length always, and a wobble of the hand narrower
+/// straight towards the hand (`drag_string`, exact for a hand that goes straight from sample to sample). |hand − tip| ≤ length always, and a wobble of the hand narrower
 /// than the string's length leaves the tip at rest.
 struct String {
     bool started = false;

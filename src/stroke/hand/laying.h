@@ -24,14 +24,6 @@ Vec3 into_plane(const Vec3& direction, const Vec3& normal);
 std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, const Vec3& origin,
                                             const Vec3& direction, double t_max);
 
-/// Metres from the first sample to each along straight lines; of samples with a `position`.
-template <class Sample>
-std::vector<double> travelled(std::span<const Sample> samples) {
-    std::vector<double> along(samples.size(), 0);
-    for (std::size_t i = 1; i < samples.size(); ++i) along[i] = along[i - 1] + glm::length(samples[i].position - samples[i - 1].position);
-    return along;
-}
-
 /// What a sample brings with it from the hand.
 LaidSample hand_data(const TraceSample& sample);
 

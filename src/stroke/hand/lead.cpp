@@ -5,6 +5,7 @@
 
 #include "brush/sweep.h"
 #include "core/ease.h"
+#include "stroke/hand/tractrix.h"
 
 namespace tuft::stroke {
 namespace {
@@ -107,32 +108,69 @@ namespace {
 
 constexpr double kLean = 0.12;      // radians by which the holder tips ahead where it sets down pressed
 constexpr double kLeanTurns = 4;    // over so many `lead_turn` of travel it comes upright
+constexpr double kAiming = 0.5;     // of `lead_turn`: distance from the first sample at which its direction is taken
+
+/// Direction in which a trace sets out: that of the place where it first is `away` metres from its
+/// first sample. Zero where it never is.
+Vec2 first_direction(std::span<const TraceSample> samples, double away) {
+    const Vec2 first(samples[0].position);
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+        const Vec2 a = Vec2(samples[i - 1].position) - first, b = Vec2(samples[i].position) - first, way = b - a;
+        if (glm::length(b) < away) continue;
+        // |a + t way| = away
+        const double aa = glm::dot(way, way), ab = glm::dot(a, way), c = glm::dot(a, a) - away * away;
+        const double t = aa > 0 ? (-ab + std::sqrt(std::max(0.0, ab * ab - aa * c))) / aa : 1;
+        return glm::normalize(a + std::clamp(t, 0.0, 1.0) * way);
+    }
+    return Vec2{0};
+}
+
+/// Speed over the first `way` metres of path; 0 where it does not move.
+double first_pace(std::span<const TraceSample> samples, double way) {
+    double gone = 0, taken = 0;
+    for (std::size_t i = 1; i < samples.size() && gone < way; ++i) {
+        const double piece = glm::distance(samples[i].position, samples[i - 1].position);
+        const double part = piece > 0 ? std::min(1.0, (way - gone) / piece) : 1;
+        gone += part * piece;
+        taken += part * (samples[i].time - samples[i - 1].time);
+    }
+    return gone > 0 && taken > 0 ? gone / taken : 0;
+}
 
 // The hand of a trace that begins pressed goes the lead while it presses: the tip touches where the trace
 // begins and trails from there. Set down from above it would bend to any side, and a tuft that is
 // pushed before the hand turns over only after centimetres.
-bool set_down(Trace& trace, const HoldOptions& options) {
+bool set_down(Trace& trace, const HoldOptions& options, const Vec2& ahead) {
     constexpr double kStep = 2.5e-4;                 // metres between samples, less where they would be few
     constexpr double kFewest = 8, kMost = 100;
-    constexpr double kShortest = 0.01, kLongest = 0.3;  // seconds
     constexpr double kWay = 3e-3;                    // metres over which the pace is taken
+    constexpr int kPieces = 64;                      // of the press, whose length is measured
+    constexpr double kTouch = 1e-6;                  // of the pressure: the tip is down from the first sample
     const TraceSample first = trace.samples.front();
-    const double way = lead_length(options.lead, depth_of(options, first.pressure));
-    if (!(way > 0)) return false;
-    const int n = static_cast<int>(std::clamp(std::ceil(way / kStep), kFewest, kMost));
-    double gone = 0, taken = 0;
-    for (std::size_t i = 1; i < trace.samples.size() && gone < kWay; ++i) {
-        gone += glm::length(trace.samples[i].position - trace.samples[i - 1].position);
-        taken = trace.samples[i].time - first.time;
+    if (!(lead_length(options.lead, depth_of(options, first.pressure)) > 0)) return false;
+    const double pace = first_pace(trace.samples, kWay);
+    if (!(pace > 0)) return false;
+    // Metres that the foot of the holder goes, ahead and down, up to each pressure.
+    std::vector<double> gone{0};
+    Vec3 foot{0};
+    for (int i = 1; i <= kPieces; ++i) {
+        const double pressure = first.pressure * i / kPieces;
+        const Vec3 next(lead_of(options, pressure, first.tilt, ahead), -depth_of(options, pressure));
+        gone.push_back(gone.back() + glm::distance(next, foot));
+        foot = next;
     }
-    if (gone <= 0) return false;
-    const double duration = std::clamp(taken / gone * way, kShortest, kLongest);
-    for (TraceSample& s : trace.samples) s.time += duration;
+    const double duration = gone.back() / (kSetDownPace * std::max(pace, kSlowestSetDown));
+    const int n = static_cast<int>(std::clamp(std::ceil(gone.back() / kStep), kFewest, kMost));
     std::vector<TraceSample> touch(static_cast<std::size_t>(n), first);
+    std::size_t k = 1;
     for (int i = 0; i < n; ++i) {
+        const double part = static_cast<double>(i) / n, at = part * gone.back();
+        while (k < kPieces && gone[k] < at) ++k;
+        const double span = gone[k] - gone[k - 1];
         TraceSample& s = touch[static_cast<std::size_t>(i)];
-        s.pressure = first.pressure * i / n;
-        s.time = first.time + duration * i / n;
+        const double pressed = (static_cast<double>(k - 1) + (span > 0 ? (at - gone[k - 1]) / span : 0)) / kPieces;
+        s.pressure = first.pressure * std::max(pressed, kTouch);
+        s.time = first.time - (1 - part) * duration;
     }
     trace.samples.insert(trace.samples.begin(), touch.begin(), touch.end());
     return true;
@@ -167,32 +205,33 @@ void set_down_plumb(Trace& trace, const HoldOptions& options) {
 
 Trace lead_hand(Trace trace, const HoldOptions& options) {
     if (options.lead.empty() || trace.samples.empty() || !trace.flat) return trace;
-    const bool pressed = set_down(trace, options);
-    set_down_plumb(trace, options);
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
-    Vec2 dragged = first;
-    for (const TraceSample& s : trace.samples) {
-        const Vec2 way = Vec2(s.position) - first;
-        if (glm::length(way) >= 0.5 * options.lead_turn) {
-            const Vec2 ahead = glm::normalize(way);
-            dragged = first - options.lead_turn * ahead;
-            if (pressed) lean_ahead(trace, options, ahead);
-            break;
-        }
-    }
+    const Vec2 sets_out = first_direction(trace.samples, kAiming * options.lead_turn);
+    const bool pressed = set_down(trace, options, sets_out);
+    set_down_plumb(trace, options);
+    if (pressed && sets_out != Vec2(0)) lean_ahead(trace, options, sets_out);
+    Vec2 dragged = first - options.lead_turn * sets_out, before = first;
     for (TraceSample& s : trace.samples) {
         const Vec2 p(s.position);
-        Vec2 string = p - dragged;
-        const double length = glm::length(string);
-        if (length > options.lead_turn) {
-            string *= options.lead_turn / length;
-            dragged = p - string;
-        }
-        const double depth = depth_of(options, s.pressure);
-        Vec2 ahead = p + (lead_length(options.lead, depth) / options.lead_turn) * string;
-        if (options.leaned) ahead += leaned_lead(options, s.tilt, depth, string / options.lead_turn);
-        s.position = Vec3(ahead, s.position.z);
+        dragged = drag_string(dragged, before, p, options.lead_turn);
+        before = p;
+        s.position = Vec3(p + lead_of(options, s.pressure, s.tilt, (p - dragged) / options.lead_turn), s.position.z);
+    }
+    return trace;
+}
+
+Trace lift_off(Trace trace, const HoldOptions& options) {
+    constexpr int kSamples = 8;
+    if (trace.samples.empty() || !trace.flat || trace.samples.back().pressure > 0) return trace;
+    const double from = -tip_depths<TraceSample>(trace.samples, options).back();
+    const double left = options.hover - from;
+    if (!(left > 1e-3 * options.hover)) return trace;
+    TraceSample s = trace.samples.back();
+    const double begins = s.time, duration = kHoverTime * left / options.hover;
+    for (int i = 1; i <= kSamples; ++i) {
+        s.time = begins + duration * i / kSamples;
+        trace.samples.push_back(s);
     }
     return trace;
 }

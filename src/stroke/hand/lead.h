@@ -1,11 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "brush/preset.h"
 #include "core/types.h"
 #include "stroke/hand/placement.h"
+#include "stroke/hand/tractrix.h"
 
 /// How far the hand runs ahead of the ink.
 namespace tuft::stroke {
@@ -44,16 +49,53 @@ class LeanedLead {
 /// LaidSample). `ahead`: unit, the path's direction in them.
 Vec2 lead_of(const HoldOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead);
 
+/// Times the pace of the trace at which its hand sets the brush down, ahead and down together, and the
+/// least pace that is taken for that, m/s.
+inline constexpr double kSetDownPace = 1.5, kSlowestSetDown = 0.02;
+inline constexpr double kHoverTime = 0.05;  ///< seconds in which the tip goes between touch and `hover`
+
 /// A dragged tuft paints behind the hand, and under a leaning holder aside of it. Moves the samples
 /// of a flat trace ahead along the path by the lead for their depth, and by what their lean
 /// adds, so that the ink will lie where the trace was. The
 /// direction is that of a point dragged behind the trace on a string of `lead_turn` (a
 /// tractrix), taut from the first touch in the direction in which the trace sets out;
 /// where the path reverses, the lead passes through zero. A trace that begins pressed gets samples
-/// before its first, at the same place, in which the pressure rises to it at the trace's pace: the tip
-/// touches first and trails then.
+/// before its first, at the same place and earlier in time, in which the pressure rises to it, the holder moving at
+/// `kSetDownPace` times the trace's pace: the tip touches first and trails then.
 /// A holder that is upright but for 0.05 rad sets the brush down plumb and comes to that lean within 0.3 lengths of the
 /// tuft.
+/// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
+///
+///     |v_holder| ≤ (1 + lead / lead_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'|),
+///
+/// L the tuft's length; and at most `hover / kHoverTime` faster than the hand while it is not.
 Trace lead_hand(Trace trace, const HoldOptions& options);
+
+/// A trace that ends with the pressure 0 gets samples after its last, in which the hand takes the tip
+/// up to `hover`; others stay.
+Trace lift_off(Trace trace, const HoldOptions& options);
+
+/// Metres of the unbent tip below the surface at each of the samples, which have `position`, `pressure`
+/// and `time`: pressure · working depth; where the pressure is 0, minus the height to which the hand has lifted
+/// it: as far as it goes along the path from the nearest pressed sample, or `hover` in `kHoverTime`, what is more,
+/// up to `hover`.
+template <class Sample>
+std::vector<double> tip_depths(std::span<const Sample> samples, const HoldOptions& options) {
+    const std::vector<double> along = travelled(samples);
+    std::vector<double> depths;
+    for (const Sample& s : samples)
+        depths.push_back(s.pressure > 0 ? std::min(s.pressure, 1.0) * options.working_depth : -options.hover);
+    const auto settle = [&](std::size_t i, std::optional<std::size_t>& pressed) {
+        if (samples[i].pressure > 0) pressed = i;
+        if (!pressed || pressed == i) return;
+        const double time = std::abs(samples[i].time - samples[*pressed].time);
+        const double height = std::max(std::abs(along[i] - along[*pressed]), time / kHoverTime * options.hover);
+        depths[i] = std::max(depths[i], -height);
+    };
+    std::optional<std::size_t> before, after;
+    for (std::size_t i = 0; i < samples.size(); ++i) settle(i, before);
+    for (std::size_t i = samples.size(); i-- > 0;) settle(i, after);
+    return depths;
+}
 
 }  // namespace tuft::stroke

@@ -7,9 +7,9 @@
 #include "brush/sweep.h"
 #include "core/ease.h"
 #include "stroke/hand/hold.h"
-#include "stroke/hand/laying.h"
 #include "stroke/hand/lead.h"
 #include "stroke/hand/placement.h"
+#include "stroke/hand/tractrix.h"
 
 namespace tuft::stroke {
 

@@ -103,11 +103,9 @@ HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& 
 
 /// The ferrule over each laid sample. The holder's axis is the surface normal leaned by the
 /// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
-/// pressure · working depth below the sample (hover above it where the pressure is 0), ahead of it by the lead:
+/// `tip_depths` below the sample, ahead of it by the lead:
 /// where the ink is to lie, the hand does what it would do over the plane there.
-/// Normal and height are those of a steady hand: the mean of the normals within `steady` of
-/// travel that lie near it, and the height of the ground felt within that radius (`level_at`), a line through a
-/// quarter of it. It follows ridges and valleys, and passes over grooves narrower than half of the radius.
+/// Normal and height are those of a steady hand (`level_surface` over `steady` of path). It follows ridges and valleys, and passes over grooves narrower than half of the radius.
 /// On a surface of curvature κ along the path the height is κ steady² / 200 off at most.
 std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples,
                               const HoldOptions& options);
@@ -115,11 +113,12 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const L
 /// Poses of a trace in space: its samples as they are, rotations of unit length.
 std::vector<brush::Pose> spatial_poses(const Trace& trace);
 
-/// The whole way for any trace: lead, lay, hold; or the poses as they are for one in space
+/// The whole way for any trace: lead, lay, hold, lift off; or the poses as they are for one in space
 /// (then `laid` is empty).
 struct HandPath {
     LaidTrace laid;
     std::vector<brush::Pose> poses;
+    std::size_t set_down = 0;  ///< of the poses, before that of the trace's first sample; those of the others follow
 };
 HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HoldOptions& options);
 

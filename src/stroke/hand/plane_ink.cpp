@@ -80,15 +80,12 @@ PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HoldOp
                    double step, double cell) {
     const Frame plane_frame;
     std::vector<brush::Pose> poses;
-    const Trace led = lead_hand(trace, options);
-    const double touching = led.samples.empty() ? 0
-                                                : led.samples.back().time -
-                                                      trace.samples.back().time;  // it begins with
-    for (const TraceSample& s : led.samples)
-        poses.push_back(hold_over(
-            {s.position.x, -s.position.y, 0}, 0,
-            {.pressure = std::clamp(s.pressure, 0.0, 1.0), .tilt = s.tilt, .time = s.time},
-            options));
+    const Trace led = lift_off(lead_hand(trace, options), options);
+    const std::vector<double> depths = tip_depths<TraceSample>(led.samples, options);
+    for (std::size_t i = 0; i < led.samples.size(); ++i) {
+        const TraceSample& s = led.samples[i];
+        poses.push_back(hold_over({s.position.x, -s.position.y, 0}, 0, {.depth = depths[i], .tilt = s.tilt, .time = s.time}, options));
+    }
     brush::Tuft tuft = brush::make_tuft(preset);
     const brush::ContactPlane plane;
     PlaneInk ink(cell);
@@ -110,8 +107,7 @@ PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HoldOp
                     footprint::outline_of(trail, footprint::OutlineOptions{}.points);
                 o.left.size() >= 3)
                 outlines.push_back(std::move(o));
-        ink.add(footprint::rasterise(outlines, plane_frame, 0, cell),
-                std::max(0.0, time - touching));
+        ink.add(footprint::rasterise(outlines, plane_frame, 0, cell), std::max(0.0, time));
     }
     return ink;
 }

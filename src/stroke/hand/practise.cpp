@@ -8,8 +8,8 @@
 
 #include "core/ease.h"
 #include "core/interrupt.h"
-#include "stroke/hand/laying.h"
 #include "stroke/hand/plane_ink.h"
+#include "stroke/hand/tractrix.h"
 
 namespace tuft::stroke {
 namespace {

@@ -30,6 +30,7 @@ ContactMotion MotionTracker::advance(const brush::Pose& pose, const contact::Res
 
     const double slip = glm::length(motion.hair);
     hair_travel += slip;
+    contact_travel = touching ? contact_travel + slip : 0;
     if (slip > 0) hair_direction = motion.hair / slip;
     hair_course = touching ? std::exp(-slip / kHairCourse) * hair_course + motion.hair.x * t + motion.hair.y * b : Vec3{0};
 

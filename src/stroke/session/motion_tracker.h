@@ -18,6 +18,7 @@ struct MotionTracker {
     double travel = 0;           ///< metres that the hand has gone while touching
     double speed = 0;            ///< m/s of the hand, over its last 2 mm
     double hair_travel = 0;      ///< metres that hair went over the surface
+    double contact_travel = 0;   ///< of them those since it came to touch
     Vec2 hair_direction{0};      ///< unit, of the hair's last motion, contact frame; zero before the first
     Vec3 hand_course{0};         ///< metres, world: the hand's last 2 mm of travel, less what it goes by pressing or lifting
     Vec3 hair_course{0};         ///< likewise of the hair, over 1 mm

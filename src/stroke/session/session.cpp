@@ -12,6 +12,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kLeap = 0.5;  // of a patch's size: beyond, single marks would part
+constexpr double kPrintTravel = 1e-4;  // metres that dry hair slides after it came to touch until it prints
 
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteSpacing = 1e-4, kPasteCell = 4e-5;
@@ -103,13 +104,14 @@ contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double d
 // The hand's displacement, not the frame's: the patch also grows and shrinks. Hair that lies by itself may swing round.
 // And a patch that leaps by more than it is long, as a tip does that springs back while it is lifted, leaves its line
 // along its own path.
-void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double area, bool continued) const {
+void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double area) const {
     const double leap =
         smooth_step(glm::length(moved.hair - moved.hand) / std::sqrt(std::max(area, 1e-30)) / kLeap);
     stamp.motion.shift = glm::mix(moved.hand, moved.hair, std::max(leap, static_cast<double>(stamp.separation)));
     // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that its
     // stroke, which begins where it has been pressed aside, does not reach.
-    stamp.ds = continued ? spacing_ : (1 - static_cast<double>(stamp.separation)) * spacing_;
+    const bool prints = motion_.contact_travel >= kPrintTravel;
+    stamp.ds = prints ? spacing_ : (1 - static_cast<double>(stamp.separation)) * spacing_;
 }
 
 void StrokeSession::set_ink(Stamp& stamp, double area) const {
@@ -130,7 +132,6 @@ void StrokeSession::step(const brush::Pose& pose) {
     if (!contact.tuft.touching || contact.triangle == kNone) return motion_.lose_contact();
     if (!contact.tuft.converged) ++report_.unconverged;
 
-    const bool continued = motion_.touching;
     const ContactMotion moved = motion_.advance(pose, contact, dt);
     deposit_->settle(tuft_, hair_.by_hair());
     Stamp stamp = hair_.make_stamp(tuft_, contact, motion_, dt);
@@ -141,7 +142,7 @@ void StrokeSession::step(const brush::Pose& pose) {
     if (!stencil_.empty() && !(area > 0)) return;
 
     ++report_.stamps;
-    set_motion(stamp, moved, area, continued);
+    set_motion(stamp, moved, area);
     set_ink(stamp, area);
     report_.ink_given += deposit_->deposit(
         std::move(stamp), tuft_,

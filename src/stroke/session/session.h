@@ -82,7 +82,7 @@ class StrokeSession {
     void paint_poses();
     void step(const brush::Pose& pose);
     contact::Result bend_on_surface(const brush::Pose& pose, double dt);
-    void set_motion(Stamp& stamp, const ContactMotion& moved, double area, bool continued) const;
+    void set_motion(Stamp& stamp, const ContactMotion& moved, double area) const;
     void set_ink(Stamp& stamp, double area) const;
 
     SessionInput input_;
