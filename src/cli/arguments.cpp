@@ -300,7 +300,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("--project", paint.project, "write a project file (.tuft)");
     p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
     p->add_option("--preview", paint.preview, "write a picture (.png)");
-    p->add_option("--forces", paint.forces, "write time, pose, force, force on the hand and moment at every step (.csv)");
+    p->add_option("--forces", paint.forces, "write time, pose, force, force on the hand and moment at every sample of the hand (.csv)");
     add_view(p, paint.view);
     add_common(p, paint.common);
 

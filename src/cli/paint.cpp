@@ -44,15 +44,32 @@ std::vector<const stroke::Stroke*> painted_strokes(const stroke::Journal& journa
     return strokes;
 }
 
+std::string stroke_name(const stroke::StrokeReport& report, const stroke::Stroke& stroke) {
+    const std::string& label = stroke.trace.label;
+    return fmt::format("stroke {}{}", report.stroke_id, label.empty() ? "" : " (" + label + ")");
+}
+
+// Warnings for strokes that go into a closed body, in space or by their place.
+void note_inside(const std::vector<stroke::StrokeReport>& reports,
+                 const std::vector<const stroke::Stroke*>& strokes, Console& console) {
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        const stroke::StrokeReport& r = reports[i];
+        if (r.origin_inside > kInsideNoted)
+            console.note(fmt::format("warning: the place of {} lies {:.2f} mm inside the model; it goes {}", stroke_name(r, *strokes[i]), r.origin_inside / kMillimetre,
+                                     strokes[i]->trace.placement.laying == stroke::Laying::project ? "onto the surface before it" : "to the nearest place of its surface"));
+        if (r.deepest > kInsideNoted)
+            console.note(fmt::format("warning: {} takes the ferrule into the model, {:.2f} mm deep; it is held on the surface there (check the place, the unit and the pressure)",
+                                     stroke_name(r, *strokes[i]), r.deepest / kMillimetre));
+    }
+}
+
 // Warnings for strokes that never met the model.
 void note_misses(const std::vector<stroke::StrokeReport>& reports,
                  const std::vector<const stroke::Stroke*>& strokes, Console& console) {
     for (std::size_t i = 0; i < reports.size(); ++i) {
         if (reports[i].touched()) continue;
-        const std::string& label = strokes[i]->trace.label;
-        console.note(fmt::format("warning: stroke {}{} never touches the model; it stays {:.2f} mm away",
-                                 reports[i].stroke_id, label.empty() ? "" : " (" + label + ")",
-                                 reports[i].nearest / kMillimetre));
+        console.note(fmt::format("warning: {} never touches the model; it stays {:.2f} mm away",
+                                 stroke_name(reports[i], *strokes[i]), reports[i].nearest / kMillimetre));
     }
 }
 
@@ -128,6 +145,7 @@ int run(const Paint& a) {
     console.clear();
     const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal(), n_before);
     note_misses(reports, done, console);
+    note_inside(reports, done, console);
 
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);

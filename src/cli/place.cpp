@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "contact/outside.h"
 #include "core/units.h"
 #include "stroke/hand/drawing.h"
 #include "stroke/hand/room.h"
@@ -67,8 +68,12 @@ void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& mode
             note = fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide{} (see --place-width, --brush)", area.size().x / kMillimetre,
                                scale * area.size().x / kMillimetre, a.brush.empty() ? " with brushes of that scale" : "");
     } else {
-        at = model.query->closest_point(kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]));
+        const Vec3 place = kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]);
+        at = model.query->closest_point(place);
         normal = at->normal;
+        if (const double inside = contact::depth_inside(*model.query, place); inside > kInsideNoted)
+            console.note(fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.2f} mm inside the model; the drawing goes to the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
+                                     a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre));
     }
     if (a.place_mm.empty())
         console.note(fmt::format("the strokes name no place; they go to the {} of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",

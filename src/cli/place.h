@@ -10,6 +10,10 @@
 /// Where drawings and handwriting without a place of their own go.
 namespace tuft::cli {
 
+/// Metres below the surface of a closed model from which on a place or a ferrule is noted as inside it: facets of a fine
+/// mesh lie within the curve that they stand for by less.
+inline constexpr double kInsideNoted = 1e-4;
+
 /// Puts flat strokes that have no place of their own, or all of them when a place is given,
 /// onto the model: as one drawing, upright, its middle at the nearest point to the place, else
 /// at the model's front (-y side) where there is room for it, as near to the middle as can be. Without a width

@@ -399,7 +399,9 @@ nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::Stroke& s) {
             {"ink_mm3", r.ink_given * ink::kFilmUnit * 1e9},
             {"removed_mm3", r.removed.sum() * ink::kFilmUnit * 1e9},
             {"touched", r.touched()},
-            {"nearest_mm", r.nearest / kMillimetre}};
+            {"nearest_mm", r.nearest / kMillimetre},
+            {"inside_mm", r.deepest / kMillimetre},
+            {"origin_inside_mm", r.origin_inside / kMillimetre}};
 }
 
 double peak_megabytes() {

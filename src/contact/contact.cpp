@@ -6,6 +6,7 @@
 
 #include "contact/obb.h"
 #include "contact/outside.h"
+#include "core/ease.h"
 
 namespace tuft::contact {
 namespace {
@@ -15,7 +16,7 @@ using brush::ContactPlane;
 /// A step in work.
 struct Work {
     const mesh::SurfaceQuery& surface;
-    const brush::Pose& pose;
+    brush::Pose pose;   // as asked, or held off the surface
     const Options& options;
     StandOptions stand;
     double radius = 0;  // of the tuft, metres
@@ -31,6 +32,24 @@ Stand stand_of_root(const Work& w, const Memory& memory, double length) {
     const Vec3 from =
         known ? memory.outside : find_outside(w.surface, root, -w.pose.axis(), w.stand);
     return stand_from(w.surface, from, known ? memory.side : 1, root, w.stand);
+}
+
+/// Holds the ferrule's mouth off the surface that it would go through: `kPad` of the tuft's radius where the surface lies
+/// before it, nothing where it lies beside it. Returns how far it would be below the surface, metres.
+double hold_off(Work& w) {
+    constexpr double kPad = 0.5;                   // hair pressed flat under the ferrule
+    constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
+    constexpr int kPasses = 4;
+    const double inside = std::max(0.0, -w.root.height);
+    for (int pass = 0; pass < kPasses && w.root.triangle != kNone; ++pass) {
+        const Vec3& n = w.root.plane.normal;
+        const double before = smooth_step((-glm::dot(n, w.pose.axis()) - kBeside) / (kBefore - kBeside));
+        const double needed = kPad * before * w.radius - w.root.height;
+        if (needed <= w.stand.lift) break;
+        w.pose.position += needed * n;
+        w.root = stand_from(w.surface, w.root.outside, w.root.side, w.pose.position, w.stand);
+    }
+    return inside;
 }
 
 std::vector<Vec3> centres(const brush::Branch& branch) {
@@ -280,25 +299,45 @@ Vec3 hand_force(const brush::Preset& preset, const Result& result, const Options
     return size > preset.force_limit ? force * (preset.force_limit / size) : force;
 }
 
-}  // namespace
+Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::SurfaceQuery& surface,
+                 Memory& memory, double dt, const Options& options, bool approaches);
 
-Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface,
-            Memory& memory, double dt, const Options& options) {
+/// Presses a tuft that has not touched yet down to a pose: straight hair that begins pressed flat has no shape near
+/// enough to start the solve from.
+void approach(brush::Tuft& tuft, const Work& w, Memory& memory) {
+    constexpr int kSteps = 16;
+    for (int i = 0; i < kSteps; ++i) {
+        brush::Pose lifted = w.pose;
+        lifted.position += (1 - static_cast<double>(i) / kSteps) * tuft.preset.length * w.root.plane.normal;
+        step_from(tuft, lifted, w.surface, memory, 0, w.options, true);
+    }
+    memory.touching = false;  // the next pose is the first
+}
+
+Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::SurfaceQuery& surface,
+                 Memory& memory, double dt, const Options& options, bool approaches) {
     Result result;
     const brush::Preset& preset = tuft.preset;
-    const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, pose);
+    std::vector<Vec3> nodes = brush::predicted_nodes(tuft, asked);
     const double thick = 1.2 * preset.radius * std::max(1.0, preset.flatten_max);
     const bool meets =
         overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
-    Work w{surface, pose, options, {}, preset.radius, 0, {}};
+    Work w{surface, asked, options, {}, preset.radius, 0, {}};
     w.stand.reach = 2 * preset.length + thick;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
-    if (meets) w.root = stand_of_root(w, memory, preset.length);
+    if (meets) {
+        w.root = stand_of_root(w, memory, preset.length);
+        result.inside = hold_off(w);
+        if (result.inside > 0 && !memory.touching && !approaches) approach(tuft, w, memory);
+        if (w.pose.position != asked.position) nodes = brush::predicted_nodes(tuft, w.pose);
+    }
+    const brush::Pose& pose = w.pose;
     const bool reachable =
         meets && w.root.triangle != kNone && w.root.height < preset.length + w.near;
     if (!reachable) {
         result.tuft = brush::step(tuft, pose, {}, dt);
+        result.inside = std::max(result.inside, depth_inside(surface, asked.position));
         const auto far = surface.closest_point(nodes.front());
         result.distance = far ? far->distance : std::numeric_limits<double>::infinity();
         memory.touching = false;
@@ -326,10 +365,17 @@ Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery
     }
     result.hand_force = hand_force(preset, result, options);
     memory.touching = result.tuft.touching;
-    memory.root = pose.position;
+    memory.root = asked.position;
     memory.outside = w.root.outside;
     memory.side = w.root.side;
     return result;
+}
+
+}  // namespace
+
+Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface, Memory& memory, double dt,
+            const Options& options) {
+    return step_from(tuft, pose, surface, memory, dt, options, false);
 }
 
 }  // namespace tuft::contact

@@ -203,4 +203,18 @@ Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec
     return exit->position + options.lift * exit->face_normal;
 }
 
+double depth_inside(const mesh::SurfaceQuery& surface, const Vec3& p) {
+    const Box& box = surface.mesh().bounds;
+    if (box.empty() || glm::any(glm::lessThan(p, box.lo)) || glm::any(glm::greaterThan(p, box.hi))) return 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {-1.0, 1.0}) {
+            Vec3 way{0};
+            way[axis] = sign;
+            const auto hit = surface.ray(p, way);
+            if (!hit || glm::dot(hit->face_normal, way) <= 0) return 0;
+        }
+    const auto near = surface.closest_point(p);
+    return near ? near->distance : 0;
+}
+
 }  // namespace tuft::contact

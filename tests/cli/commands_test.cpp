@@ -290,6 +290,40 @@ TEST_F(Commands, ForcesAreATableOfNumbers) {
         last = time;
     }
     EXPECT_GT(rows, 20);
+    // A row for each sample of the hand: the size of a texel has no part in it.
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 512 --forces " + path("fine.csv")).status, 0);
+    const std::string fine = read(path("fine.csv"));
+    EXPECT_EQ(std::count(fine.begin(), fine.end(), '\n'), rows + 1);
+}
+
+TEST_F(Commands, WhatIsPlacedInsideASolidIsSaid) {
+    const std::string head = "<ink xmlns='http://www.w3.org/2003/InkML'>", channels = "<channel name='X' type='decimal' units='mm'/><channel name='Y' type='decimal' units='mm'/>";
+    // In space, from outside the sphere of 100 mm into its middle.
+    write("into.inkml", head + "<traceFormat>" + channels + "<channel name='Z' type='decimal' units='mm'/></traceFormat>"
+                               "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0 80, 0 0 60, 0 0 40, 0 0 20</trace></ink>");
+    const Ran into = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --forces " + path("f.csv") + " --strokes " + path("into.inkml"));
+    EXPECT_EQ(into.status, 0) << into.err;
+    EXPECT_NE(into.err.find("ferrule into the model"), std::string::npos) << into.err;
+    std::istringstream csv(read(path("f.csv")));
+    std::string line;
+    std::getline(csv, line);
+    while (std::getline(csv, line)) {
+        std::replace(line.begin(), line.end(), ',', ' ');
+        std::istringstream fields(line);
+        double x, force[3];
+        for (int i = 0; i < 9; ++i) fields >> x;
+        fields >> force[0] >> force[1] >> force[2];
+        EXPECT_LT(std::hypot(force[0], force[1], force[2]), 60) << line;
+    }
+    // Flat, by the file and by the command line.
+    write("flat.inkml", head + "<traceFormat>" + channels + "</traceFormat><annotation type='tuft:origin'>0 -20 0</annotation>"
+                               "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0, 10 0, 20 2</trace></ink>");
+    const Ran flat = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --strokes " + path("flat.inkml"));
+    EXPECT_NE(flat.err.find("mm inside the model"), std::string::npos) << flat.err;
+    const Ran placed = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-20,0 --strokes " + path("flat.inkml"));
+    EXPECT_NE(placed.err.find("--place 0,-20,0 lies"), std::string::npos) << placed.err;
+    const Ran on = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-50,0 --strokes " + path("flat.inkml"));
+    EXPECT_EQ(on.err.find("inside"), std::string::npos) << on.err;
 }
 
 TEST_F(Commands, RenderDrawsATurntable) {

@@ -458,5 +458,41 @@ TEST(Outside, NormalTurnsSmoothlyOverAConvexEdge) {
     EXPECT_NEAR(before.x, 1, 1e-6);
 }
 
+TEST(Contact, AFerruleThatWouldEnterTheObjectIsHeldOnItsSurface) {
+    // A block of 200 × 200 × 100 mm, from above into its middle; the tuft, 20 or 32 mm long, once made 2,000 N there.
+    const mesh::TriangleMesh block = shapes::plate({0.1, 0.1, 0.05});
+    const mesh::SurfaceQuery surface(block);
+    for (const char* name : {"wolf-medium", "goat-small"}) {
+        Hand hand(surface, name);
+        const double length = hand.preset().length, down = 0.05 - length;
+        double flat = 0;  // force where the ferrule rests on pressed hair
+        for (double below = -length; below < 0.06; below += 1e-4) {  // of the ferrule's mouth
+            const Result r = hand.move({0, 0, down - below});
+            const double force = glm::length(r.tuft.force);
+            if (below < -0.5 * hand.preset().radius) flat = std::max(flat, force);
+            ASSERT_LT(force, 1.1 * flat + 1) << name << ", " << below;
+            EXPECT_NEAR(r.inside, std::max(0.0, below), 3e-5) << "what a stand is lifted by";
+        }
+        EXPECT_LT(flat, 60) << "a firm press of a whole arm";
+        // One that begins there is solved, too.
+        Hand inside(surface, name);
+        const Result first = inside.move({0, 0, down - 0.02});
+        EXPECT_NEAR(first.inside, 0.02, 3e-5);
+        EXPECT_TRUE(first.tuft.converged) << name;
+        EXPECT_LT(glm::length(first.tuft.force), 1.1 * flat + 1);
+        EXPECT_GT(first.tuft.force.z, 0);
+    }
+}
+
+TEST(Contact, DepthInsideTellsClosedBodiesOnly) {
+    const mesh::TriangleMesh block = shapes::plate({0.1, 0.1, 0.05}), sheet = shapes::sheet(), bowl = shapes::bowl(0.05);
+    const mesh::SurfaceQuery in_block(block), on_sheet(sheet), in_bowl(bowl);
+    EXPECT_NEAR(depth_inside(in_block, {0, 0, 0.02}), 0.03, 1e-6);
+    EXPECT_NEAR(depth_inside(in_block, {-0.09, 0.01, 0}), 0.01, 1e-6);
+    for (const Vec3& p : {Vec3{0, 0, 0.06}, {0.2, 0, 0}, {-0.1001, 0, 0}}) EXPECT_EQ(depth_inside(in_block, p), 0);
+    for (const double z : {-0.01, 0.0, 0.01}) EXPECT_EQ(depth_inside(on_sheet, {0.01, 0.02, z}), 0);
+    for (const Vec3& p : {Vec3{0, 0, -0.04}, {0, 0, -0.06}, {0.03, 0, -0.001}}) EXPECT_EQ(depth_inside(in_bowl, p), 0);
+}
+
 }  // namespace
 }  // namespace tuft::contact

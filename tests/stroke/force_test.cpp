@@ -95,5 +95,50 @@ TEST(Forces, TellWhenTheSurfaceIsNear) {
     EXPECT_GT(resting(0.5 * kTolerance).z, 0);
 }
 
+TEST(Forces, AreRecordedAtTheHandsSamplesWhateverTheTexels) {
+    // A press, a drag and a lift at 1 kHz, and each sample twice as a device repeats itself.
+    Stroke s = press_drag_lift("wolf-small", 4e-3);
+    std::vector<TraceSample> twice;
+    for (const TraceSample& p : s.trace.samples) twice.insert(twice.end(), 2, p);
+    s.trace.samples = twice;
+    std::vector<std::vector<ForceRecord>> logs;
+    for (const std::uint32_t texels : {1024u, 512u, 256u}) {
+        const Model model = sheet({}, texels);
+        Painting painting(model, {.record_forces = true});
+        logs.push_back(painting.paint(s).forces);
+        ASSERT_EQ(logs.back().size(), s.trace.samples.size());
+        for (std::size_t i = 0; i < logs.back().size(); ++i) {
+            EXPECT_EQ(logs.back()[i].pose.time, s.trace.samples[i].time);
+            EXPECT_EQ(logs.back()[i].pose.position, s.trace.samples[i].position);
+        }
+    }
+    double greatest = 0;
+    for (const ForceRecord& f : logs[0]) greatest = std::max(greatest, glm::length(f.force));
+    for (std::size_t k = 1; k < logs.size(); ++k) {
+        double squares = 0;
+        for (std::size_t i = 0; i < logs[k].size(); ++i) {
+            squares += std::pow(glm::distance(logs[k][i].force, logs[0][i].force), 2);
+        }
+        // Steps of 0.06, 0.12 and 0.25 mm: friction is found at each.
+        EXPECT_LT(std::sqrt(squares / double(logs[k].size())), 0.05 * greatest) << k;
+    }
+}
+
+TEST(Forces, OfAFlatStrokeAreThoseOfItsOwnSamples) {
+    const Model model = sheet();
+    Stroke s;
+    s.trace.brush = "goat-small";
+    s.trace.ink = "carbon";
+    s.trace.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, Laying::wrap};
+    for (int i = 0; i <= 100; ++i)
+        s.trace.samples.push_back({.time = 0.005 * i, .position = {-0.01 + 2e-4 * i, 0, 0}, .pressure = i == 100 ? 0 : 0.3});
+    Painting painting(model, {.record_forces = true});
+    const std::vector<ForceRecord> forces = painting.paint(s).forces;
+    // It is set down before them and lifted off behind; neither has a sample of the hand.
+    ASSERT_EQ(forces.size(), s.trace.samples.size());
+    for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_EQ(forces[i].pose.time, s.trace.samples[i].time);
+    EXPECT_GT(glm::length(forces.front().force), 0.01) << "pressed already";
+}
+
 }  // namespace
 }  // namespace tuft::stroke

@@ -152,16 +152,29 @@ void Resampler::emit_segment(const Pose& before, const Pose& after, std::vector<
         since_last_ += piece - used;
         last = next;
     }
+    places_.push_back(static_cast<double>(emitted_ - 1) + since_last_ / options_.step);
+}
+
+std::vector<double> Resampler::places() const {
+    std::vector<double> places;
+    for (const std::uint32_t sample : merged_)
+        if (sample < places_.size()) places.push_back(places_[sample]);
+    return places;
 }
 
 void Resampler::push(Pose sample, std::vector<Pose>& out) {
     if (!window_.empty()) {
         sample.time = std::max(sample.time, window_.back().time);
-        if (pose_distance(window_.back(), sample, options_) <= 0) return;
+        if (pose_distance(window_.back(), sample, options_) <= 0) {
+            merged_.push_back(merged_.back());
+            return;
+        }
     }
+    merged_.push_back(merged_.empty() ? 0 : merged_.back() + 1);
     if (window_.empty()) {
         window_.push_back(sample);
         emit(sample, out);
+        places_.push_back(0);
         return;
     }
     window_.push_back(sample);

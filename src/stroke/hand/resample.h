@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <span>
 #include <vector>
@@ -35,6 +36,9 @@ class Resampler {
     void push(brush::Pose sample, std::vector<brush::Pose>& out);
     /// Ends the path: appends what is left, ending with the last sample.
     void finish(std::vector<brush::Pose>& out);
+    /// Where the samples lie among the poses given out, in steps from the first pose: pose k lies at k, but the one that
+    /// `finish` ends with, which lies at the last sample. One for each sample pushed that lies behind the last pose.
+    std::vector<double> places() const;
 
   private:
     void emit_segment(const brush::Pose& before, const brush::Pose& after, std::vector<brush::Pose>& out);
@@ -45,6 +49,8 @@ class Resampler {
     std::size_t emitted_ = 0;
     double since_last_ = 0;           ///< length since the last pose given out, metres
     bool has_before_ = false;
+    std::vector<std::uint32_t> merged_;  ///< for each sample pushed, which of those that differ it is
+    std::vector<double> places_;         ///< of those that differ
 };
 
 /// All at once.

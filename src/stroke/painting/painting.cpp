@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "contact/outside.h"
 #include "ink/colour/match.h"
 #include "stroke/hand/hand.h"
 #include "stroke/session/session.h"
@@ -239,8 +240,8 @@ void Painting::cancel() {
     forget_pigments(known_pigments_);
 }
 
-std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
-    if (!stroke.trace.flat) return spatial_poses(stroke.trace);
+HandPath Painting::path_of(const Stroke& stroke) {
+    if (!stroke.trace.flat) return {{}, spatial_poses(stroke.trace), 0};
     const brush::Preset& preset = brush(stroke.trace.brush);
     const mesh::SurfaceQuery& query = *ground_of(stroke).query;
     HoldOptions options = hold_options(preset, query.mesh());
@@ -251,7 +252,7 @@ std::vector<brush::Pose> Painting::poses_of(const Stroke& stroke) {
         LeanedLead& leaned = leaned_leads_.try_emplace(preset.name, preset).first->second;
         options.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
     }
-    return hand_path(query, steady(stroke.trace, stroke.settings), options).poses;
+    return hand_path(query, steady(stroke.trace, stroke.settings), options);
 }
 
 StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
@@ -262,13 +263,17 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
         return {.stroke_id = stroke.id};
     }
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
-    const std::vector<brush::Pose> poses = poses_of(stroke);
+    const HandPath path = path_of(stroke);
+    const std::vector<brush::Pose>& poses = path.poses;
     begin_session(stroke);
     session_->set_progress(progress);
+    session_->begin_with_set_down(path.set_down);
     try {
         for (std::size_t i = 0; i < poses.size(); ++i)
             session_->advance(std::span(poses).subspan(i, 1), static_cast<double>(i + 1) / static_cast<double>(poses.size()));
-        return finish_session();
+        StrokeReport report = finish_session();
+        if (stroke.trace.flat) report.origin_inside = contact::depth_inside(*ground_of(stroke).query, stroke.trace.placement.origin);
+        return report;
     } catch (...) {
         cancel();
         throw;

@@ -246,7 +246,7 @@ class Painting {
     ink::Mix mix_of(const std::string& ink);
     void apply_recolours();
     void repaint_all();
-    std::vector<brush::Pose> poses_of(const Stroke& stroke);
+    HandPath path_of(const Stroke& stroke);
 
     const Model* model_;
     PaintingOptions options_;

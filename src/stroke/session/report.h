@@ -7,9 +7,9 @@
 
 namespace tuft::stroke {
 
-/// Forces at one pose.
+/// Forces at one sample of the hand.
 struct ForceRecord {
-    brush::Pose pose;
+    brush::Pose pose;          ///< that the sample held the brush in, at the sample's time
     Vec3 force{0};             ///< newtons, of the surface on the tuft: normal and friction
     Vec3 hand_force{0};        ///< newtons, for a haptic device: contact::Result::hand_force (gain,
                                ///< proximity, clamp), which has come through the mass of the wet
@@ -28,7 +28,10 @@ struct StrokeReport {
     double ink_left = 0;             ///< film·m², in the tuft
     ink::Amounts removed;            ///< by an eraser, of all films of its layer
     double nearest = 0;              ///< metres: least distance of tuft and model; 0 when it touched
-    std::vector<ForceRecord> forces; ///< only when asked for
+    std::size_t inside = 0;          ///< poses whose ferrule would be within the model: it was held on the surface
+    double deepest = 0;              ///< metres that it would be below the surface at most
+    double origin_inside = 0;        ///< metres that the origin of the stroke's placement lies within the model
+    std::vector<ForceRecord> forces; ///< one for each sample of the stroke, in order; only when asked for
 
     bool touched() const { return stamps > 0; }
 };

@@ -70,7 +70,9 @@ void StrokeSession::advance(std::span<const brush::Pose> poses, double done) {
     for (const brush::Pose& pose : poses) {
         ++report_.samples;
         const bool prepared = input_.stroke.trace.flat;
-        path_.resampler.push(prepared ? pose : steady(path_.steady, pose, input_.stroke.settings), path_.poses);
+        const brush::Pose held = prepared ? pose : steady(path_.steady, pose, input_.stroke.settings);
+        if (input_.record_forces) forces_.samples.push_back(held);
+        path_.resampler.push(held, path_.poses);
     }
     paint_poses();
     done_ = done;
@@ -95,8 +97,10 @@ contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double d
     deposit_->pass_time(dt);
     tuft_.bend(contact.tuft, pose);
     report_.nearest = std::min(report_.nearest, contact.distance);
+    report_.inside += contact.inside > 0;
+    report_.deepest = std::max(report_.deepest, contact.inside);
     if (input_.record_forces)
-        report_.forces.push_back(
+        forces_.poses.push_back(
             {pose, contact.tuft.force, contact.hand_force, contact.tuft.moment, contact.tuft.root_moment});
     return contact;
 }
@@ -153,6 +157,26 @@ void StrokeSession::step(const brush::Pose& pose) {
          .drain = tuft_.drain(pose, contact.frame.origin, input_.stroke.settings.down)});
 }
 
+// Linear in path between the poses to both sides of each sample.
+std::vector<ForceRecord> StrokeSession::forces_at_samples() const {
+    const std::vector<double> places = path_.resampler.places();
+    const std::vector<ForceRecord>& poses = forces_.poses;
+    const std::size_t own = input_.stroke.trace.samples.size();
+    std::vector<ForceRecord> records;
+    if (poses.empty()) return records;
+    const std::size_t last = poses.size() - 1;
+    for (std::size_t i = forces_.before_first; i < std::min(forces_.before_first + own, places.size()); ++i) {
+        const std::size_t k = std::min(static_cast<std::size_t>(places[i]), last), next = std::min(k + 1, last);
+        const double from = static_cast<double>(k), to = next == last ? places.back() : static_cast<double>(next);
+        const double part = to > from ? std::clamp((places[i] - from) / (to - from), 0.0, 1.0) : 1;
+        const ForceRecord &a = poses[k], &b = poses[next];
+        records.push_back({forces_.samples[i], glm::mix(a.force, b.force, part),
+                           glm::mix(a.hand_force, b.hand_force, part), glm::mix(a.torque, b.torque, part),
+                           std::lerp(a.moment, b.moment, part)});
+    }
+    return records;
+}
+
 SessionResult StrokeSession::finish() {
     path_.resampler.finish(path_.poses);
     paint_poses();
@@ -160,6 +184,7 @@ SessionResult StrokeSession::finish() {
     report_.ink_left = tuft_.brush.reservoir.remaining();
     report_.removed = deposit_->removed();
     if (report_.touched()) report_.nearest = 0;
+    if (input_.record_forces) report_.forces = forces_at_samples();
     tuft_.brush.named = input_.stroke.trace.ink;
     return {std::move(report_), std::move(tuft_.brush), target_.take_snapshots()};
 }

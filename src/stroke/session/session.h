@@ -51,6 +51,8 @@ class StrokeSession {
     void set_progress(ProgressFn progress) { progress_ = std::move(progress); }
     /// Paints on. `done`: part of the stroke that is reported as done.
     void advance(std::span<const brush::Pose> poses, double done = 0);
+    /// The first `poses` of those to come set the brush down; the stroke's own samples come after them.
+    void begin_with_set_down(std::size_t poses) { forces_.before_first = poses; }
     /// Poses of a hand in space: kept as samples of the stroke, then painted.
     void extend(std::span<const brush::Pose> poses);
     /// Paints what is left and ends the stroke.
@@ -78,7 +80,14 @@ class StrokeSession {
         contact::Options options;
         Vec3 device_force{0};
     };
+    /// What is recorded of the forces, where it is asked for.
+    struct ForceLog {
+        std::vector<brush::Pose> samples;   // as they were resampled
+        std::vector<ForceRecord> poses;     // at every pose of the resampled path
+        std::size_t before_first = 0;       // samples before the stroke's own
+    };
     std::unique_ptr<DepositModel> make_deposit();
+    std::vector<ForceRecord> forces_at_samples() const;
     void paint_poses();
     void step(const brush::Pose& pose);
     contact::Result bend_on_surface(const brush::Pose& pose, double dt);
@@ -96,6 +105,7 @@ class StrokeSession {
     LaidTape stencil_;
     StampTarget target_;
     std::unique_ptr<DepositModel> deposit_;
+    ForceLog forces_;
     StrokeReport report_;
     ProgressFn progress_;
     double done_ = 0;            // part of the stroke
