@@ -55,11 +55,14 @@ void parallel_for(std::size_t n, std::size_t grain,
         return;
     }
     arena().execute([&] {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
-                          [&](const tbb::blocked_range<std::size_t>& r) {
-                              check_interrupt();
-                              body(r.begin(), r.end());
-                          });
+        // A thread that waits for a loop within a loop takes nothing of the outer one meanwhile, which may wait for it.
+        tbb::this_task_arena::isolate([&] {
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                              [&](const tbb::blocked_range<std::size_t>& r) {
+                                  check_interrupt();
+                                  body(r.begin(), r.end());
+                              });
+        });
     });
 }
 

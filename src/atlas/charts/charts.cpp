@@ -130,7 +130,8 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
         });
         std::vector<FlatChart> flat(pieces.size());
         std::vector<std::vector<Piece>> parts(pieces.size());
-        run_tasks(pieces.size(), [&](std::size_t i) {
+        const auto size = [&](std::size_t i) { return static_cast<double>(pieces[i].triangles.size()); };
+        run_tasks_within(pieces.size(), flattened_at_once(mesh.n_triangles()), size, [&](std::size_t i) {
             const MeterPart part(meter, static_cast<double>(pieces[i].triangles.size()));
             if (flatten_piece(mesh, cut, pieces[i], options, part, flat[i])) return;
             flat[i] = {};

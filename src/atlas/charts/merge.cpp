@@ -116,7 +116,8 @@ class Merger {
             if (trials.empty()) break;
             for (const Trial& t : trials) set_glued(t, true);
             const std::vector<std::uint32_t> order = largest_first(trials);
-            run_tasks(order.size(), [&](std::size_t i) {
+            const auto size = [&](std::size_t i) { return double(n_triangles(trials[order[i]])); };
+            run_tasks_within(order.size(), flattened_at_once(mesh_.n_triangles()), size, [&](std::size_t i) {
                 Trial& t = trials[order[i]];
                 MeterPart part(meter, double(n_triangles(t)));
                 attempt(t, part);

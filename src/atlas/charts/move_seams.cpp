@@ -57,7 +57,8 @@ class Mover {
             std::stable_sort(trials.begin(), trials.end(), [&](const Trial& a, const Trial& b) {
                 return n_triangles(a) > n_triangles(b);
             });
-            run_tasks(trials.size(), [&](std::size_t i) {
+            const auto size = [&](std::size_t i) { return double(n_triangles(trials[i])); };
+            run_tasks_within(trials.size(), flattened_at_once(mesh_.n_triangles()), size, [&](std::size_t i) {
                 Trial& t = trials[i];
                 MeterPart part(meter, double(n_triangles(t)));
                 t.good = true;

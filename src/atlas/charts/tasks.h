@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
+#include <mutex>
+#include <vector>
 
 #include "core/parallel.h"
 
@@ -25,6 +28,56 @@ void run_tasks_by_worker(std::size_t n, Task&& task) {
 template <class Task>
 void run_tasks(std::size_t n, Task&& task) {
     run_tasks_by_worker(n, [&](std::size_t i, std::size_t) { task(i); });
+}
+
+/// The same, but tasks that run at once have a weight of `most` together, unless it is one alone: each thread takes the
+/// first one that fits, or waits. Bounds the memory that tasks take by their size. weight(i) never changes.
+template <class Weight, class Task>
+void run_tasks_within(std::size_t n, double most, Weight&& weight, Task&& task) {
+    std::mutex mutex;
+    std::condition_variable freed;
+    std::vector<bool> started(n, false);
+    std::size_t first = 0, running = 0;
+    double weighs = 0;
+    const auto work = [&] {
+        std::unique_lock lock(mutex);
+        for (;;) {
+            while (first < n && started[first]) ++first;
+            if (first == n) return;
+            std::size_t i = first;
+            while (i < n && (started[i] || (running > 0 && weighs + weight(i) > most))) ++i;
+            if (i == n) {
+                freed.wait(lock);
+                continue;
+            }
+            started[i] = true;
+            ++running;
+            weighs += weight(i);
+            struct Release {
+                std::unique_lock<std::mutex>& lock;
+                std::condition_variable& freed;
+                std::size_t& running;
+                double &weighs, weight;
+                ~Release() {
+                    lock.lock();
+                    weighs = --running > 0 ? weighs - weight : 0;
+                    freed.notify_all();
+                }
+            };
+            const Release release{lock, freed, running, weighs, weight(i)};
+            lock.unlock();
+            task(i);
+        }
+    };
+    const std::size_t threads = std::min(n, static_cast<std::size_t>(thread_count()));
+    parallel_for(threads, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t worker = begin; worker < end; ++worker) work();
+    });
+}
+
+/// Triangles of a mesh that are laid flat at once: a quarter of it, and 300,000 at least. Each takes some 0.7 kB meanwhile.
+inline double flattened_at_once(std::size_t n_triangles) {
+    return std::max(3e5, 0.25 * static_cast<double>(n_triangles));
 }
 
 }  // namespace tuft::atlas
