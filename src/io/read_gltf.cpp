@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <set>
 #include <span>
 
 #include "core/bounds.h"
@@ -391,8 +392,8 @@ class Gatherer {
                                                         static_cast<std::uint32_t>(soup_.group_names.size()));
         if (is_new) {
             std::string unlike = name;
-            for (int n = 2; std::count(soup_.group_names.begin(), soup_.group_names.end(), unlike); ++n)
-                unlike = name + " " + std::to_string(n);
+            for (int& n = same_name_[name]; !names_.insert(unlike).second;)
+                unlike = name + " " + std::to_string(n++ + 2);
             soup_.group_names.push_back(std::move(unlike));
             soup_.materials.push_back(material ? material_of(*material) : mesh::Material{.tinted = true});
         }
@@ -565,6 +566,8 @@ class Gatherer {
     std::string name_;
     mesh::PolygonSoup soup_;
     std::map<std::pair<std::string, int>, std::uint32_t> group_of_;
+    std::set<std::string> names_;           ///< of groups
+    std::map<std::string, int> same_name_;  ///< groups of that name after the first
     std::map<int, std::shared_ptr<const mesh::Picture>> pictures_;
     std::vector<bool> bad_;  ///< [n_points] not finite or out of bounds
     bool any_uv_ = false, any_colour_ = false;
