@@ -7,9 +7,9 @@
 
 namespace tuft::cli {
 
-/// From here on, interrupt, termination and hang-up signals ask all work to stop (core/interrupt.h). Work that
-/// has not unwound 0.7 s later, and a second signal, end the program at once; half-written files are removed.
-/// To be called once, before any other thread starts.
+/// From here on, interrupt, termination and hang-up signals ask all work to stop
+/// (core/interrupt.h). Work that has not unwound 0.7 s later, and a second signal, end the program
+/// at once; half-written files are removed. To be called once, before any other thread starts.
 void listen_for_signals();
 
 /// The terminal: progress bars and notes on standard error. The bar is drawn only when

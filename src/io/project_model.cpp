@@ -43,8 +43,10 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
         if (c >= model.atlas.n_charts)
             damaged(path, "a triangle is in a chart that does not exist");
     for (const Vec3f& p : m.positions)
-        if (!within(Vec3(p))) damaged(path, "the model has points that are no numbers or lie more than 10 km away");
-    if (!(m.bounds.diagonal() >= kSmallestModel)) damaged(path, "the model is smaller than a micrometre");
+        if (!within(Vec3(p)))
+            damaged(path, "the model has points that are no numbers or lie more than 10 km away");
+    if (!(m.bounds.diagonal() >= kSmallestModel))
+        damaged(path, "the model is smaller than a micrometre");
     if (!all_finite(m.corner_normals) || !all_finite(m.corner_uvs) ||
         !all_finite(model.atlas.corner_uvs))
         damaged(path, "the model has numbers that are not finite");

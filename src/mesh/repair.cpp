@@ -82,7 +82,9 @@ void Repair::take_points() {
         const Vec3 q = (options_.y_up ? Vec3(p.x, -p.z, p.y) : p) * options_.metres_per_unit;
         const double reach = std::abs(q.x) + std::abs(q.y) + std::abs(q.z);
         if (!within(q))
-            throw Error("the mesh has points that lie more than 10 km from the origin; say its unit, or move it there");
+            throw Error(
+                "the mesh has points that lie more than 10 km from the origin; say its unit, or "
+                "move it there");
         mesh_.positions.emplace_back(q);
         bounds.add(q);
         largest = std::max(largest, reach);
