@@ -356,6 +356,7 @@ void poll_session(Session& s) {
     }
     if (result.work) {
         std::vector<stroke::Misfit> misfits = std::move(result.work->misfits);
+        std::vector<std::string> fit = std::move(result.work->fit);
         const bool revised = !s.revises.empty();
         // Unnamed work that is left for other work is offered again at the next start.
         if (s.painter && !s.strokes.empty() && is_unnamed(s.last.project)) remember_project(s.last.project);
@@ -374,6 +375,7 @@ void poll_session(Session& s) {
         say(s, revised ? "The strokes are painted on the revised model; the former project is as it was." : note);
         s.revises.clear();
         s.misfits = std::move(misfits);
+        s.fit = std::move(fit);
         s.show_misfits = !s.misfits.empty();
     }
     poll_painter(s);

@@ -111,6 +111,7 @@ struct Session {
     std::filesystem::path revises;         ///< project whose strokes what is being opened shall carry
     std::filesystem::path former;          ///< project that the revised model's strokes came from
     std::vector<stroke::Misfit> misfits;   ///< strokes that do not fit a revised model any more
+    std::vector<std::string> fit;          ///< how all strokes lie on it, a sentence each
     bool show_misfits = false;
     bool is_sample = false;                ///< what is being opened; nothing is asked then
     bool model_is_new = false;             ///< the scene must take it over

@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/counted.h"
+#include "core/units.h"
 #include "io/export_maps.h"
 #include "io/image.h"
 #include "io/inkml.h"
@@ -46,12 +47,66 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
     return stroke::rescale_model(std::move(project.model), options);
 }
 
-/// Strokes that do not fit a revised model any more; those that touch nothing where the model is the same.
-std::vector<stroke::Misfit> find_misfits(const Replay& a, const OpenProject& project, stroke::Painting& painting,
-                                         const std::vector<stroke::Stroke>& strokes, const std::vector<stroke::StrokeReport>& reports) {
-    if (a.model.empty()) return stroke::find_misfits(reports, {});
-    const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
-    return stroke::find_misfits(reports, stroke::compare_fit(strokes, length_of, *project.model.query, *painting.model().query));
+/// How the strokes lie on a revised model; which touch nothing where the model is the same.
+struct Fit {
+    std::optional<stroke::ModelMotion> motion;
+    std::vector<stroke::StrokeFit> fits;
+    std::vector<stroke::Misfit> misfits;
+    stroke::FitTotal total;
+};
+
+Fit find_fit(const Replay& a, const OpenProject& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes,
+             const std::vector<stroke::StrokeReport>& reports) {
+    Fit fit;
+    if (!a.model.empty()) {
+        const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
+        const mesh::SurfaceQuery &former = *project.model.query, &revised = *painting.model().query;
+        fit.motion = stroke::find_motion(former, revised);
+        fit.fits = stroke::compare_fit(strokes, length_of, former, revised, fit.motion);
+    }
+    fit.misfits = stroke::find_misfits(reports, fit.fits);
+    fit.total = stroke::total_of(fit.fits, fit.misfits);
+    return fit;
+}
+
+void note_fit(const Fit& fit, Console& console) {
+    for (const stroke::Misfit& m : fit.misfits)
+        console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason));
+    if (fit.motion) console.note("warning: the revised model is the former one " + stroke::describe(*fit.motion));
+    if (!fit.misfits.empty() && !fit.fits.empty()) console.note("warning: " + stroke::describe(fit.total));
+}
+
+nlohmann::json to_json(const stroke::StrokeFit& f) {
+    nlohmann::json j{{"stroke", f.stroke},
+                     {"path_mm", f.way / kMillimetre},
+                     {"moved_mm", f.moved / kMillimetre},
+                     {"moved_most_mm", f.moved_most / kMillimetre},
+                     {"missing", f.missing()},
+                     {"stretched", f.way > 0 ? f.stretched / f.way : 0},
+                     {"length_factor", f.kept > 0 ? f.kept_now / f.kept : 1}};
+    if (f.slid) j["moved_on_model_mm"] = *f.slid / kMillimetre;
+    if (!f.flat) j["deeper_mm"] = f.deeper / kMillimetre;
+    return j;
+}
+
+/// All of the fit; "misfits" is separate.
+nlohmann::json to_json(const Fit& fit) {
+    nlohmann::json strokes = nlohmann::json::array();
+    for (const stroke::StrokeFit& f : fit.fits) strokes.push_back(to_json(f));
+    nlohmann::json j{{"strokes", std::move(strokes)},
+                     {"misfits", fit.total.misfits},
+                     {"moved_mm", fit.total.moved / kMillimetre},
+                     {"moved_most_mm", fit.total.moved_most / kMillimetre},
+                     {"missing", fit.total.missing},
+                     {"stretched", fit.total.stretched}};
+    if (fit.total.slid) j["moved_on_model_mm"] = *fit.total.slid / kMillimetre;
+    if (fit.motion) {
+        const Vec3 shift = stroke::shift_of(*fit.motion) / kMillimetre;
+        j["model"] = {{"shift_mm", {shift.x, shift.y, shift.z}},
+                      {"turn_deg", stroke::turn_of(*fit.motion) / kDegree},
+                      {"scale", fit.motion->scale}};
+    }
+    return j;
 }
 
 /// The map a picture shall hold: the one asked for, or the one the file is called.
@@ -109,11 +164,10 @@ int run(const Replay& a) {
     find_presets(painting, strokes);
     const std::vector<stroke::StrokeReport> reports = painting.replay(strokes, console.progress());
     console.clear();
-    const std::vector<stroke::Misfit> misfits = find_misfits(a, *project, painting, strokes, reports);
+    const Fit fit = find_fit(a, *project, painting, strokes, reports);
     std::size_t missed = 0;
     for (const stroke::StrokeReport& r : reports) missed += !r.touched();
-    for (const stroke::Misfit& m : misfits)
-        console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason));
+    note_fit(fit, console);
     show_looks(project->file, painting, a.look, console);
     if (!a.out_project.empty()) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
@@ -126,13 +180,14 @@ int run(const Replay& a) {
     console.clear();
     if (a.common.json) {
         nlohmann::json list = nlohmann::json::array();
-        for (const stroke::Misfit& m : misfits) list.push_back({{"stroke", m.stroke}, {"reason", m.reason}});
+        for (const stroke::Misfit& m : fit.misfits) list.push_back({{"stroke", m.stroke}, {"reason", m.reason}});
         nlohmann::json j{{"project", a.project.string()},
                          {"strokes", reports.size()},
                          {"missed", missed},
                          {"misfits", std::move(list)},
                          {"atlas", to_json(model.atlas, model.atlas_report)},
                          {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
+        if (!a.model.empty()) j["fit"] = to_json(fit);
         print_json(j);
     } else {
         fmt::print("replayed {}, {} of them miss{} the model; atlas {} x {}\n", counted(reports.size(), "stroke"),

@@ -286,6 +286,7 @@ Project& Project::operator=(Project&&) noexcept = default;
 Project Project::open_file(const fs::path& path, std::optional<ProjectLock> lock, const ProgressFn& progress) {
     auto state = guarded(path, [&] { return std::make_unique<State>(path, std::move(lock)); });
     state->overseer.listen(progress);
+    report(progress, "reading", 0);
     state->run(
         [&](SQLite::Database& db) {
             restrain(db);

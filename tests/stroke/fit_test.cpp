@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "core/random.h"
 #include "sheet.h"
 
 namespace tuft::stroke {
@@ -52,6 +57,152 @@ TEST(Fit, AStrokeInTheAirIsNoMisfit) {
     Stroke above = pressed();
     for (TraceSample& s : above.trace.samples) s.position.z += 0.2;
     EXPECT_EQ(reason_on(lifted(-5e-3), above), "");
+}
+
+constexpr std::uint32_t kSmall = 128;  // texels: only the mesh matters here
+
+/// A flat stroke of 30 mm along x, laid on whatever lies at the origin.
+Stroke written(Laying laying) {
+    Stroke s;
+    s.id = 1;
+    s.trace.brush = "wolf-small";
+    s.trace.ink = "carbon";
+    s.trace.placement = {.origin = {0, 0, 0}, .right = {1, 0, 0}, .down = {0, -1, 0}, .laying = laying};
+    for (int i = 0; i <= 100; ++i) s.trace.samples.push_back({.time = 0.01 * i, .position = {0.03 * (i / 100.0 - 0.5), 0, 0}, .pressure = i % 100 == 0 ? 0.0 : 0.5});
+    return s;
+}
+
+StrokeFit fit_on(const mesh::TriangleMesh& revised, const Stroke& stroke, bool with_motion = false) {
+    const Model former = sheet({}, kSmall);
+    const mesh::SurfaceQuery query(revised);
+    const auto motion = with_motion ? find_motion(*former.query, query) : std::nullopt;
+    return compare_fit({stroke}, [](const std::string& brush) { return brush::load_preset(brush).length; }, *former.query, query, motion).at(0);
+}
+
+// Triangles with their middle within `radius` of `centre` are gone.
+mesh::TriangleMesh with_hole(const mesh::TriangleMesh& mesh, const Vec3& centre, double radius) {
+    mesh::TriangleMesh out = mesh;
+    std::vector<std::uint32_t> place(mesh.n_triangles(), kNone);
+    out.triangles.clear();
+    out.corner_normals.clear();
+    out.neighbours.clear();
+    for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) {
+        if (glm::distance((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0, centre) < radius) continue;
+        place[t] = static_cast<std::uint32_t>(out.triangles.size());
+        out.triangles.push_back(mesh.triangles[t]);
+        for (int k = 0; k < 3; ++k) {
+            out.corner_normals.push_back(mesh.corner_normals[3 * t + k]);
+            out.neighbours.push_back(mesh.neighbours[3 * t + k]);
+        }
+    }
+    for (std::uint32_t& n : out.neighbours)
+        if (n != kNone) n = place[n];
+    return out;
+}
+
+// Another mesh of the same sheet: its vertices lie elsewhere in it, and off it by as much as a scan's noise.
+mesh::TriangleMesh remeshed(const mesh::TriangleMesh& mesh) {
+    mesh::TriangleMesh out = mesh;
+    Random random(1);
+    for (Vec3f& p : out.positions) p += Vec3f(random.uniform(-8e-4, 8e-4), random.uniform(-8e-4, 8e-4), random.uniform(-1e-4, 1e-4));
+    return out;
+}
+
+TEST(Fit, AFlatStrokeOnTheSameModelOrAnotherMeshOfItFits) {
+    for (const Laying laying : {Laying::wrap, Laying::drape, Laying::project}) {
+        const StrokeFit same = fit_on(*sheet({}, kSmall).mesh, written(laying), true), finer = fit_on(remeshed(*sheet({}, kSmall).mesh), written(laying), true);
+        EXPECT_EQ(misfit_reason(same), "");
+        EXPECT_EQ(same.moved_most, 0);
+        EXPECT_EQ(same.missing(), 0);
+        EXPECT_EQ(same.stretched, 0);
+        EXPECT_NEAR(same.way, 0.03, 1e-3);
+        EXPECT_FALSE(same.slid);
+        EXPECT_EQ(misfit_reason(finer), "") << static_cast<int>(laying);
+        EXPECT_FALSE(finer.slid);
+    }
+}
+
+TEST(Fit, AFlatStrokeTellsHowFarItsPlaceMoved) {
+    for (const Laying laying : {Laying::wrap, Laying::drape, Laying::project}) {
+        EXPECT_EQ(misfit_reason(fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(laying))), "lies 20.0 mm from where it lay");
+        // Along itself the sheet goes from under the stroke: it stays in space, but not on the model.
+        const Model aside = sheet(make_frame({0, 20e-3, 0}, {0, 0, 1}), kSmall);
+        const StrokeFit fit = fit_on(*aside.mesh, written(laying), true);
+        EXPECT_LT(fit.moved, 1e-6);
+        ASSERT_TRUE(fit.slid);
+        EXPECT_NEAR(*fit.slid, 20e-3, 1e-6);
+        EXPECT_EQ(misfit_reason(fit), "lies 20.0 mm from its place on the model");
+    }
+}
+
+// A hole of 10 mm across the middle of 30 mm; triangles of 3 mm make it ragged.
+TEST(Fit, AHoleUnderAStrokeIsMissingInk) {
+    const StrokeFit flat = fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), written(Laying::project));
+    const StrokeFit space = fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), pressed());
+    for (const StrokeFit& fit : {flat, space}) {
+        EXPECT_NEAR(fit.missing(), 10.0 / 30, 0.1);
+        EXPECT_NE(misfit_reason(fit).find("% of it touches nothing"), std::string::npos) << misfit_reason(fit);
+    }
+}
+
+// Projected onto a plane that leans by 60 degrees along it, a stroke is twice as long.
+TEST(Fit, AStrokeThatIsPulledLongIsToldByItsShare) {
+    const Model steep = sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
+    const StrokeFit fit = fit_on(*steep.mesh, written(Laying::project));
+    EXPECT_NEAR(fit.kept_now / fit.kept, 2, 0.02);
+    EXPECT_GT(fit.stretched, 0.5 * fit.way);
+    EXPECT_NE(misfit_reason(fit).find("stretched or squeezed"), std::string::npos) << misfit_reason(fit);
+}
+
+TEST(Fit, TheTotalSaysWhatAllStrokesDo) {
+    const std::vector<StrokeFit> fits{fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(Laying::wrap)), fit_on(*sheet({}, kSmall).mesh, written(Laying::wrap))};
+    const FitTotal total = total_of(fits, {{1, "moved"}});
+    EXPECT_EQ(total.strokes, 2u);
+    EXPECT_NEAR(total.moved_most, 20e-3, 1e-6);
+    EXPECT_EQ(describe(total), "1 of 2 strokes no longer fit: they lie 20.0 mm from where they lay (20.0 mm at most), 0 % of their ink is missing, 0 % of it is "
+                               "stretched or squeezed by more than a quarter");
+}
+
+/// A model without symmetry: a sheet that is bent up at one side and cut at a corner.
+mesh::TriangleMesh crooked(const std::function<Vec3(const Vec3&)>& moved) {
+    mesh::TriangleMesh m = with_hole(*sheet({}, kSmall).mesh, {0.5 * kSide, 0.5 * kSide, 0}, 0.02);
+    m.bounds = {};
+    std::set<std::uint32_t> used;
+    for (const auto& t : m.triangles) used.insert(t.begin(), t.end());
+    for (std::uint32_t v = 0; v < m.positions.size(); ++v) {
+        Vec3 p(m.positions[v]);
+        p.z = 10 * p.x * p.x + 6 * p.x * p.y;
+        m.positions[v] = Vec3f(moved(p));
+        if (used.contains(v)) m.bounds.add(Vec3(m.positions[v]));
+    }
+    return m;
+}
+
+TEST(ModelMotion, ShiftsTurnsAndSizesOfAWholeModelAreFound) {
+    const mesh::TriangleMesh former = crooked([](const Vec3& p) { return p; });
+    const auto found = [&](const std::function<Vec3(const Vec3&)>& moved) {
+        const mesh::TriangleMesh revised = crooked(moved);
+        const auto motion = find_motion(mesh::SurfaceQuery(former), mesh::SurfaceQuery(revised));
+        if (!motion) return std::string();
+        for (const Vec3f& p : former.positions) EXPECT_LT(glm::distance((*motion)(Vec3(p)), moved(Vec3(p))), 1e-6);
+        for (const Vec3f& p : former.positions) EXPECT_LT(glm::distance(motion->back((*motion)(Vec3(p))), Vec3(p)), 1e-12);
+        return describe(*motion);
+    };
+    EXPECT_EQ(found([](const Vec3& p) { return p; }), "");
+    EXPECT_EQ(found([](const Vec3& p) { return p + Vec3(20e-3, 0, -1e-3); }), "shifted by (20.0, 0.0, -1.0) mm");
+    EXPECT_EQ(found([](const Vec3& p) { return 1.2 * p; }), "1.2 times as large");
+    EXPECT_EQ(found([](const Vec3& p) { return 25.4 * p; }), "25.4 times as large");
+    EXPECT_EQ(found([](const Vec3& p) { return Vec3(p.x, -p.z, p.y); }), "turned by 90 degrees");
+    EXPECT_EQ(found([](const Vec3& p) { return Vec3(-p.x, -p.y, p.z) + Vec3(0, 0, 5e-3); }), "turned by 180 degrees and shifted by (0.0, 0.0, 5.0) mm");
+}
+
+TEST(ModelMotion, AnotherMeshAHoleOrAnotherShapeIsNoMotion) {
+    const mesh::TriangleMesh former = crooked([](const Vec3& p) { return p; });
+    const auto none = [&](const mesh::TriangleMesh& revised) { return !find_motion(mesh::SurfaceQuery(former), mesh::SurfaceQuery(revised)); };
+    EXPECT_TRUE(none(remeshed(former)));
+    EXPECT_TRUE(none(with_hole(former, {-0.01, 0, 0}, 8e-3)));
+    EXPECT_TRUE(none(crooked([](const Vec3& p) { return Vec3(p.x, p.y, 3 * p.z); })));
+    EXPECT_TRUE(none(*sheet(make_frame({0.1, 0, 0}, {0, 0, 1}), kSmall).mesh));
 }
 
 }  // namespace

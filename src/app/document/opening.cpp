@@ -104,7 +104,12 @@ void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn
     const std::vector<stroke::StrokeReport> reports = work.painting->replay(strokes, progress);
     const mesh::TriangleMesh mesh = project.model().mesh;
     const auto length_of = [&](const std::string& brush) { return work.painting->brush(brush).length; };
-    work.misfits = stroke::find_misfits(reports, stroke::compare_fit(strokes, length_of, mesh::SurfaceQuery(mesh), *work.model->query));
+    const mesh::SurfaceQuery before(mesh);
+    const std::optional<stroke::ModelMotion> motion = stroke::find_motion(before, *work.model->query);
+    const std::vector<stroke::StrokeFit> fits = stroke::compare_fit(strokes, length_of, before, *work.model->query, motion);
+    work.misfits = stroke::find_misfits(reports, fits);
+    work.fit = {stroke::describe(stroke::total_of(fits, work.misfits)) + "."};
+    if (motion) work.fit.push_back("The revised model is the former one " + stroke::describe(*motion) + ".");
 }
 
 // In a file from now on, or in memory until there can be one.

@@ -242,6 +242,7 @@ class Painter {
         std::string source;
         FileFrame frame;  ///< of the model file
         std::vector<stroke::Misfit> misfits;  ///< of a revised model: strokes that do not fit it
+        std::vector<std::string> fit;         ///< and how all of them lie on it, for people
         std::filesystem::path spare;  ///< a file for work that cannot be kept in its own at the end
         std::string note;             ///< for the person who opened it
     };
