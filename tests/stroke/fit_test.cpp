@@ -19,7 +19,8 @@ std::string reason_on(const Model& revised, const Stroke& stroke) {
     Painting painting(revised);
     const auto reports = painting.replay({stroke});
     const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
-    const auto misfits = find_misfits(reports, compare_fit(painting.journal().strokes(), length_of, *former.query, *revised.query));
+    const auto misfits = find_misfits(reports, compare_fit(painting.journal().strokes(), length_of,
+                                                           *former.query, *revised.query));
     EXPECT_LE(misfits.size(), 1u);
     return misfits.empty() ? "" : misfits.front().reason;
 }
@@ -30,7 +31,9 @@ Stroke pressed() {
     return s;
 }
 
-Model lifted(double by) { return sheet(make_frame({0, 0, by}, {0, 0, 1})); }
+Model lifted(double by) {
+    return sheet(make_frame({0, 0, by}, {0, 0, 1}));
+}
 
 TEST(Fit, TheSameModelFitsAndSoDoesOneALittleOff) {
     EXPECT_EQ(reason_on(sheet(), pressed()), "");
@@ -42,7 +45,8 @@ TEST(Fit, ASurfaceThatMovedIsToldByItsDistance) {
     EXPECT_EQ(reason_on(lifted(3e-3), pressed()), "pressed 3.0 mm deeper");
     EXPECT_EQ(reason_on(lifted(-1.5e-3), pressed()), "pressed 1.5 mm less deep");
     EXPECT_EQ(reason_on(lifted(-12e-3), pressed()), "touches nothing, 10.0 mm away");
-    EXPECT_EQ(reason_on(lifted(brush::load_preset("wolf-small").length + 1e-3), pressed()), "100 % of it lies inside the model");
+    EXPECT_EQ(reason_on(lifted(brush::load_preset("wolf-small").length + 1e-3), pressed()),
+              "100 % of it lies inside the model");
 }
 
 // A sheet that ends under the middle of the stroke, which goes 15 mm to both sides of it.
@@ -67,16 +71,24 @@ Stroke written(Laying laying) {
     s.id = 1;
     s.trace.brush = "wolf-small";
     s.trace.ink = "carbon";
-    s.trace.placement = {.origin = {0, 0, 0}, .right = {1, 0, 0}, .down = {0, -1, 0}, .laying = laying};
-    for (int i = 0; i <= 100; ++i) s.trace.samples.push_back({.time = 0.01 * i, .position = {0.03 * (i / 100.0 - 0.5), 0, 0}, .pressure = i % 100 == 0 ? 0.0 : 0.5});
+    s.trace.placement = {
+        .origin = {0, 0, 0}, .right = {1, 0, 0}, .down = {0, -1, 0}, .laying = laying};
+    for (int i = 0; i <= 100; ++i)
+        s.trace.samples.push_back({.time = 0.01 * i,
+                                   .position = {0.03 * (i / 100.0 - 0.5), 0, 0},
+                                   .pressure = i % 100 == 0 ? 0.0 : 0.5});
     return s;
 }
 
-StrokeFit fit_on(const mesh::TriangleMesh& revised, const Stroke& stroke, bool with_motion = false) {
+StrokeFit fit_on(const mesh::TriangleMesh& revised, const Stroke& stroke,
+                 bool with_motion = false) {
     const Model former = sheet({}, kSmall);
     const mesh::SurfaceQuery query(revised);
     const auto motion = with_motion ? find_motion(*former.query, query) : std::nullopt;
-    return compare_fit({stroke}, [](const std::string& brush) { return brush::load_preset(brush).length; }, *former.query, query, motion).at(0);
+    return compare_fit(
+               {stroke}, [](const std::string& brush) { return brush::load_preset(brush).length; },
+               *former.query, query, motion)
+        .at(0);
 }
 
 // Triangles with their middle within `radius` of `centre` are gone.
@@ -87,7 +99,9 @@ mesh::TriangleMesh with_hole(const mesh::TriangleMesh& mesh, const Vec3& centre,
     out.corner_normals.clear();
     out.neighbours.clear();
     for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) {
-        if (glm::distance((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0, centre) < radius) continue;
+        if (glm::distance((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0,
+                          centre) < radius)
+            continue;
         place[t] = static_cast<std::uint32_t>(out.triangles.size());
         out.triangles.push_back(mesh.triangles[t]);
         for (int k = 0; k < 3; ++k) {
@@ -100,17 +114,21 @@ mesh::TriangleMesh with_hole(const mesh::TriangleMesh& mesh, const Vec3& centre,
     return out;
 }
 
-// Another mesh of the same sheet: its vertices lie elsewhere in it, and off it by as much as a scan's noise.
+// Another mesh of the same sheet: its vertices lie elsewhere in it, and off it by as much as a
+// scan's noise.
 mesh::TriangleMesh remeshed(const mesh::TriangleMesh& mesh) {
     mesh::TriangleMesh out = mesh;
     Random random(1);
-    for (Vec3f& p : out.positions) p += Vec3f(random.uniform(-8e-4, 8e-4), random.uniform(-8e-4, 8e-4), random.uniform(-1e-4, 1e-4));
+    for (Vec3f& p : out.positions)
+        p += Vec3f(random.uniform(-8e-4, 8e-4), random.uniform(-8e-4, 8e-4),
+                   random.uniform(-1e-4, 1e-4));
     return out;
 }
 
 TEST(Fit, AFlatStrokeOnTheSameModelOrAnotherMeshOfItFits) {
     for (const Laying laying : {Laying::wrap, Laying::drape, Laying::project}) {
-        const StrokeFit same = fit_on(*sheet({}, kSmall).mesh, written(laying), true), finer = fit_on(remeshed(*sheet({}, kSmall).mesh), written(laying), true);
+        const StrokeFit same = fit_on(*sheet({}, kSmall).mesh, written(laying), true),
+                        finer = fit_on(remeshed(*sheet({}, kSmall).mesh), written(laying), true);
         EXPECT_EQ(misfit_reason(same), "");
         EXPECT_EQ(same.moved_most, 0);
         EXPECT_EQ(same.missing(), 0);
@@ -124,8 +142,11 @@ TEST(Fit, AFlatStrokeOnTheSameModelOrAnotherMeshOfItFits) {
 
 TEST(Fit, AFlatStrokeTellsHowFarItsPlaceMoved) {
     for (const Laying laying : {Laying::wrap, Laying::drape, Laying::project}) {
-        EXPECT_EQ(misfit_reason(fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(laying))), "lies 20.0 mm from where it lay");
-        // Along itself the sheet goes from under the stroke: it stays in space, but not on the model.
+        EXPECT_EQ(misfit_reason(fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh,
+                                       written(laying))),
+                  "lies 20.0 mm from where it lay");
+        // Along itself the sheet goes from under the stroke: it stays in space, but not on the
+        // model.
         const Model aside = sheet(make_frame({0, 20e-3, 0}, {0, 0, 1}), kSmall);
         const StrokeFit fit = fit_on(*aside.mesh, written(laying), true);
         EXPECT_LT(fit.moved, 1e-6);
@@ -137,30 +158,38 @@ TEST(Fit, AFlatStrokeTellsHowFarItsPlaceMoved) {
 
 // A hole of 10 mm across the middle of 30 mm; triangles of 3 mm make it ragged.
 TEST(Fit, AHoleUnderAStrokeIsMissingInk) {
-    const StrokeFit flat = fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), written(Laying::project));
+    const StrokeFit flat =
+        fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), written(Laying::project));
     const StrokeFit space = fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), pressed());
     for (const StrokeFit& fit : {flat, space}) {
         EXPECT_NEAR(fit.missing(), 10.0 / 30, 0.1);
-        EXPECT_NE(misfit_reason(fit).find("% of it touches nothing"), std::string::npos) << misfit_reason(fit);
+        EXPECT_NE(misfit_reason(fit).find("% of it touches nothing"), std::string::npos)
+            << misfit_reason(fit);
     }
 }
 
 // Projected onto a plane that leans by 60 degrees along it, a stroke is twice as long.
 TEST(Fit, AStrokeThatIsPulledLongIsToldByItsShare) {
-    const Model steep = sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
+    const Model steep =
+        sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
     const StrokeFit fit = fit_on(*steep.mesh, written(Laying::project));
     EXPECT_NEAR(fit.kept_now / fit.kept, 2, 0.02);
     EXPECT_GT(fit.stretched, 0.5 * fit.way);
-    EXPECT_NE(misfit_reason(fit).find("stretched or squeezed"), std::string::npos) << misfit_reason(fit);
+    EXPECT_NE(misfit_reason(fit).find("stretched or squeezed"), std::string::npos)
+        << misfit_reason(fit);
 }
 
 TEST(Fit, TheTotalSaysWhatAllStrokesDo) {
-    const std::vector<StrokeFit> fits{fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(Laying::wrap)), fit_on(*sheet({}, kSmall).mesh, written(Laying::wrap))};
+    const std::vector<StrokeFit> fits{
+        fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(Laying::wrap)),
+        fit_on(*sheet({}, kSmall).mesh, written(Laying::wrap))};
     const FitTotal total = total_of(fits, {{1, "moved"}});
     EXPECT_EQ(total.strokes, 2u);
     EXPECT_NEAR(total.moved_most, 20e-3, 1e-6);
-    EXPECT_EQ(describe(total), "1 of 2 strokes no longer fit: they lie 20.0 mm from where they lay (20.0 mm at most), 0 % of their ink is missing, 0 % of it is "
-                               "stretched or squeezed by more than a quarter");
+    EXPECT_EQ(describe(total),
+              "1 of 2 strokes no longer fit: they lie 20.0 mm from where they lay (20.0 mm at "
+              "most), 0 % of their ink is missing, 0 % of it is "
+              "stretched or squeezed by more than a quarter");
 }
 
 /// A model without symmetry: a sheet that is bent up at one side and cut at a corner.
@@ -184,21 +213,27 @@ TEST(ModelMotion, ShiftsTurnsAndSizesOfAWholeModelAreFound) {
         const mesh::TriangleMesh revised = crooked(moved);
         const auto motion = find_motion(mesh::SurfaceQuery(former), mesh::SurfaceQuery(revised));
         if (!motion) return std::string();
-        for (const Vec3f& p : former.positions) EXPECT_LT(glm::distance((*motion)(Vec3(p)), moved(Vec3(p))), 1e-6);
-        for (const Vec3f& p : former.positions) EXPECT_LT(glm::distance(motion->back((*motion)(Vec3(p))), Vec3(p)), 1e-12);
+        for (const Vec3f& p : former.positions)
+            EXPECT_LT(glm::distance((*motion)(Vec3(p)), moved(Vec3(p))), 1e-6);
+        for (const Vec3f& p : former.positions)
+            EXPECT_LT(glm::distance(motion->back((*motion)(Vec3(p))), Vec3(p)), 1e-12);
         return describe(*motion);
     };
     EXPECT_EQ(found([](const Vec3& p) { return p; }), "");
-    EXPECT_EQ(found([](const Vec3& p) { return p + Vec3(20e-3, 0, -1e-3); }), "shifted by (20.0, 0.0, -1.0) mm");
+    EXPECT_EQ(found([](const Vec3& p) { return p + Vec3(20e-3, 0, -1e-3); }),
+              "shifted by (20.0, 0.0, -1.0) mm");
     EXPECT_EQ(found([](const Vec3& p) { return 1.2 * p; }), "1.2 times as large");
     EXPECT_EQ(found([](const Vec3& p) { return 25.4 * p; }), "25.4 times as large");
     EXPECT_EQ(found([](const Vec3& p) { return Vec3(p.x, -p.z, p.y); }), "turned by 90 degrees");
-    EXPECT_EQ(found([](const Vec3& p) { return Vec3(-p.x, -p.y, p.z) + Vec3(0, 0, 5e-3); }), "turned by 180 degrees and shifted by (0.0, 0.0, 5.0) mm");
+    EXPECT_EQ(found([](const Vec3& p) { return Vec3(-p.x, -p.y, p.z) + Vec3(0, 0, 5e-3); }),
+              "turned by 180 degrees and shifted by (0.0, 0.0, 5.0) mm");
 }
 
 TEST(ModelMotion, AnotherMeshAHoleOrAnotherShapeIsNoMotion) {
     const mesh::TriangleMesh former = crooked([](const Vec3& p) { return p; });
-    const auto none = [&](const mesh::TriangleMesh& revised) { return !find_motion(mesh::SurfaceQuery(former), mesh::SurfaceQuery(revised)); };
+    const auto none = [&](const mesh::TriangleMesh& revised) {
+        return !find_motion(mesh::SurfaceQuery(former), mesh::SurfaceQuery(revised));
+    };
     EXPECT_TRUE(none(remeshed(former)));
     EXPECT_TRUE(none(with_hole(former, {-0.01, 0, 0}, 8e-3)));
     EXPECT_TRUE(none(crooked([](const Vec3& p) { return Vec3(p.x, p.y, 3 * p.z); })));

@@ -12,11 +12,12 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kPart = 0.1;       // of the way, that may be lost, buried or stretched
-constexpr double kMost = 0.5;       // of the way: then no depth is worth telling
-constexpr double kDepthPart = 0.5;  // of the depth, that it may change by
+constexpr double kPart = 0.1;          // of the way, that may be lost, buried or stretched
+constexpr double kMost = 0.5;          // of the way: then no depth is worth telling
+constexpr double kDepthPart = 0.5;     // of the depth, that it may change by
 constexpr double kLeastChange = 2e-4;  // metres of depth that nobody sees
-constexpr double kLeastMove = 1e-3, kMovePart = 0.01;  // metres, and part of the way, that a place may move by
+constexpr double kLeastMove = 1e-3,
+                 kMovePart = 0.01;  // metres, and part of the way, that a place may move by
 constexpr double kStretch = 1.25;   // times as long, or short
 constexpr double kPiece = 5e-3;     // metres of path that are measured together
 constexpr double kTouch = 1e-4;     // metres that a single touch counts as
@@ -36,7 +37,8 @@ struct Place {
     Vec3 gone{0};  ///< where it would lie now, on the surface or not
 };
 
-void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::optional<ModelMotion>& motion) {
+void add_places(StrokeFit& fit, const std::vector<Place>& places,
+                const std::optional<ModelMotion>& motion) {
     std::vector<double> moved, slid;
     double piece = 0, now = 0;
     const auto end_piece = [&] {
@@ -48,10 +50,13 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Place& p = places[i];
         if (!p.was) continue;
-        const double step = std::max(kTouch / static_cast<double>(places.size()), i > 0 ? glm::distance(p.hand, places[i - 1].hand) : 0.0);
+        const double step = std::max(kTouch / static_cast<double>(places.size()),
+                                     i > 0 ? glm::distance(p.hand, places[i - 1].hand) : 0.0);
         fit.way += step;
-        if (p.buried) fit.buried += step;
-        else if (!p.is) fit.lost += step;
+        if (p.buried)
+            fit.buried += step;
+        else if (!p.is)
+            fit.lost += step;
         if (p.is || fit.flat) {
             moved.push_back(glm::distance(p.gone, *p.was));
             if (motion) slid.push_back(glm::distance(p.gone, (*motion)(*p.was)));
@@ -61,14 +66,16 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
         now += glm::distance(*p.is, *places[i - 1].is);
         if (piece > kPiece) end_piece();
     }
-    // What is left over is short: it says nothing of its own, but for a stroke that is all as short.
+    // What is left over is short: it says nothing of its own, but for a stroke that is all as
+    // short.
     if (fit.kept == 0 && piece > kTouch) end_piece();
     if (!moved.empty()) fit.moved_most = *std::ranges::max_element(moved);
     fit.moved = median(std::move(moved));
     if (!slid.empty()) fit.slid = median(std::move(slid));
 }
 
-StrokeFit fit_in_space(const Stroke& stroke, double length, const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
+StrokeFit fit_in_space(const Stroke& stroke, double length, const mesh::SurfaceQuery& former,
+                       const mesh::SurfaceQuery& revised,
                        const std::optional<ModelMotion>& motion) {
     StrokeFit fit{.stroke = stroke.id};
     std::vector<double> depths, changes;
@@ -95,7 +102,8 @@ StrokeFit fit_in_space(const Stroke& stroke, double length, const mesh::SurfaceQ
     return fit;
 }
 
-StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
+StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former,
+                   const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
     StrokeFit fit{.stroke = stroke.id, .flat = true};
     const Trace trace = steady(stroke.trace, stroke.settings);
     const LaidTrace was = lay(former, trace), now = lay(revised, trace);
@@ -115,8 +123,11 @@ StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former, const
 
 }  // namespace
 
-std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes, const std::function<double(const std::string&)>& length_of,
-                                   const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
+std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
+                                   const std::function<double(const std::string&)>& length_of,
+                                   const mesh::SurfaceQuery& former,
+                                   const mesh::SurfaceQuery& revised,
+                                   const std::optional<ModelMotion>& motion) {
     std::vector<const Stroke*> compared;
     std::vector<double> lengths;  // asked for here: presets are loaded one at a time
     for (const Stroke& stroke : strokes)
@@ -127,36 +138,54 @@ std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes, const std
     std::vector<StrokeFit> fits(compared.size());
     parallel_for(compared.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            fits[i] = compared[i]->trace.flat ? fit_flat(*compared[i], former, revised, motion) : fit_in_space(*compared[i], lengths[i], former, revised, motion);
+            fits[i] = compared[i]->trace.flat
+                          ? fit_flat(*compared[i], former, revised, motion)
+                          : fit_in_space(*compared[i], lengths[i], former, revised, motion);
     });
     return fits;
 }
 
 std::string misfit_reason(const StrokeFit& fit) {
     if (fit.way <= 0) return "";
-    const auto percent = [&](double part) { return static_cast<int>(std::lround(100 * part / fit.way)); };
+    const auto percent = [&](double part) {
+        return static_cast<int>(std::lround(100 * part / fit.way));
+    };
     const double far = std::max(kLeastMove, kMovePart * fit.way);
     std::vector<std::string> reasons;
     // A place in space is the hand's: it moves along the hair only, which the depth tells.
-    if (fit.flat && fit.moved > far) reasons.push_back(fmt::format("lies {:.1f} mm from where it lay", 1e3 * fit.moved));
-    if (fit.slid && *fit.slid > far) reasons.push_back(fmt::format("lies {:.1f} mm from its place on the model", 1e3 * *fit.slid));
+    if (fit.flat && fit.moved > far)
+        reasons.push_back(fmt::format("lies {:.1f} mm from where it lay", 1e3 * fit.moved));
+    if (fit.slid && *fit.slid > far)
+        reasons.push_back(
+            fmt::format("lies {:.1f} mm from its place on the model", 1e3 * *fit.slid));
     const bool sank = std::abs(fit.deeper) > std::max(kLeastChange, kDepthPart * fit.depth);
     // A surface that sank loses the light ends of a stroke too: that it sank says more.
     const double least = (sank ? kMost : kPart) * fit.way;
-    if (fit.lost > least && fit.lost >= fit.buried) reasons.push_back(fmt::format("{} % of it touches nothing", percent(fit.lost)));
-    else if (fit.buried > least) reasons.push_back(fmt::format("{} % of it lies inside the model", percent(fit.buried)));
-    else if (sank) reasons.push_back(fmt::format("pressed {:.1f} mm {}", 1e3 * std::abs(fit.deeper), fit.deeper > 0 ? "deeper" : "less deep"));
-    if (fit.stretched > kPart * fit.way) reasons.push_back(fmt::format("{} % of it is stretched or squeezed by more than a quarter", percent(fit.stretched)));
+    if (fit.lost > least && fit.lost >= fit.buried)
+        reasons.push_back(fmt::format("{} % of it touches nothing", percent(fit.lost)));
+    else if (fit.buried > least)
+        reasons.push_back(fmt::format("{} % of it lies inside the model", percent(fit.buried)));
+    else if (sank)
+        reasons.push_back(fmt::format("pressed {:.1f} mm {}", 1e3 * std::abs(fit.deeper),
+                                      fit.deeper > 0 ? "deeper" : "less deep"));
+    if (fit.stretched > kPart * fit.way)
+        reasons.push_back(fmt::format("{} % of it is stretched or squeezed by more than a quarter",
+                                      percent(fit.stretched)));
     return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
-std::vector<Misfit> find_misfits(const std::vector<StrokeReport>& reports, const std::vector<StrokeFit>& fits) {
+std::vector<Misfit> find_misfits(const std::vector<StrokeReport>& reports,
+                                 const std::vector<StrokeFit>& fits) {
     std::vector<Misfit> found;
     for (const StrokeReport& report : reports) {
-        const auto fit = std::find_if(fits.begin(), fits.end(), [&](const StrokeFit& f) { return f.stroke == report.stroke_id; });
+        const auto fit = std::find_if(fits.begin(), fits.end(), [&](const StrokeFit& f) {
+            return f.stroke == report.stroke_id;
+        });
         std::string reason;
-        if (fit != fits.end() && (report.touched() || !fit->reached)) reason = misfit_reason(*fit);
-        else if (!report.touched()) reason = fmt::format("touches nothing, {:.1f} mm away", 1e3 * report.nearest);
+        if (fit != fits.end() && (report.touched() || !fit->reached))
+            reason = misfit_reason(*fit);
+        else if (!report.touched())
+            reason = fmt::format("touches nothing, {:.1f} mm away", 1e3 * report.nearest);
         if (!reason.empty()) found.push_back({report.stroke_id, std::move(reason)});
     }
     return found;
@@ -182,11 +211,14 @@ FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<Misfit>&
 }
 
 std::string describe(const FitTotal& t) {
-    const std::string on_model = t.slid ? fmt::format(" and {:.1f} mm from their places on the model", 1e3 * *t.slid) : "";
+    const std::string on_model =
+        t.slid ? fmt::format(" and {:.1f} mm from their places on the model", 1e3 * *t.slid) : "";
     return fmt::format(
-        "{} of {} strokes no longer fit: they lie {:.1f} mm from where they lay ({:.1f} mm at most){}, {:.0f} % of their ink is missing, {:.0f} % of it is "
+        "{} of {} strokes no longer fit: they lie {:.1f} mm from where they lay ({:.1f} mm at "
+        "most){}, {:.0f} % of their ink is missing, {:.0f} % of it is "
         "stretched or squeezed by more than a quarter",
-        t.misfits, t.strokes, 1e3 * t.moved, 1e3 * t.moved_most, on_model, 100 * t.missing, 100 * t.stretched);
+        t.misfits, t.strokes, 1e3 * t.moved, 1e3 * t.moved_most, on_model, 100 * t.missing,
+        100 * t.stretched);
 }
 
 }  // namespace tuft::stroke

@@ -29,7 +29,8 @@ bool is_in(const Marks& marks, const EntryMark& mark) {
 template <class Table>
 std::string free_name(const Table& table, const std::string& name) {
     std::string out = name;
-    for (int n = 2; table.find(std::string_view(out)); ++n) out = name.substr(0, kMaxNameBytes - 12) + " (" + std::to_string(n) + ")";
+    for (int n = 2; table.find(std::string_view(out)); ++n)
+        out = name.substr(0, kMaxNameBytes - 12) + " (" + std::to_string(n) + ")";
     return out;
 }
 
@@ -37,7 +38,10 @@ std::string free_name(const Table& table, const std::string& name) {
 class Follower {
   public:
     explicit Follower(std::vector<Stroke>& entries, std::uint64_t first_free)
-        : entries_(entries), next_id_(first_free), layers_(layers_after(entries)), masks_(masks_after(entries)) {
+        : entries_(entries),
+          next_id_(first_free),
+          layers_(layers_after(entries)),
+          masks_(masks_after(entries)) {
         for (const Stroke& s : entries) ids_.insert(s.id);
     }
 
@@ -46,7 +50,10 @@ class Follower {
 
     void append(Stroke entry) {
         const Stroke was = entry;
-        if (entry.action == Action::layer ? map_layer_edit(entry.edit) : entry.action == Action::mask ? map_mask_edit(entry.mask_edit) : map_place(entry)) put(std::move(entry));
+        if (entry.action == Action::layer  ? map_layer_edit(entry.edit)
+            : entry.action == Action::mask ? map_mask_edit(entry.mask_edit)
+                                           : map_place(entry))
+            put(std::move(entry));
         learn(was);
     }
 
@@ -60,11 +67,15 @@ class Follower {
 
     // The names that layers and masks had in their own journal, for the time when they are gone.
     void learn(const Stroke& mine) {
-        if (mine.action == Action::layer && mine.edit.what != LayerChange::remove) layer_names_[mine.edit.layer.id] = mine.edit.layer.name;
-        if (mine.action == Action::mask && !mine.mask_edit.remove) own_masks_[mine.mask_edit.mask.id] = mine.mask_edit.mask;
+        if (mine.action == Action::layer && mine.edit.what != LayerChange::remove &&
+            mine.edit.what != LayerChange::merge)
+            layer_names_[mine.edit.layer.id] = mine.edit.layer.name;
+        if (mine.action == Action::mask && !mine.mask_edit.remove)
+            own_masks_[mine.mask_edit.mask.id] = mine.mask_edit.mask;
     }
 
-    static std::uint32_t mapped(const std::map<std::uint32_t, std::uint32_t>& map, std::uint32_t id) {
+    static std::uint32_t mapped(const std::map<std::uint32_t, std::uint32_t>& map,
+                                std::uint32_t id) {
         const auto at = map.find(id);
         return at == map.end() ? id : at->second;
     }
@@ -80,14 +91,16 @@ class Follower {
 
     bool map_layer_edit(LayerEdit& edit) {
         Layer& layer = edit.layer;
-        if (edit.what == LayerChange::add) {
+        edit.other = mapped(new_layer_, edit.other);
+        if (edit.what == LayerChange::add || edit.what == LayerChange::duplicate) {
             new_layer_[layer.id] = layers_.next_id;
             layer.id = layers_.next_id;
             layer.name = free_name(layers_, layer.name);
             edit.place = std::min(edit.place, static_cast<std::uint32_t>(layers_.layers.size()));
         } else {
             layer.id = mapped(new_layer_, layer.id);
-            edit.place = std::min(edit.place, static_cast<std::uint32_t>(layers_.layers.size() - 1));
+            edit.place =
+                std::min(edit.place, static_cast<std::uint32_t>(layers_.layers.size() - 1));
         }
         return possible(layers_, edit);
     }
@@ -125,7 +138,8 @@ class Follower {
         Stroke entry = action();
         entry.action = Action::layer;
         const auto name = layer_names_.find(id);
-        entry.edit = add_on_top(layers_, free_name(layers_, name == layer_names_.end() ? Layer{}.name : name->second));
+        entry.edit = add_on_top(
+            layers_, free_name(layers_, name == layer_names_.end() ? Layer{}.name : name->second));
         const std::uint32_t added = new_layer_[id] = entry.edit.layer.id;
         put(std::move(entry));
         return added;
@@ -187,8 +201,9 @@ std::uint64_t greatest_id(std::uint64_t most, std::span<const Stroke> entries) {
 EntryMark mark_of(const Stroke& entry) {
     const Trace& t = entry.trace;
     std::uint64_t h = hash_span(std::span<const TraceSample>(t.samples));
-    const double place[] = {t.placement.origin.x, t.placement.origin.y, t.placement.origin.z, t.placement.right.x, t.placement.right.y,
-                            t.placement.right.z,  t.placement.down.x,   t.placement.down.y,   t.placement.down.z};
+    const double place[] = {t.placement.origin.x, t.placement.origin.y, t.placement.origin.z,
+                            t.placement.right.x,  t.placement.right.y,  t.placement.right.z,
+                            t.placement.down.x,   t.placement.down.y,   t.placement.down.z};
     h = hash_bytes(place, sizeof place, h);
     const std::uint64_t rest[] = {t.seed, t.flat, static_cast<std::uint64_t>(t.placement.laying)};
     h = hash_bytes(rest, sizeof rest, h);
@@ -213,7 +228,8 @@ std::vector<EntryMark> marks_of(std::span<const Stroke> entries) {
     return marks;
 }
 
-MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke> mine, std::vector<Stroke> theirs) {
+MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke> mine,
+                             std::vector<Stroke> theirs) {
     const Marks was = by_id(base), own = by_id(marks_of(mine)), other = by_id(marks_of(theirs));
     std::unordered_map<std::uint64_t, const Stroke*> mine_by_id;
     for (const Stroke& s : mine) mine_by_id[s.id] = &s;
@@ -228,7 +244,8 @@ MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke
         merged.news += !is_in(own, mark) && !is_in(was, mark);
         if (before && ours == mine_by_id.end() && is_in(was, mark)) {  // taken out here
             merged.altered = true;
-        } else if (before && ours != mine_by_id.end() && own.at(s.id) != was.at(s.id) && own.at(s.id) != mark.content) {  // changed here
+        } else if (before && ours != mine_by_id.end() && own.at(s.id) != was.at(s.id) &&
+                   own.at(s.id) != mark.content) {  // changed here
             merged.altered = true;
             merged.entries.push_back(*ours->second);
         } else {
@@ -247,8 +264,10 @@ MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke
         const bool changed = !is_in(was, mark);
         // In theirs already: where it was, or written there by this side without its knowing.
         const bool there = is_in(other, mark) || (was.contains(s.id) && other.contains(s.id));
-        if (changed && !there) follower.append(s);
-        else follower.pass(s);
+        if (changed && !there)
+            follower.append(s);
+        else
+            follower.pass(s);
     }
     return merged;
 }
