@@ -14,7 +14,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr std::size_t kPoints = 600;  // of each model
-constexpr double kFarthest = 0.02;    // of the diagonal: farther is as far as it gets
+constexpr double kCountsAs = 0.02;    // of the diagonal: farther is as far as it gets
 constexpr double kSameShape = 0.002;  // of the diagonal, mean distance of models of one shape
 constexpr double kBetter = 0.5;       // of the distance that a smaller motion leaves
 constexpr double kSamePlace =
@@ -60,7 +60,7 @@ double distance(const mesh::SurfaceQuery& query, const Vec3& p, double most) {
 
 // Mean distance of the models, metres of the revised one.
 double gap(const Side& former, const Side& revised, const ModelMotion& motion) {
-    const double most = kFarthest * revised.box.diagonal();
+    const double most = kCountsAs * revised.box.diagonal();
     double sum = 0;
     for (const Vec3& p : former.points) sum += distance(revised.query, motion(p), most);
     for (const Vec3& p : revised.points)
