@@ -103,32 +103,78 @@ Vec3f shade(const Shading& f, float x, float y, std::uint64_t seed) {
     return back * glm::max(1.0f + (light.direct + light.around) / open, 0.02f);
 }
 
-/// Mean colour of a pixel under a tent filter of radius one pixel, as sRGB code values.
-Vec3f pixel_colour(const Shading& f, int x, int y) {
-    const std::uint64_t seed =
-        hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x);
+/// sRGB code values of linear light that is kept below 1.
+Vec3f shown_codes(const Vec3f& light) {
+    return {encode_srgb(light.x), encode_srgb(light.y), encode_srgb(light.z)};
+}
+
+/// The sum of rays [from, to) of a pixel under a tent filter of radius one pixel; clipped light, so that
+/// bright edges come out smooth. Widens `lo` and `hi` by what the rays show.
+Vec3f draw_rays(const Shading& f, int x, int y, std::uint64_t seed, int from, int to, Vec3f& lo, Vec3f& hi) {
     const Vec2f shift = hash_point(seed, 0);
-    const int most = f.options.edge_samples, few = std::max(1, most / 4);
-    Vec3f sum{0}, lo{kInfinity}, hi{-kInfinity};
-    int n = 0;
-    for (; n < most; ++n) {
-        // Contrast that four rays do not show is looked for in the neighbours' sights below.
-        if (n == few && glm::length(hi - lo) < 0.04f) break;
+    const auto tent = [](float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); };
+    Vec3f sum{0};
+    for (int n = from; n < to; ++n) {
         const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(n)) + shift);
-        const auto tent = [](float u) {
-            return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
-        };
         const float sx = static_cast<float>(x) + 0.5f + tent(s.x),
                     sy = static_cast<float>(y) + 0.5f + tent(s.y);
         const Vec3f c = shade(f, sx, sy, hash_bits(seed, static_cast<std::uint64_t>(n) + 1));
-        // Averaging clipped light keeps bright edges smooth.
         const Vec3f shown{shoulder(c.x), shoulder(c.y), shoulder(c.z)};
         sum += shown;
         lo = glm::min(lo, shown);
         hi = glm::max(hi, shown);
     }
-    const Vec3f mean = sum / static_cast<float>(n);
-    return {encode_srgb(mean.x), encode_srgb(mean.y), encode_srgb(mean.z)};
+    return sum;
+}
+
+/// Mean colour of a pixel as sRGB code values. A quarter of `edge_samples` rays do where neither they nor
+/// the pixels round it (`on_edge`) show contrast. Elsewhere rays are doubled until both halves of them, each
+/// of which covers the pixel evenly, agree: a highlight thinner than the pixel is met by few.
+Vec3f pixel_colour(const Shading& f, bool on_edge, int x, int y) {
+    constexpr float kContrast = 8.0f / 255, kAgreement = 5.0f / 255;  // codes: the eye sees most where it is dark
+    constexpr int kMostRays = 8;  // times edge_samples
+    const std::uint64_t seed =
+        hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x);
+    Vec3f lo{kInfinity}, hi{-kInfinity};
+    int n = std::max(1, f.options.edge_samples / 4);
+    Vec3f sum = draw_rays(f, x, y, seed, 0, n, lo, hi);
+    if (!on_edge && glm::length(shown_codes(hi) - shown_codes(lo)) < kContrast) return shown_codes(sum / static_cast<float>(n));
+    while (n < kMostRays * f.options.edge_samples) {
+        const Vec3f more = draw_rays(f, x, y, seed, n, 2 * n, lo, hi);
+        const Vec3f gap = glm::abs(shown_codes(sum / static_cast<float>(n)) - shown_codes(more / static_cast<float>(n)));
+        sum += more;
+        n *= 2;
+        if (n >= f.options.edge_samples && std::max({gap.x, gap.y, gap.z}) < kAgreement) break;
+    }
+    return shown_codes(sum / static_cast<float>(n));
+}
+
+/// Per pixel, whether its middle differs from that of one of the pixels round it by some six codes.
+std::vector<std::uint8_t> find_edges(const Shading& f) {
+    constexpr int kContrast = 6;
+    const std::size_t width = static_cast<std::size_t>(f.camera.width), n = width * f.camera.height;
+    std::vector<std::array<std::uint8_t, 3>> middles(n);
+    parallel_for(n, 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Vec3f c = shade(f, static_cast<float>(k % width) + 0.5f, static_cast<float>(k / width) + 0.5f,
+                                  hash_bits(f.options.seed + 3, k));
+            const Vec3f code = shown_codes({shoulder(c.x), shoulder(c.y), shoulder(c.z)});
+            for (int channel = 0; channel < 3; ++channel)
+                middles[k][static_cast<std::size_t>(channel)] = static_cast<std::uint8_t>(255 * code[channel]);
+        }
+    });
+    std::vector<std::uint8_t> edges(n, 0);
+    parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const int x = static_cast<int>(k % width), y = static_cast<int>(k / width);
+            for (int j = std::max(0, y - 1); j <= std::min(f.camera.height - 1, y + 1); ++j)
+                for (int i = std::max(0, x - 1); i <= std::min(f.camera.width - 1, x + 1); ++i)
+                    for (std::size_t c = 0; c < 3; ++c)
+                        if (std::abs(middles[static_cast<std::size_t>(j) * width + static_cast<std::size_t>(i)][c] - middles[k][c]) > kContrast)
+                            edges[k] = 1;
+        }
+    });
+    return edges;
 }
 
 std::uint8_t quantise(float code, float dither) {
@@ -166,6 +212,7 @@ Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& q
     const Shading shading{scene,   cache,
                           camera,  buffer,
                           options, static_cast<float>(2 * camera.tan_half_height / camera.height)};
+    const std::vector<std::uint8_t> edges = find_edges(shading);
     constexpr int kBand = 32;
     for (int top = 0; top < image.height; top += kBand) {
         report(options.progress, "picture", static_cast<double>(top) / image.height);
@@ -175,7 +222,7 @@ Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& q
                          for (std::size_t i = begin; i < end; ++i) {
                              const std::size_t k = static_cast<std::size_t>(top) * image.width + i;
                              const Vec3f c =
-                                 pixel_colour(shading, static_cast<int>(k % image.width),
+                                 pixel_colour(shading, edges[k] != 0, static_cast<int>(k % image.width),
                                               static_cast<int>(k / image.width));
                              const float dither = static_cast<float>(uniform(options.seed + 2, k));
                              for (int channel = 0; channel < 3; ++channel)
