@@ -479,7 +479,8 @@ TEST(Contact, AFerruleThatWouldEnterTheObjectIsHeldOnItsSurface) {
         const Result first = inside.move({0, 0, down - 0.02});
         EXPECT_NEAR(first.inside, 0.02, 3e-5);
         EXPECT_TRUE(first.tuft.converged) << name;
-        EXPECT_LT(glm::length(first.tuft.force), 1.1 * flat + 1);
+        // It lies otherwise than hair that came there slowly, with friction at rest: a third more.
+        EXPECT_LT(glm::length(first.tuft.force), 1.5 * flat + 1);
         EXPECT_GT(first.tuft.force.z, 0);
     }
 }
