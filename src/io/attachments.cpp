@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kSampleNumbers = 11;  // numbers per sample
 constexpr Packing kTextPacking{.element = 1, .lag = 1, .level = 6}, kNumberPacking{.element = 8, .lag = 1, .level = 6};
-constexpr std::size_t kMostText = std::size_t{1} << 28, kMostNumbers = std::size_t{1} << 28;
+constexpr std::size_t kMostEntryText = std::size_t{1} << 28, kMostNumbers = std::size_t{1} << 28;
 
 // At the head of the bytes: sizes of what follows.
 struct SnapshotHead {
@@ -94,7 +94,7 @@ std::vector<stroke::Stroke> unpack_entries(std::span<const char> bytes, const st
     if (bytes.size() < sizeof head) throw Error(what + " is damaged: it ends too soon");
     std::memcpy(&head, bytes.data(), sizeof head);
     const std::size_t rest = bytes.size() - sizeof head;
-    if (std::memcmp(head.magic, expected.magic, sizeof head.magic) != 0 || head.packed_text > rest || head.text > kMostText || head.numbers > kMostNumbers ||
+    if (std::memcmp(head.magic, expected.magic, sizeof head.magic) != 0 || head.packed_text > rest || head.text > kMostEntryText || head.numbers > kMostNumbers ||
         head.numbers % kSampleNumbers != 0)
         throw Error(what + " is damaged: its head makes no sense");
     const char *text_blob = bytes.data() + sizeof head, *blob = text_blob + head.packed_text;
