@@ -19,7 +19,7 @@ class Views : public StudioProgram {
         for (int i = 0; i < width * height; ++i) rgb.insert(rgb.end(), {230, 20, 30});
         io::write_image(path(name), io::view_of(width, height, 3, rgb.data()));
     }
-    // Red pixels of the picture between two columns.
+    // Red pixels of the picture between two columns; right of 960 is the cross of axes, whose x is red.
     static int red(const std::string& file, int from, int to) {
         const io::Image8 image = io::read_image8(file, std::size_t{1} << 24);
         int n = 0;
@@ -49,12 +49,12 @@ TEST_F(Views, AReferenceImageIsPinnedMovedFadedAndThereAgainWithItsProject) {
     EXPECT_EQ(before["name"], "leaf.png");
     EXPECT_GT(after["x"].get<double>(), before["x"].get<double>() + 0.2);
     EXPECT_GT(after["y"].get<double>(), before["y"].get<double>() + 0.05);
-    EXPECT_GT(red(path("pinned.png"), 284, 1020), 5000);
+    EXPECT_GT(red(path("pinned.png"), 284, 960), 5000);
     const Ran again = studio("open " + path("b.tuft") + "\nwait-ready\nexpect model\nwait 0.2\nexpect label \"reference leaf.png\"\nclick \"fold References\"\nwait 0.1\nclick \"show leaf.png\"\nwait-ready\nwait 0.1\n"
                              "screenshot hidden.png\nclick \"remove leaf.png\"\nwait-ready\nsave c.tuft\nwait-ready\n",
                              "--headless --size 1280x720");
     ASSERT_EQ(again.status, 0) << again.err;
-    EXPECT_LT(red(path("hidden.png"), 284, 1020), 50);
+    EXPECT_LT(red(path("hidden.png"), 284, 960), 50);
     EXPECT_TRUE(io::Project::open(path("c.tuft")).attachments(io::kReferences).empty());
     EXPECT_EQ(io::Project::open(path("b.tuft")).attachments(io::kReferences).size(), 0u) << "it was worked on until it had another name";
 }
@@ -96,10 +96,10 @@ TEST_F(Views, ASnapshotIsComparedSideBySideAndByASwipe) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const int middle = 284 + (1280 - 284 - 252) / 2;
     EXPECT_LT(red(path("side.png"), 290, middle - 4), 20);
-    EXPECT_GT(red(path("side.png"), middle + 4, 1020), 100);
+    EXPECT_GT(red(path("side.png"), middle + 4, 960), 100);
     EXPECT_LT(red(path("old.png"), 290, 940), 20);
-    EXPECT_GT(red(path("new.png"), 380, 1020), 100);
-    EXPECT_GT(red(path("done.png"), 290, 1020), 100);
+    EXPECT_GT(red(path("new.png"), 380, 960), 100);
+    EXPECT_GT(red(path("done.png"), 290, 960), 100);
 }
 
 // An ink of the work's own that no stroke uses any more comes back with a stroke that does.
