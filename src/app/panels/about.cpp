@@ -20,7 +20,8 @@ std::string gl_text(GLenum name) {
 // Name and value of what a report of a fault should say.
 std::vector<std::pair<const char*, std::string>> facts_now() {
     const BuildFacts& b = build_facts();
-    return {{"Version", b.version + " (" + b.released + ")" + (b.commit.empty() ? "" : ", " + b.commit)},
+    return {{"Version",
+             b.version + " (" + b.released + ")" + (b.commit.empty() ? "" : ", " + b.commit)},
             {"Licence", "MIT; with CGAL under GPL-3.0-or-later"},
             {"System", b.system},
             {"Compiler", b.compiler + ", " + b.build_type},
@@ -75,7 +76,8 @@ void about_dialog(Session& s) {
     library_rows(s);
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Copy", 110}, {"Close", 110}});
-    if (ui.button("Copy", "Puts all this on the clipboard, for a report", 110)) ImGui::SetClipboardText(as_text().c_str());
+    if (ui.button("Copy", "Puts all this on the clipboard, for a report", 110))
+        ImGui::SetClipboardText(as_text().c_str());
     ImGui::SameLine();
     const bool close = ui.button("Close", nullptr, 110);
     end_dialog(s);

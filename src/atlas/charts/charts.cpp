@@ -96,6 +96,7 @@ std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const
         parts = parts_of(cut, piece.triangles);
     }
     std::vector<Piece> pieces;
+    pieces.reserve(parts.size());
     for (Triangles& part : parts) pieces.push_back({std::move(part), depth});
     return pieces;
 }

@@ -73,6 +73,7 @@ std::optional<FlatChart> part_of(const Whole& of, std::span<const std::uint32_t>
     part.worst = whole.worst;
     part.l2 = whole.l2;
     std::vector<std::uint32_t> triangles;
+    triangles.reserve(faces.size());
     for (const std::uint32_t f : faces) triangles.push_back(whole.mesh.triangles[f]);
     part.mesh = make_chart(of.mesh, glued, std::move(triangles), of.unit);
     if (!part.mesh.disk) return std::nullopt;

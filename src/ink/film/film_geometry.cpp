@@ -267,7 +267,7 @@ Geometry without_faces(const Geometry& g) {
 }  // namespace
 
 std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9>& in_zone) {
-    auto out = std::make_unique<SplitGeometry>(without_faces(g), without_faces(g));
+    auto out = std::make_unique<SplitGeometry>(SplitGeometry{without_faces(g), without_faces(g)});
     const auto side = [](int i) { return i < 0 ? 0 : i < kSide ? 1 : 2; };
     const auto within = [&](int column, int row) {
         return in_zone[static_cast<std::size_t>(side(row) * 3 + side(column))];

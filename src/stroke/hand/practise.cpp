@@ -349,8 +349,8 @@ void practise(std::span<Trace* const> drawing, WidthTables& tables) {
             Trace& t = *drawing[i];
             if (done[i] || !together(t, *drawing[first])) continue;
             area.line = i;
-            t = practise(std::move(t), brush::load_preset(t.brush), tables.of(t.brush),
-                         tables.hold(t.brush), &area);
+            const std::string brush = t.brush;  // `t` may be moved from before the other arguments are made
+            t = practise(std::move(t), brush::load_preset(brush), tables.of(brush), tables.hold(brush), &area);
             done[i] = true;
         }
     }
