@@ -17,6 +17,7 @@
 #include "io/image.h"
 #include "io/project.h"
 #include "io/read_model.h"
+#include "mesh/surface_query.h"
 #include "studio_program.h"
 
 /// The real program, played by scripts without a display.
@@ -321,8 +322,10 @@ TEST_F(StudioProgram, StrokesKeepToAMaskDrawnOnTheModel) {
     EXPECT_EQ(strokes[1].mask, strokes[0].mask_edit.mask.id);
     // Ink lies where the lasso is, and none at the stroke's start outside it.
     const auto& samples = strokes[1].trace.samples;
+    const mesh::TriangleMesh mesh = io::Project::open(path("masked.tuft")).model().mesh;
+    const mesh::SurfaceQuery surface(mesh);
     const auto pigments_at = [&](const stroke::TraceSample& s) {
-        const Vec3 p = 1e3 * s.position;
+        const Vec3 p = 1e3 * surface.closest_point(s.position)->position;  // below the ferrule
         char text[120];
         std::snprintf(text, sizeof text, "inspect '%s' --at %.4f,%.4f,%.4f", path("masked.tuft").c_str(), p.x, p.y, p.z);
         return tuft(text)["films"].size();

@@ -70,7 +70,7 @@ class WritingOnModel : public ::testing::Test {
         const stroke::Placement placement = place_writing(w, query, at->position, -along, right);
         {
             Painter painter(std::move(work));
-            painter.post(PaintDrawing{placed_writing(w, placement, hand), {}});
+            painter.post(PaintDrawing{placed_writing(w, placement, hand), stroke::group_name(w.file)});
             painter.wait_idle(600);
         }
         return {test::stored_hash(project), place_words(w, placement), io::Project::open(project).strokes()};
