@@ -18,7 +18,7 @@ constexpr int kLiftSamples = 8;
 constexpr double kLook = 0.03;         // seconds of the trace that tell its first speed
 
 // Part of the way to its goal that a first-order lag goes in dt.
-double share(double dt, double constant) { return -std::expm1(-dt / std::max(constant, 1e-6)); }
+double settled_part(double dt, double constant) { return -std::expm1(-dt / std::max(constant, 1e-6)); }
 
 double goal_of(const PressureState& s, const PressureOptions& o) {
     double goal = o.level;
@@ -75,10 +75,10 @@ double press(PressureState& s, const Vec3& position, double time, const Pressure
     const double dt = time - s.time;
     if (!(dt > 0)) return s.pressure;  // the way is counted with the next sample
     const double speed = glm::length(position - s.position) / dt;
-    s.speed += share(dt, o.speed_time) * (speed - s.speed);
+    s.speed += settled_part(dt, o.speed_time) * (speed - s.speed);
     const double slow = s.speed / o.still;
-    s.rest += share(dt, o.dwell_time) * (1 / (1 + slow * slow) - s.rest);
-    s.pressure += share(dt, o.follow) * (goal_of(s, o) - s.pressure);
+    s.rest += settled_part(dt, o.dwell_time) * (1 / (1 + slow * slow) - s.rest);
+    s.pressure += settled_part(dt, o.follow) * (goal_of(s, o) - s.pressure);
     s.time = time;
     s.position = position;
     return s.pressure;

@@ -14,7 +14,7 @@ constexpr double kCells = 64;    // to a radius of path, over which normals are 
 constexpr double kNear = 0.5;    // radians: normals further off belong to a groove's wall
 constexpr double kStations = 16; // to a radius of path, at which heights are found
 constexpr double kSoft = 0.25;   // radii over which a line is fitted to them
-constexpr double kMost = 2e6;    // cells, or stations, of one path
+constexpr double kMostCells = 2e6;    // cells, or stations, of one path
 
 /// Means of the normals over even cells of path.
 class CellNormals {
@@ -72,7 +72,7 @@ class Stations {
     Stations(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples, std::span<const double> along,
              std::span<const LevelledSurface> levelled, double radius)
         : query_(query), samples_(samples), along_(along), levelled_(levelled), radius_(radius) {
-        const double n = std::clamp(std::ceil(along.back() * kStations / radius), 1.0, kMost);
+        const double n = std::clamp(std::ceil(along.back() * kStations / radius), 1.0, kMostCells);
         apart_ = along.back() / n;
         levels_.resize(static_cast<std::size_t>(n) + 1);
     }
@@ -129,7 +129,7 @@ std::vector<LevelledSurface> level_surface(const mesh::SurfaceQuery& query, std:
     if (radius <= 0 || samples.empty()) return levelled;
     const double length = along.back();
     if (length > 0) {
-        const double cell = std::max(radius / kCells, length / kMost);
+        const double cell = std::max(radius / kCells, length / kMostCells);
         const CellNormals cells(samples, along, cell);
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const double reach = std::min({radius, along[i], length - along[i]});

@@ -69,7 +69,7 @@ std::string brush_for_width(const std::string& name, const LineWidths& widths, d
 namespace {
 
 constexpr double kEnd = 1.5;    // line widths over which a hand sets down and lifts
-constexpr double kMost = 0.25;  // of the line at most
+constexpr double kMostOfLine = 0.25;  // of the line at most
 constexpr double kPoint = 0.4;  // part of the width that the line has at its very ends
 
 /// A line that ends where it began goes on along itself for `more` metres, at the same pace.
@@ -101,7 +101,7 @@ void add_extent(Box& box, const Trace& trace) {
 void draw_to_width(Trace& trace, const LineWidths& widths) {
     if (trace.samples.empty()) return;
     const double whole = travelled<TraceSample>(trace.samples).back();
-    const double end = std::min(kEnd * trace.line_width, kMost * whole);
+    const double end = std::min(kEnd * trace.line_width, kMostOfLine * whole);
     overlap(trace, 2 * end);
     const std::vector<double> along = travelled<TraceSample>(trace.samples);
     const auto part = [&](const TraceSample& s) { return s.pressure / kMiddle; };

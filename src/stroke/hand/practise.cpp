@@ -23,7 +23,7 @@ constexpr double kCell = 1.0 / 24;  // of the picture
 constexpr double kFarthest = 0.8;   // that ink is looked for beyond the wanted edge
 constexpr double kSoft = 0.4;       // of the way to both sides over which corrections are smoothed
 constexpr double kAbout = 2.5;      // of the way about a turn that is corrected
-constexpr double kMost = 1.5;       // that the way moves
+constexpr double kMostMoved = 1.5;       // that the way moves
 constexpr double kOwn = 0.8;    // of the way from a place within which the tuft lays its ink there
 constexpr double kEdge = 0.08;  // of the half width within which a place still belongs to the edge
 constexpr double kUnder = 0.1;  // of another line's half width from its edge: less may be bare
@@ -315,8 +315,8 @@ Trace practise(Trace trace, const brush::Preset& preset, const LineWidths& width
         press = smoothed(press, along, kSoft * width);
         for (std::size_t i = 0; i < n; ++i) {
             moved[i] += kShift * shift[i];
-            if (const double far = glm::length(moved[i]); far > kMost * width)
-                moved[i] *= kMost * width / far;
+            if (const double far = glm::length(moved[i]); far > kMostMoved * width)
+                moved[i] *= kMostMoved * width / far;
             wider[i] = std::clamp(wider[i] + kPress * press[i], -1.6 * wanted[i].half,
                                   0.8 * wanted[i].half);
         }
