@@ -205,7 +205,8 @@ Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec
 
 double depth_inside(const mesh::SurfaceQuery& surface, const Vec3& p) {
     const Box& box = surface.mesh().bounds;
-    if (box.empty() || glm::any(glm::lessThan(p, box.lo)) || glm::any(glm::greaterThan(p, box.hi))) return 0;
+    if (box.empty() || glm::any(glm::lessThan(p, box.lo)) || glm::any(glm::greaterThan(p, box.hi)))
+        return 0;
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {-1.0, 1.0}) {
             Vec3 way{0};

@@ -47,8 +47,9 @@ std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& r
 Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up,
                   const StandOptions& options);
 
-/// Metres from a point within a closed body to its surface; 0 outside, and before or behind an open sheet. Within: the
-/// surface is met from its back in all six directions of the axes. Cost: six rays.
+/// Metres from a point within a closed body to its surface; 0 outside, and before or behind an open
+/// sheet. Within: the surface is met from its back in all six directions of the axes. Cost: six
+/// rays.
 double depth_inside(const mesh::SurfaceQuery& surface, const Vec3& p);
 
 }  // namespace tuft::contact

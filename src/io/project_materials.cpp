@@ -5,7 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/shallow_json.h"
+#include "core/nesting.h"
 #include "io/materials.h"
 #include "io/project_db.h"
 
@@ -62,7 +62,8 @@ void load_materials(SQLite::Database& db, const std::filesystem::path& path,
     if (text.empty()) return;
     std::vector<std::shared_ptr<const mesh::Picture>> pictures;
     try {
-        const nlohmann::json j = parse_shallow_json({text.data(), text.size()});
+        check_json_nesting({text.data(), text.size()}, path.string());
+        const nlohmann::json j = nlohmann::json::parse(text.begin(), text.end());
         const auto names = j.at("pictures").get<std::vector<std::string>>();
         if (names.size() > kMaxPictures) damaged(path, "it has too many pictures");
         for (std::size_t i = 0; i < names.size(); ++i)

@@ -6,7 +6,7 @@
 #include "atlas/flatten/fault.h"
 #include "core/bounds.h"
 #include "core/hash.h"
-#include "core/shallow_json.h"
+#include "core/nesting.h"
 #include "core/units.h"
 #include "io/project_db.h"
 
@@ -91,7 +91,8 @@ bool has_array(SQLite::Database& db, const std::filesystem::path& path, const ch
     const SQLite::Column blob = select.getColumn(1);
     check_packed(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), count * size,
                  path.string() + ": the project is damaged: array '" + name + "'");
-    check_memory(path, 2 * static_cast<std::uintmax_t>(count) * size);  // it, and it before its bytes are in order
+    check_memory(path, 2 * static_cast<std::uintmax_t>(count) *
+                           size);  // it, and it before its bytes are in order
     return true;
 }
 
@@ -148,7 +149,8 @@ void store_model(SQLite::Database& db, const ModelToWrite& model) {
     put_array(db, "atlas", "udims", a.udims, kSingle);
 }
 
-ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path, const ProgressFn& progress) {
+ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path,
+                        const ProgressFn& progress) {
     SQLite::Statement row(db,
                           "SELECT source, unit, vertices, triangles, groups, atlas_size, gutter, "
                           "texel_size, charts, uvs_from_file FROM model WHERE id = 1");
@@ -163,8 +165,9 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path,
     const auto n_v = static_cast<std::size_t>(vertices), n_t = static_cast<std::size_t>(triangles);
     mesh::TriangleMesh& m = model.mesh;
     try {
-        m.group_names =
-            parse_shallow_json(text_of(row.getColumn(4), kMostGroupText, path, "the list of groups")).get<std::vector<std::string>>();
+        const auto groups = text_of(row.getColumn(4), kMostGroupText, path, "the list of groups");
+        check_json_nesting(groups, path.string());
+        m.group_names = nlohmann::json::parse(groups).get<std::vector<std::string>>();
     } catch (const nlohmann::json::exception&) {
         damaged(path, "the names of the groups cannot be read");
     }

@@ -215,7 +215,8 @@ TEST(Picture, NoVisibleNoise) {
     EXPECT_LT(worst, 15);
 }
 
-/// A plate that faces the camera, and before it upright wires, ever more oblique, a third of a pixel thick.
+/// A plate that faces the camera, and before it upright wires, ever more oblique, a third of a
+/// pixel thick.
 mesh::TriangleMesh make_wires() {
     mesh::TriangleMesh m;
     const auto quad = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -223,22 +224,25 @@ mesh::TriangleMesh make_wires() {
         for (const Vec3& p : {a, b, c, d}) m.positions.emplace_back(p);
         m.triangles.push_back({base, base + 1, base + 2});
         m.triangles.push_back({base, base + 2, base + 3});
-        m.corner_normals.insert(m.corner_normals.end(), 6, Vec3f(glm::normalize(glm::cross(b - a, c - a))));
+        m.corner_normals.insert(m.corner_normals.end(), 6,
+                                Vec3f(glm::normalize(glm::cross(b - a, c - a))));
     };
     quad({-0.05, 0, 0}, {0.05, 0, 0}, {0.05, 0, 0.06}, {-0.05, 0, 0.06});
     constexpr double kThick = 1.5e-4;
     for (int i = 0; i < 10; ++i) {
         const Vec3 foot(-0.045 + 0.009 * i, -0.002, 0.004), top = foot + Vec3(0.0007 * i, 0, 0.05);
         const Vec3 corner[4] = {{0, -kThick, 0}, {kThick, 0, 0}, {0, kThick, 0}, {-kThick, 0, 0}};
-        for (int k = 0; k < 4; ++k) quad(foot + corner[k], foot + corner[(k + 1) % 4], top + corner[(k + 1) % 4], top + corner[k]);
+        for (int k = 0; k < 4; ++k)
+            quad(foot + corner[k], foot + corner[(k + 1) % 4], top + corner[(k + 1) % 4],
+                 top + corner[k]);
     }
     m.neighbours.assign(3 * m.n_triangles(), kNone);
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
     return m;
 }
 
-// A highlight or a gap thinner than a pixel shows as a line, not as a row of specks: its pixels have the same
-// code whichever rays chance chooses.
+// A highlight or a gap thinner than a pixel shows as a line, not as a row of specks: its pixels
+// have the same code whichever rays chance chooses.
 TEST(Picture, ThinLightsAreNoSpecks) {
     const mesh::TriangleMesh m = make_wires();
     const mesh::SurfaceQuery query(m);
@@ -252,8 +256,10 @@ TEST(Picture, ThinLightsAreNoSpecks) {
         o.seed = 99;
         const Image two = render_picture(m, query, a, o);
         int specks = 0;
-        for (std::size_t i = 0; i < one.rgb.size(); i += 3) specks += std::abs(one.rgb[i + 1] - two.rgb[i + 1]) > 12;
-        // Both halves of a pixel's rays agree within 5 codes, so that their mean is some 2 codes off; light adds 2.
+        for (std::size_t i = 0; i < one.rgb.size(); i += 3)
+            specks += std::abs(one.rgb[i + 1] - two.rgb[i + 1]) > 12;
+        // Both halves of a pixel's rays agree within 5 codes, so that their mean is some 2 codes
+        // off; light adds 2.
         EXPECT_LE(specks, 4) << (finish == Finish::clay ? "clay" : "porcelain");
     }
 }

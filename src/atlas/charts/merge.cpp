@@ -117,12 +117,13 @@ class Merger {
             for (const Trial& t : trials) set_glued(t, true);
             const std::vector<std::uint32_t> order = largest_first(trials);
             const auto size = [&](std::size_t i) { return double(n_triangles(trials[order[i]])); };
-            run_tasks_within(order.size(), flattened_at_once(mesh_.n_triangles()), size, [&](std::size_t i) {
-                Trial& t = trials[order[i]];
-                MeterPart part(meter, double(n_triangles(t)));
-                attempt(t, part);
-                part.finish();
-            });
+            run_tasks_within(order.size(), flattened_at_once(mesh_.n_triangles()), size,
+                             [&](std::size_t i) {
+                                 Trial& t = trials[order[i]];
+                                 MeterPart part(meter, double(n_triangles(t)));
+                                 attempt(t, part);
+                                 part.finish();
+                             });
             for (Trial& t : trials) conclude(t);
         }
         std::erase_if(cut_.charts, [](const FlatChart& c) { return c.mesh.faces.empty(); });

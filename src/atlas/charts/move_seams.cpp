@@ -58,15 +58,17 @@ class Mover {
                 return n_triangles(a) > n_triangles(b);
             });
             const auto size = [&](std::size_t i) { return double(n_triangles(trials[i])); };
-            run_tasks_within(trials.size(), flattened_at_once(mesh_.n_triangles()), size, [&](std::size_t i) {
-                Trial& t = trials[i];
-                MeterPart part(meter, double(n_triangles(t)));
-                t.good = true;
-                // The chart that grows is the one that may not lie flat.
-                const int first = t.swept[0].size() > t.swept[1].size();
-                for (int k = 0; k < t.n_charts() && t.good; ++k) t.good = lay(t, first ^ k);
-                part.finish();
-            });
+            run_tasks_within(trials.size(), flattened_at_once(mesh_.n_triangles()), size,
+                             [&](std::size_t i) {
+                                 Trial& t = trials[i];
+                                 MeterPart part(meter, double(n_triangles(t)));
+                                 t.good = true;
+                                 // The chart that grows is the one that may not lie flat.
+                                 const int first = t.swept[0].size() > t.swept[1].size();
+                                 for (int k = 0; k < t.n_charts() && t.good; ++k)
+                                     t.good = lay(t, first ^ k);
+                                 part.finish();
+                             });
             for (Trial& t : trials) {
                 work += double(n_triangles(t));
                 conclude(t);

@@ -10,8 +10,8 @@ struct Held {
     Vec3 normal{0, 0, 1};  ///< unit, of the surface
     Vec3 right{1, 0, 0};   ///< unit, along it: what a tilt's axes are
     Vec3 down{0, -1, 0};
-    double depth = 0;      ///< metres of the unbent tip below the surface; above it: negative
-    Vec2 tilt{0};         ///< radians, towards right, towards down
+    double depth = 0;  ///< metres of the unbent tip below the surface; above it: negative
+    Vec2 tilt{0};      ///< radians, towards right, towards down
     double time = 0;
 };
 

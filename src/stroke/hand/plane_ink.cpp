@@ -84,7 +84,8 @@ PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HoldOp
     const std::vector<double> depths = tip_depths<TraceSample>(led.samples, options);
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
         const TraceSample& s = led.samples[i];
-        poses.push_back(hold_over({s.position.x, -s.position.y, 0}, 0, {.depth = depths[i], .tilt = s.tilt, .time = s.time}, options));
+        poses.push_back(hold_over({s.position.x, -s.position.y, 0}, 0,
+                                  {.depth = depths[i], .tilt = s.tilt, .time = s.time}, options));
     }
     brush::Tuft tuft = brush::make_tuft(preset);
     const brush::ContactPlane plane;

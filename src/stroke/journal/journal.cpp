@@ -8,7 +8,7 @@
 
 #include "core/bounds.h"
 #include "core/error.h"
-#include "core/shallow_json.h"
+#include "core/nesting.h"
 #include "core/text.h"
 #include "ink/touch/reservoir.h"
 #include "stroke/journal/entry_json.h"
@@ -35,8 +35,9 @@ nlohmann::json json_of(const Settings& s) {
 }
 
 nlohmann::json parsed(const std::string& text) {
+    check_json_nesting(text, "the settings of a stroke");
     try {
-        return parse_shallow_json(text);
+        return nlohmann::json::parse(text);
     } catch (const nlohmann::json::exception&) {
         throw Error("the settings of a stroke cannot be read: " + excerpt(text, 80));
     }
