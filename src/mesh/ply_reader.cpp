@@ -164,8 +164,14 @@ class PlyReader {
           builder_(file, header_.format == PlyFormat::kAscii ? "line" : "row") {}
 
     PolygonSoup read() {
-        for (const PlyElement& e : header_.elements)
-            if (e.name == "vertex") n_points_ = e.count;
+        bool has_vertices = false;
+        for (const PlyElement& e : header_.elements) {
+            if (e.name != "vertex") continue;
+            // Colours and UVs of one list would not fit the points of both.
+            if (has_vertices) throw Error(file_, e.line, "the element 'vertex' is there twice");
+            has_vertices = true;
+            n_points_ = e.count;
+        }
         for (const PlyElement& e : header_.elements) read_element(e);
         if (texcoord_misfits_.count)
             builder_.soup.warnings.push_back(

@@ -58,6 +58,12 @@ TEST(HostilePly, SaysFileAndLineOrRow) {
         "property float z\nelement face 1\nproperty list uchar int vertex_indices\n";
     const std::string body = "0 0 0\n1 0 0\n0 1 0\n";
     EXPECT_THAT(error("solid"), HasSubstr("a.ply:1: is not a PLY file"));
+    EXPECT_THAT(
+        error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+              "property float z\nproperty uchar red\nproperty uchar green\n"
+              "property uchar blue\nelement vertex 2\nproperty float x\nproperty float y\n"
+              "property float z\nend_header\n0 0 0 1 2 3\n1 0 0\nnan 1 0\n"),
+        HasSubstr("a.ply:10: the element 'vertex' is there twice"));
     EXPECT_THAT(error(""), HasSubstr("is not a PLY file"));
     EXPECT_THAT(error(head + body + "3 0 1 2\n"), HasSubstr("is not a PLY keyword"));
     EXPECT_THAT(error(head), StartsWith("a.ply:9: the head has no end_header line"));
