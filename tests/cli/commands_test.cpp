@@ -300,7 +300,7 @@ TEST_F(Commands, WhatIsPlacedInsideASolidIsSaid) {
     const std::string head = "<ink xmlns='http://www.w3.org/2003/InkML'>", channels = "<channel name='X' type='decimal' units='mm'/><channel name='Y' type='decimal' units='mm'/>";
     // In space, from outside the sphere of 100 mm into its middle.
     write("into.inkml", head + "<traceFormat>" + channels + "<channel name='Z' type='decimal' units='mm'/></traceFormat>"
-                               "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0 80, 0 0 60, 0 0 40, 0 0 20</trace></ink>");
+                               "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0 130, 0 0 110, 0 0 90, 0 0 60</trace></ink>");
     const Ran into = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --forces " + path("f.csv") + " --strokes " + path("into.inkml"));
     EXPECT_EQ(into.status, 0) << into.err;
     EXPECT_NE(into.err.find("ferrule into the model"), std::string::npos) << into.err;
@@ -316,13 +316,13 @@ TEST_F(Commands, WhatIsPlacedInsideASolidIsSaid) {
         EXPECT_LT(std::hypot(force[0], force[1], force[2]), 60) << line;
     }
     // Flat, by the file and by the command line.
-    write("flat.inkml", head + "<traceFormat>" + channels + "</traceFormat><annotation type='tuft:origin'>0 -20 0</annotation>"
+    write("flat.inkml", head + "<traceFormat>" + channels + "</traceFormat><annotation type='tuft:origin'>0 -20 50</annotation>"
                                "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0, 10 0, 20 2</trace></ink>");
     const Ran flat = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --strokes " + path("flat.inkml"));
     EXPECT_NE(flat.err.find("mm inside the model"), std::string::npos) << flat.err;
-    const Ran placed = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-20,0 --strokes " + path("flat.inkml"));
-    EXPECT_NE(placed.err.find("--place 0,-20,0 lies"), std::string::npos) << placed.err;
-    const Ran on = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-50,0 --strokes " + path("flat.inkml"));
+    const Ran placed = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-20,50 --strokes " + path("flat.inkml"));
+    EXPECT_NE(placed.err.find("--place 0,-20,50 lies"), std::string::npos) << placed.err;
+    const Ran on = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-50,50 --strokes " + path("flat.inkml"));
     EXPECT_EQ(on.err.find("inside"), std::string::npos) << on.err;
 }
 
