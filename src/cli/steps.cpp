@@ -228,8 +228,12 @@ void write_outputs(const Outputs& o, const stroke::Painting& painting, Console& 
     if (!o.exported.empty()) {
         const io::ModelMaps maps = io::make_maps(painting.stack(), model.texels, painting.substrate(),
                                                  painting.compose_options());
-        io::export_model(o.exported, *model.mesh, model.atlas, maps,
-                         {.frame = o.frame, .progress = console.progress()});
+        const std::vector<std::string> notes = io::export_model(
+            o.exported, *model.mesh, model.atlas, maps,
+            {.frame = o.frame,
+             .painted = io::painted_parts(painting.stack(), *model.mesh, model.atlas, model.texels),
+             .progress = console.progress()});
+        for (const std::string& note : notes) console.note(note);
     }
     if (!o.preview.empty())
         write_picture(o.preview, draw_picture(model, &painting, "", o.view, 0, 1, console));

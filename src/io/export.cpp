@@ -13,6 +13,7 @@
 #include "core/units.h"
 #include "io/export_formats.h"
 #include "io/image.h"
+#include "io/scene_document.h"
 
 namespace fs = std::filesystem;
 
@@ -37,23 +38,43 @@ std::vector<MapFile> map_files(const ModelMaps& maps, const ExportOptions& optio
             {"normal", has_height(maps, options)}};
 }
 
-/// Fills in the pages of the scene and their UVs, which are returned; no UVs with one page.
+/// Fills in the pages of the scene and their UVs, which are returned; no UVs with one page and without parts
+/// that keep those of the file.
 std::vector<Vec2f> split_pages(const atlas::Atlas& atlas, ExportScene& scene) {
     std::vector<Vec2f> uvs;
+    const mesh::TriangleMesh& mesh = scene.mesh;
+    const bool own = !mesh.corner_uvs.empty() && std::count(scene.decorated.begin(), scene.decorated.end(), 0) > 0;
     scene.udims = {atlas::udim_of(atlas, 0)};
-    if (atlas.pages == 1) return uvs;
+    if (atlas.pages == 1 && !own) return uvs;
     scene.udims.clear();
     for (std::uint32_t page = 0; page < atlas.pages; ++page)
         scene.udims.push_back(atlas::udim_of(atlas, page));
-    scene.triangle_page.resize(scene.mesh.n_triangles());
-    uvs.resize(atlas.corner_uvs.size());
-    for (std::size_t t = 0; t < scene.triangle_page.size(); ++t) {
-        scene.triangle_page[t] = std::min(atlas.page_of(t), atlas.pages - 1);
+    if (atlas.pages > 1) scene.triangle_page.resize(mesh.n_triangles());
+    uvs = atlas.corner_uvs;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
+        const bool keeps = own && !scene.decorated[mesh::part_of(mesh, t)];
+        if (atlas.pages > 1) scene.triangle_page[t] = keeps ? 0 : std::min(atlas.page_of(t), atlas.pages - 1);
         for (std::size_t c = 3 * t; c < 3 * t + 3; ++c)
-            uvs[c] = Vec2f(atlas::page_uv(atlas, scene.triangle_page[t], atlas.corner_uvs[c]));
+            if (keeps)
+                uvs[c] = mesh.corner_uvs[c];
+            else if (atlas.pages > 1)
+                uvs[c] = Vec2f(atlas::page_uv(atlas, scene.triangle_page[t], atlas.corner_uvs[c]));
     }
     scene.corner_uvs = uvs;
     return uvs;
+}
+
+/// Parts that carry ink, and those to which the file gave no material.
+std::vector<std::uint8_t> decorated_parts(const mesh::SourceScene& source, const std::vector<std::uint8_t>& painted) {
+    std::vector<std::uint8_t> decorated(source.parts.size(), 1);
+    for (std::size_t i = 0; i < decorated.size() && i < painted.size(); ++i)
+        decorated[i] = painted[i] || source.parts[i].own_material < 0;
+    return decorated;
+}
+
+void check_parts(const mesh::TriangleMesh& mesh, const mesh::SourceScene& source) {
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
+        if (mesh::part_of(mesh, t) >= source.parts.size()) throw Error("a triangle is in a part that does not exist");
 }
 
 }  // namespace
@@ -198,8 +219,9 @@ std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps
     return files;
 }
 
-void export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
-                  const ModelMaps& maps, const ExportOptions& options) {
+std::vector<std::string> export_model(const fs::path& path, const mesh::TriangleMesh& mesh,
+                                      const atlas::Atlas& atlas, const ModelMaps& maps,
+                                      const ExportOptions& options) {
     const std::string extension = path.extension().string();
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj")
         throw Error(path.string(),
@@ -207,13 +229,20 @@ void export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const at
     const auto metres = metres_per(options.frame.unit);
     if (!metres)
         throw Error("unknown unit '" + options.frame.unit + "'; there are um, mm, cm, m, in and ft");
+    mesh::SourceScene of_groups;
+    if (!mesh.scene || mesh.scene->document.empty()) of_groups = make_scene(mesh, safe_stem(path));
+    const mesh::SourceScene& source = of_groups.document.empty() ? *mesh.scene : of_groups;
+    check_parts(mesh, source);
     ExportScene scene{.mesh = mesh,
-                      .wedges = split_wedges(mesh, atlas.corner_uvs),
+                      .source = source,
+                      .decorated = decorated_parts(source, options.painted),
+                      .wedges = {},
                       .corner_uvs = atlas.corner_uvs,
                       .name = safe_stem(path),
                       .y_up = options.frame.y_up,
                       .metres_per_unit = *metres};
     const std::vector<Vec2f> page_uvs = split_pages(atlas, scene);
+    scene.wedges = split_wedges(mesh, scene.corner_uvs, scene.triangle_page);
     std::vector<EncodedMap> encoded;
     report(options.progress, "export", 0);
     const ImageOptions colour{.srgb = true, .channel_names = {}},
@@ -244,6 +273,7 @@ void export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const at
             write_gltf(folder / path.filename(), scene, encoded);
     });
     report(options.progress, "export", 1);
+    return notes_on_parts(scene);
 }
 
 }  // namespace tuft::io

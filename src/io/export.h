@@ -45,17 +45,32 @@ std::string channel_name(const std::string& pigment);
 struct ExportOptions {
     FileFrame frame;                  ///< of OBJ coordinates; glTF is always in metres, y up
     bool normals_from_height = true;  ///< a normal map when there is a height map with any height
+    /// [n_parts] parts that get the decorated material (`painted_parts`); the others keep what the file
+    /// gave them, where it gave them any. Empty: all get it.
+    std::vector<std::uint8_t> painted;
     ProgressFn progress = {};
 };
+
+/// Whether ink lies on a part of the mesh (mesh::part_of), for each part: whether one of its texels has
+/// pigment or liquid in a layer that is seen, more than 1e-4 film units, which no code of a colour shows.
+std::vector<std::uint8_t> painted_parts(const ink::Stack& stack, const mesh::TriangleMesh& mesh,
+                                        const atlas::Atlas& atlas, const atlas::TexelMap& texels);
 
 /// Writes a model with its maps; the extension chooses the format:
 ///
 /// - `.glb`: one binary file; metres, y up, indexed triangles with POSITION, NORMAL,
 ///   TEXCOORD_0 and (with a normal map) TANGENT; PNG maps in buffer views. A vertex is
-///   repeated for each distinct normal or UV, triangles keep their order.
+///   repeated for each distinct normal or UV, triangles keep their order within a part.
 /// - `.gltf`: the same as NAME.gltf, NAME.bin and NAME_*.png.
 /// - `.obj`: NAME.obj, NAME.mtl and NAME_*.png; coordinates in `frame`;
-///   vertices and triangles in their order.
+///   vertices in their order, triangles in their order within a part.
+///
+/// Nodes and names are those of the file, or the groups. Parts without ink keep their material with its
+/// pictures, transparency and extensions. Out of a glTF file they, and whatever else it holds, are
+/// written as they were read; OBJ takes of their materials what MTL has words for.
+///
+/// Without maps (all of them empty) materials keep their names and factors, and lose the pictures that lay by
+/// the UVs of the file.
 ///
 /// An atlas of several pages: OBJ gets UVs by the UDIM convention, pictures NAME_*.1001.png and
 /// so on, and `<UDIM>` in their names in the MTL; glTF gets a primitive and a material with its
@@ -65,11 +80,13 @@ struct ExportOptions {
 /// those formats say. Nothing is left behind when anything fails; existing files are
 /// replaced only when all new ones are complete. Throws `Error` for an unknown
 /// extension or unit, a folder that does not exist or is full, more than 4 GiB in GLB.
-void export_model(const std::filesystem::path& path, const mesh::TriangleMesh& mesh,
-                  const atlas::Atlas& atlas, const ModelMaps& maps,
-                  const ExportOptions& options = {});
+/// Returns what a user should know of it, one line each.
+std::vector<std::string> export_model(const std::filesystem::path& path, const mesh::TriangleMesh& mesh,
+                                      const atlas::Atlas& atlas, const ModelMaps& maps,
+                                      const ExportOptions& options = {});
 
-/// Names of the files `export_model` writes for `path` with these maps.
+/// Names of the files `export_model` writes for `path` with these maps, but for pictures of the file's own
+/// materials.
 std::vector<std::filesystem::path> exported_files(const std::filesystem::path& path,
                                                   const ModelMaps& maps,
                                                   const ExportOptions& options = {},

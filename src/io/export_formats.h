@@ -19,8 +19,10 @@ struct Wedges {
     std::vector<std::uint32_t> corner_wedge;  ///< [3 n_triangles]
 };
 
-/// Corners of a vertex with equal UV and normal, to the bit, share a wedge.
-Wedges split_wedges(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs);
+/// Corners of a vertex with equal UV and normal, to the bit, share a wedge, where their triangles
+/// lie on one page (`triangle_page` [n_triangles], or empty: all do).
+Wedges split_wedges(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs,
+                    std::span<const std::uint32_t> triangle_page = {});
 
 struct EncodedMap {
     std::string kind;  ///< base_colour, orm, normal
@@ -31,8 +33,11 @@ struct EncodedMap {
 
 struct ExportScene {
     const mesh::TriangleMesh& mesh;
+    const mesh::SourceScene& source;
+    std::vector<std::uint8_t> decorated;  ///< [n_parts of source] gets the decorated material
     Wedges wedges;
-    std::span<const Vec2f> corner_uvs;  ///< of the triangle's own page
+    /// Of decorated parts those of the triangle's own page, of others those of the file.
+    std::span<const Vec2f> corner_uvs;
     std::string name;
     bool y_up = false;  ///< of OBJ coordinates
     double metres_per_unit = 1e-3;
@@ -42,7 +47,17 @@ struct ExportScene {
     std::uint32_t page_of(std::size_t triangle) const {
         return triangle_page.empty() ? 0 : triangle_page[triangle];
     }
+    /// Name of the decorated material on a page of glTF.
+    std::string material_name(std::uint32_t page) const {
+        return udims.size() > 1 ? "decorated." + std::to_string(udims[page]) : "decorated";
+    }
 };
+
+/// The triangles of each part, in their order.
+std::vector<std::vector<std::uint32_t>> triangles_of_parts(const ExportScene& scene);
+
+/// What a user should know of the parts, one line each.
+std::vector<std::string> notes_on_parts(const ExportScene& scene);
 
 /// GLB, or glTF with its files, by the extension; `path` lies in a staging folder.
 void write_gltf(const std::filesystem::path& path, const ExportScene& scene,

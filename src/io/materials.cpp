@@ -9,7 +9,10 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/text.h"
 #include "io/image.h"
+#include "io/mtl_material.h"
+#include "io/scene_document.h"
 #include "mesh/text_cursor.h"
 
 namespace fs = std::filesystem;
@@ -18,6 +21,7 @@ namespace tuft::io {
 namespace {
 
 constexpr std::size_t kMaxLibraries = 64;
+constexpr std::size_t kMaxStatements = 1000;  // of an entry
 
 /// Where a file of that name lies in the folder; nothing when it is not there.
 std::optional<fs::path> find_beside(const fs::path& folder, std::string name) {
@@ -34,47 +38,8 @@ std::optional<fs::path> find_beside(const fs::path& folder, std::string name) {
 struct MtlEntry {
     Vec3f colour{1};
     std::string picture;
+    std::vector<MtlStatement> statements;
 };
-
-/// Arguments of an option of `map_Kd`; -1: up to three numbers.
-int arguments_of(std::string_view option) {
-    for (const std::string_view one :
-         {"-blendu", "-blendv", "-bm", "-boost", "-cc", "-clamp", "-imfchan", "-texres", "-type"})
-        if (mesh::same_word(option, one)) return 1;
-    if (mesh::same_word(option, "-mm")) return 2;
-    for (const std::string_view many : {"-o", "-s", "-t"})
-        if (mesh::same_word(option, many)) return -1;
-    return 0;
-}
-
-bool is_number(const std::string& word) {
-    char* end = nullptr;
-    std::strtod(word.c_str(), &end);
-    return !word.empty() && end == word.c_str() + word.size();
-}
-
-/// The file name behind the options of a `map_Kd` line.
-std::string picture_name(std::string line) {
-    const auto next_word = [&](std::size_t& at) {
-        const std::size_t begin = std::min(line.find_first_not_of(" \t", at), line.size());
-        at = std::min(line.find_first_of(" \t", begin), line.size());
-        return line.substr(begin, at - begin);
-    };
-    while (line.starts_with('-')) {
-        std::size_t at = 0;
-        int n = arguments_of(next_word(at));
-        if (n == 0) break;
-        for (int k = 0; n < 0 ? k < 3 : k < n; ++k) {
-            std::size_t after = at;
-            if (n < 0 && !is_number(next_word(after))) break;
-            if (n > 0) next_word(after);
-            at = after;
-        }
-        const std::size_t rest = line.find_first_not_of(" \t", at);
-        line = rest == line.npos ? "" : line.substr(rest);
-    }
-    return line;
-}
 
 void read_library(const fs::path& file, std::map<std::string, MtlEntry>& entries) {
     const std::vector<char> bytes = read_file(file, kMaxPictureBytes);
@@ -82,17 +47,25 @@ void read_library(const fs::path& file, std::map<std::string, MtlEntry>& entries
     MtlEntry* entry = nullptr;
     for (; text.skip_to_token(); text.next_line()) {
         const std::string_view key = text.word();
+        const std::string rest(text.rest());
         if (mesh::same_word(key, "newmtl")) {
-            entry = &entries.try_emplace(std::string(text.rest())).first->second;
-        } else if (entry && mesh::same_word(key, "Kd")) {
-            Vec3f colour(0);
+            entry = &entries.try_emplace(to_utf8(rest)).first->second;
+            continue;
+        }
+        if (!entry || entry->statements.size() >= kMaxStatements) continue;
+        entry->statements.emplace_back(key, rest);
+        if (mesh::same_word(key, "Kd")) {
+            const char* at = rest.c_str();
             for (int c = 0; c < 3; ++c) {
-                const float value = std::strtof(std::string(text.word()).c_str(), nullptr);
-                colour[c] = std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 1;
+                char* end = nullptr;
+                const float value = std::strtof(at, &end);
+                entry->colour[c] = end == at              ? 0
+                                   : std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f)
+                                                          : 1;
+                at = end;
             }
-            entry->colour = colour;
-        } else if (entry && mesh::same_word(key, "map_Kd")) {
-            entry->picture = picture_name(std::string(text.rest()));
+        } else if (mesh::same_word(key, "map_Kd")) {
+            entry->picture = picture_name(rest);
         }
     }
 }
@@ -147,6 +120,50 @@ std::map<std::string, MtlEntry> read_libraries(mesh::PolygonSoup& soup, const fs
     return entries;
 }
 
+/// Whether a picture may be a map of normals: a grey one is a map of heights.
+bool has_colour(const mesh::Picture& picture) {
+    for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3)
+        if (picture.rgb[i] != picture.rgb[i + 1] || picture.rgb[i] != picture.rgb[i + 2])
+            return true;
+    return false;
+}
+
+/// Completes the scene that the reader has named the parts of.
+void add_materials(mesh::PolygonSoup& soup, const std::map<std::string, MtlEntry>& entries,
+                   Pictures& pictures) {
+    SceneBuilder builder;
+    std::map<const mesh::Picture*, int> textures;
+    std::vector<const mesh::Picture*> picture_of;
+    const auto texture_of = [&](const std::string& name) {
+        const auto picture = pictures.get(name);
+        if (!picture) return -1;
+        const auto [it, is_new] = textures.try_emplace(picture.get(), -1);
+        const auto* bytes = reinterpret_cast<const unsigned char*>(picture->bytes.data());
+        if (is_new) {
+            it->second = builder.add_texture(picture->name, {bytes, picture->bytes.size()});
+            picture_of.push_back(picture.get());
+        }
+        return it->second;
+    };
+    std::map<std::string, int> indices;
+    for (mesh::ScenePart& part : soup.scene->parts) {
+        const auto entry = entries.find(part.material);
+        if (entry == entries.end()) continue;
+        const auto [index, is_new] = indices.try_emplace(part.material, -1);
+        if (is_new) {
+            MtlAsGltf made = gltf_of_mtl(part.material, entry->second.statements, texture_of);
+            const auto normal = made.material.find("normalTexture");
+            if (normal != made.material.end() &&
+                !has_colour(*picture_of[(*normal)["index"].get<std::size_t>()]))
+                made.material.erase(normal);
+            index->second = builder.add_material(std::move(made.material));
+            builder.keep_statements(index->second, std::move(made.statements));
+        }
+        part.own_material = index->second;
+    }
+    *soup.scene = builder.finish(std::move(soup.scene->parts), "model");
+}
+
 }  // namespace
 
 std::shared_ptr<const mesh::Picture> decode_picture(std::string name, std::vector<char> bytes) {
@@ -189,7 +206,7 @@ void read_materials(mesh::PolygonSoup& soup, const fs::path& model) {
     bool any = false;
     std::vector<mesh::Material> materials(names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto found = entries.find(names[i]);
+        const auto found = entries.find(to_utf8(names[i]));
         if (found != entries.end()) {
             const MtlEntry& entry = found->second;
             if (!entry.picture.empty()) materials[i].picture = pictures.get(entry.picture);
@@ -201,6 +218,7 @@ void read_materials(mesh::PolygonSoup& soup, const fs::path& model) {
         }
     }
     if (any) soup.materials = std::move(materials);
+    if (any && by_library && soup.scene) add_materials(soup, entries, pictures);
     drop_plain_materials(soup);
 }
 

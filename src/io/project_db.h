@@ -59,6 +59,14 @@ std::uint64_t hash_of(const mesh::TriangleMesh& mesh);
 void store_materials(SQLite::Database& db, const mesh::TriangleMesh& mesh);
 void load_materials(SQLite::Database& db, const std::filesystem::path& path, mesh::TriangleMesh& mesh);
 
+/// The scene of its file and the parts of the triangles (project_scene.cpp). Other programs and older
+/// versions of this one leave them unread: the project's format does not change for them.
+void store_scene(SQLite::Database& db, const mesh::TriangleMesh& mesh);
+void load_scene(SQLite::Database& db, const std::filesystem::path& path, mesh::TriangleMesh& mesh);
+/// A stored array of bytes of any length up to `most`; empty when there is none.
+std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& path,
+                            const std::string& name, std::size_t most);
+
 /// Strokes (project_strokes.cpp). The caller opens the transaction. `load_strokes` throws `Cancelled`.
 void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
                    std::span<const stroke::Stroke> strokes);

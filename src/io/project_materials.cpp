@@ -20,7 +20,8 @@ std::string picture_array(std::size_t i) {
     return "picture " + std::to_string(i);
 }
 
-/// A stored array of bytes of any length up to `most`; empty when there is none.
+}  // namespace
+
 std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& path,
                             const std::string& name, std::size_t most) {
     SQLite::Statement select(db, "SELECT count FROM arrays WHERE owner = 'mesh' AND name = ?");
@@ -31,8 +32,6 @@ std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& p
         damaged(path, "array '" + name + "' is too large");
     return get_array<char>(db, path, "mesh", name.c_str(), kBytes, static_cast<std::size_t>(count));
 }
-
-}  // namespace
 
 void store_materials(SQLite::Database& db, const mesh::TriangleMesh& mesh) {
     if (mesh.materials.empty()) return;

@@ -145,6 +145,7 @@ void store_model(SQLite::Database& db, const ModelToWrite& model) {
     put_array(db, "atlas", "triangle_chart", a.triangle_chart, kSingle);
     if (model.frame.y_up) put_array(db, "mesh", "y_up", std::vector<std::uint32_t>{1}, kSingle);
     store_materials(db, m);
+    store_scene(db, m);
     if (a.pages > 1) put_array(db, "atlas", "pages", std::vector<std::uint32_t>{a.pages}, kSingle);
     put_array(db, "atlas", "udims", a.udims, kSingle);
 }
@@ -193,6 +194,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path,
         get_array<std::array<std::uint8_t, 4>>(db, path, "mesh", "vertex_colours", kSingle, n_v);
     m.triangle_groups = get_array<std::uint32_t>(db, path, "mesh", "triangle_groups", kSingle, n_t);
     load_materials(db, path, m);
+    load_scene(db, path, m);
     report(progress, "reading", 0.6);
     a.corner_uvs = get_array<Vec2f>(db, path, "atlas", "corner_uvs", kUv, 3 * n_t);
     a.triangle_chart = get_array<std::uint32_t>(db, path, "atlas", "triangle_chart", kSingle, n_t);

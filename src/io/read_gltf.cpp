@@ -3,7 +3,6 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -12,11 +11,10 @@
 
 #include "core/bounds.h"
 #include "core/error.h"
-#include "core/files.h"
-#include "core/nesting.h"
-#include "core/text.h"
 #include "ink/colour/srgb.h"
+#include "io/gltf_file.h"
 #include "io/materials.h"
+#include "io/scene_document.h"
 
 namespace fs = std::filesystem;
 
@@ -26,177 +24,9 @@ namespace {
 constexpr int kMaxNodeDepth = 1000;
 constexpr std::size_t kMaxCorners = std::size_t{1} << 31;
 
-std::uint32_t u32(const char* bytes) {
-    std::uint32_t v;
-    std::memcpy(&v, bytes, sizeof v);
-    return v;
-}
-
-/// Checks the chunks of a GLB (tinygltf trusts the length of the second one) and the JSON.
-void check_container(const std::vector<char>& bytes, const std::string& name) {
-    if (std::memcmp(bytes.data(), "glTF", std::min<std::size_t>(4, bytes.size())) != 0) {
-        check_json_nesting({bytes.data(), bytes.size()}, name);
-        return;
-    }
-    if (bytes.size() < 20) throw Error(name, "the GLB file is cut short");
-    if (u32(&bytes[4]) != 2)
-        throw Error(name,
-                    "is glTF version " + std::to_string(u32(&bytes[4])) + "; tuft reads version 2");
-    const std::size_t length = u32(&bytes[8]);
-    if (length > bytes.size())
-        throw Error(name, "the GLB file is cut short: it has " + std::to_string(bytes.size()) +
-                              " of " + std::to_string(length) + " bytes");
-    std::size_t at = 12;
-    for (int chunk = 0; at + 8 <= length; ++chunk) {
-        const std::size_t size = u32(&bytes[at]);
-        if (size > length - at - 8)
-            throw Error(name, "a chunk of the GLB file is longer than the file");
-        if (chunk == 0) check_json_nesting({&bytes[at + 8], size}, name);
-        at += 8 + size;
-    }
-}
-
-/// File access for external buffers: only inside the model's folder.
-struct Sandbox {
-    fs::path folder;
-    std::string refused, missing;
-
-    bool inside(const std::string& file) {
-        if (lies_within(folder, file)) return true;
-        refused = file;
-        return false;
-    }
-    bool exists(const std::string& file) {
-        std::error_code ec;
-        if (!inside(file)) return false;
-        if (fs::is_regular_file(file, ec)) return true;
-        missing = file;
-        return false;
-    }
-    std::string fault() const {
-        // The library looks in the working folder next, which is outside as a rule.
-        if (!missing.empty()) return "it refers to '" + missing + "', which is not there";
-        return "it refers to '" + refused + "', which is outside its folder";
-    }
-};
-
-bool sandbox_exists(const std::string& file, void* sandbox) {
-    return static_cast<Sandbox*>(sandbox)->exists(file);
-}
-
-std::string sandbox_expand(const std::string& file, void*) {
-    return file;
-}
-
-bool sandbox_read(std::vector<unsigned char>* out, std::string* err, const std::string& file,
-                  void* sandbox) {
-    try {
-        if (!static_cast<Sandbox*>(sandbox)->inside(file)) return false;
-        const std::vector<char> bytes = read_file(file);
-        out->assign(bytes.begin(), bytes.end());
-        return true;
-    } catch (const std::exception& e) {
-        *err += e.what();
-        return false;
-    }
-}
-
-bool sandbox_write(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-    return false;
-}
-
 template <class T>
 const T* element(const std::vector<T>& all, int index) {
     return index >= 0 && static_cast<std::size_t>(index) < all.size() ? &all[index] : nullptr;
-}
-
-/// The bytes of each picture, as they are.
-using PictureFiles = std::vector<std::vector<char>>;
-
-constexpr std::size_t kMostPictures = 4096;
-
-void keep_picture(PictureFiles& all, std::size_t index, std::span<const unsigned char> bytes) {
-    if (index >= kMostPictures || bytes.empty()) return;
-    if (all.size() <= index) all.resize(index + 1);
-    all[index].assign(bytes.begin(), bytes.end());
-}
-
-bool take_picture(tinygltf::Image* image, const int index, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void* files) {
-    // The library takes a buffer view's word for where it lies: those come afterwards.
-    if (image->bufferView < 0 && index >= 0 && size > 0)
-        keep_picture(*static_cast<PictureFiles*>(files), static_cast<std::size_t>(index),
-                     {bytes, static_cast<std::size_t>(size)});
-    return true;
-}
-
-/// The pictures in buffers; one that does not lie within its buffer is none.
-void take_pictures_of_buffers(const tinygltf::Model& model, PictureFiles& files) {
-    for (std::size_t i = 0; i < model.images.size(); ++i) {
-        const tinygltf::BufferView* view = element(model.bufferViews, model.images[i].bufferView);
-        const tinygltf::Buffer* buffer = view ? element(model.buffers, view->buffer) : nullptr;
-        if (!buffer || view->byteOffset > buffer->data.size() ||
-            view->byteLength > buffer->data.size() - view->byteOffset)
-            continue;
-        keep_picture(files, i, std::span(buffer->data).subspan(view->byteOffset, view->byteLength));
-    }
-}
-
-/// What a file needs to be read that tuft has not, or nothing.
-std::string unread_compression(const std::vector<char>& bytes) {
-    const std::string_view text(bytes.data(), bytes.size());
-    for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
-        if (text.find(name) != text.npos)
-            return std::string("its mesh is compressed (") + name + "), which tuft does not read; export it without";
-    return {};
-}
-
-struct Loaded {
-    tinygltf::Model model;
-    PictureFiles pictures;
-};
-
-Loaded load(const std::vector<char>& bytes, const fs::path& path) {
-    const std::string name = path.string();
-    check_container(bytes, name);
-    if (bytes.size() > std::numeric_limits<unsigned>::max())
-        throw Error(name, "is larger than 4 GiB");
-    Sandbox sandbox{path.has_parent_path() ? path.parent_path() : fs::path("."), {}};
-    tinygltf::TinyGLTF loader;
-    Loaded loaded;
-    tinygltf::Model& model = loaded.model;
-    loader.SetImageLoader(take_picture, &loaded.pictures);
-    loader.SetFsCallbacks({sandbox_exists, sandbox_expand, sandbox_read, sandbox_write, &sandbox});
-    std::string err, warn;
-    bool ok = false;
-    try {
-        const auto size = static_cast<unsigned>(bytes.size());
-        if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0)
-            ok = loader.LoadBinaryFromMemory(&model, &err, &warn,
-                                             reinterpret_cast<const unsigned char*>(bytes.data()),
-                                             size, sandbox.folder.string());
-        else
-            ok = loader.LoadASCIIFromString(&model, &err, &warn, bytes.data(), size,
-                                            sandbox.folder.string());
-    } catch (const std::bad_alloc&) {
-        err = "it asks for more memory than there is";
-    } catch (const std::exception& e) {
-        err = e.what();
-    }
-    if (!ok) {
-        if (!sandbox.refused.empty() || !sandbox.missing.empty()) err = sandbox.fault();
-        if (const std::string why = unread_compression(bytes); !why.empty()) err = why;
-        while (!err.empty() && std::isspace(static_cast<unsigned char>(err.back()))) err.pop_back();
-        std::replace(err.begin(), err.end(), '\n', ' ');
-        // The JSON library's messages begin with its name for the error, and end with what it read last.
-        if (const auto end = err.find("] "); err.starts_with("[json.exception") && end != err.npos)
-            err = "its JSON cannot be read: " + excerpt(err.substr(end + 2, err.find("; last read") - end - 2), 200);
-        throw Error(name, err.empty() ? "is not a glTF file that can be read" : err);
-    }
-    if (model.asset.version.starts_with("1."))
-        throw Error(name, "is glTF version " + model.asset.version + "; tuft reads version 2");
-    take_pictures_of_buffers(model, loaded.pictures);
-    return loaded;
 }
 
 /// The bytes of an accessor, checked against its buffer.
@@ -323,8 +153,7 @@ PictureUvs picture_uvs(const tinygltf::Material& material) {
 
 class Gatherer {
   public:
-    Gatherer(Loaded loaded, std::string name)
-        : model_(std::move(loaded.model)), files_(std::move(loaded.pictures)), name_(std::move(name)) {}
+    Gatherer(GltfFile& file, std::string name) : file_(file), model_(*file.model), name_(std::move(name)) {}
 
     mesh::PolygonSoup run() {
         soup_.polygon_start.push_back(0);
@@ -350,18 +179,19 @@ class Gatherer {
                 throw Error(name_, "its nodes do not form a tree");
             seen[visit.node] = true;
             const Mat4 world = visit.parent * local_transform(*node);
-            if (node->mesh >= 0) add_mesh(node->mesh, world);
+            if (node->mesh >= 0) add_mesh(node->mesh, visit.node, world);
             for (auto it = node->children.rbegin(); it != node->children.rend(); ++it)
                 stack.push_back({*it, visit.depth + 1, world});
         }
         if (model_.nodes.empty())
             for (std::size_t m = 0; m < model_.meshes.size(); ++m)
-                add_mesh(static_cast<int>(m), Mat4(1.0));
+                add_mesh(static_cast<int>(m), static_cast<int>(m), Mat4(1.0));
         if (soup_.n_polygons() == 0)
             throw Error(name_, "has no triangles" + (soup_.warnings.empty() ? "" : ": " + soup_.warnings.front()));
         if (!any_uv_) soup_.corner_uvs.clear();
         if (!any_colour_) soup_.point_colours.clear();
         drop_plain_materials(soup_);
+        keep_scene();
         return std::move(soup_);
     }
 
@@ -377,11 +207,30 @@ class Gatherer {
         return roots;
     }
 
-    void add_mesh(int index, const Mat4& world) {
+    /// The file as exports write it again, in one buffer.
+    void keep_scene() {
+        std::vector<std::vector<unsigned char>> buffers;
+        for (tinygltf::Buffer& buffer : model_.buffers) buffers.push_back(std::move(buffer.data));
+        soup_.scene = std::make_shared<mesh::SourceScene>(pack_document(file_.json, buffers, file_.pictures, name_));
+        soup_.scene->parts = std::move(parts_);
+    }
+
+    void add_mesh(int index, int node, const Mat4& world) {
         const tinygltf::Mesh* mesh = element(model_.meshes, index);
         if (!mesh) throw Error(name_, "mesh " + std::to_string(index) + " does not exist");
-        for (const tinygltf::Primitive& primitive : mesh->primitives)
+        const tinygltf::Node* at = element(model_.nodes, node);
+        for (std::size_t p = 0; p < mesh->primitives.size(); ++p) {
+            const tinygltf::Primitive& primitive = mesh->primitives[p];
+            const tinygltf::Material* material = element(model_.materials, primitive.material);
+            mesh::ScenePart part{.object = at && !at->name.empty() ? at->name : mesh->name,
+                                 .material = material ? material->name : "",
+                                 .node = node,
+                                 .primitive = static_cast<std::int32_t>(p),
+                                 .own_material = material ? primitive.material : -1};
+            for (int i = 0; i < 16; ++i) part.transform[static_cast<std::size_t>(i)] = world[i / 4][i % 4];
+            parts_.push_back(std::move(part));
             add_primitive(*mesh, primitive, world);
+        }
     }
 
     /// Faces of one material, or of one mesh where it has no name.
@@ -419,14 +268,14 @@ class Gatherer {
         const auto [it, is_new] = pictures_.try_emplace(index);
         const tinygltf::Image* image = element(model_.images, index);
         if (!is_new) return it->second;
-        std::string name = image ? image->name.empty() ? image->uri : image->name : "";
+        std::string name = image ? image->name.empty() ? short_uri(image->uri) : image->name : "";
         if (name.empty()) name = "picture " + std::to_string(index);
-        std::vector<char>* bytes = index >= 0 && static_cast<std::size_t>(index) < files_.size() ? &files_[static_cast<std::size_t>(index)] : nullptr;
+        const std::vector<unsigned char>* bytes = element(file_.pictures, index);
         try {
             if (!image || !bytes || bytes->empty())
                 soup_.warnings.push_back("the picture '" + name + "' is not there; its faces go without");
             else
-                it->second = decode_picture(name, std::move(*bytes));
+                it->second = decode_picture(name, {bytes->begin(), bytes->end()});
         } catch (const std::exception& e) {
             soup_.warnings.push_back(std::string(e.what()) + "; its faces go without");
         }
@@ -486,6 +335,7 @@ class Gatherer {
             for (const std::uint32_t i : index) add_corner(base, i, uvs);
             soup_.polygon_start.push_back(static_cast<std::uint32_t>(soup_.corners.size()));
             soup_.polygon_groups.push_back(group);
+            soup_.polygon_parts.push_back(static_cast<std::uint32_t>(parts_.size()) - 1);
         }
         if (dropped > 0)
             soup_.warnings.push_back(std::to_string(dropped) + " triangles of mesh '" + mesh.name +
@@ -561,9 +411,10 @@ class Gatherer {
         soup_.corner_uvs.push_back(uv);
     }
 
-    tinygltf::Model model_;
-    PictureFiles files_;
+    GltfFile& file_;
+    tinygltf::Model& model_;
     std::string name_;
+    std::vector<mesh::ScenePart> parts_;
     mesh::PolygonSoup soup_;
     std::map<std::pair<std::string, int>, std::uint32_t> group_of_;
     std::set<std::string> names_;           ///< of groups
@@ -576,7 +427,8 @@ class Gatherer {
 }  // namespace
 
 mesh::PolygonSoup read_gltf(const std::vector<char>& bytes, const fs::path& path) {
-    return Gatherer(load(bytes, path), path.string()).run();
+    GltfFile file = open_gltf(bytes, path);
+    return Gatherer(file, path.string()).run();
 }
 
 }  // namespace tuft::io

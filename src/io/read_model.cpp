@@ -44,7 +44,8 @@ std::optional<Format> by_content(std::string_view bytes) {
     for (const std::string_view magic :
          {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
         if (bytes.starts_with(magic) && bytes.size() > magic.size() &&
-            std::isspace(static_cast<unsigned char>(bytes[magic.size()])))
+            (std::isspace(static_cast<unsigned char>(bytes[magic.size()])) ||
+             std::isdigit(static_cast<unsigned char>(bytes[magic.size()]))))
             return Format::off;
     return std::nullopt;
 }

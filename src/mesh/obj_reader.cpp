@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <charconv>
+#include <unordered_set>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "mesh/polygon_soup.h"
 #include "mesh/soup_builder.h"
 #include "mesh/text_cursor.h"
@@ -37,6 +39,7 @@ class ObjReader {
         finish_colours();
         PolygonSoup soup = builder_.finish();
         if (soup.material_libraries.empty()) soup.material_names.clear();
+        name_parts(soup);
         return soup;
     }
 
@@ -46,6 +49,9 @@ class ObjReader {
     void read_face();
     void read_corner();
     void set_group(std::string& part);
+    std::uint32_t current_group();
+    void name_parts(PolygonSoup& soup) const;
+    void report_empty(PolygonSoup& soup) const;
     void finish_colours();
     std::uint32_t point_index(std::int64_t written);
 
@@ -56,7 +62,11 @@ class ObjReader {
     std::vector<Vec3f> colours_;
     std::string object_, group_, material_;
     std::uint32_t current_group_ = kNone;
-    std::vector<std::uint32_t> corners_;  ///< of the face being read
+    bool group_changed_ = false;
+    std::vector<ScenePart> parts_;    ///< by group
+    std::vector<std::string> named_;  ///< objects and groups, in the order of the file,
+    std::unordered_set<std::string> seen_, has_faces_;  ///< the same, and those with faces
+    std::vector<std::uint32_t> corners_;                ///< of the face being read
     std::vector<Vec2f> corner_uvs_;
     bool uv_missing_ = false;
     std::size_t highest_ = 0;  ///< highest vertex number used by a face before it was read,
@@ -90,10 +100,47 @@ void ObjReader::read_line() {
 void ObjReader::set_group(std::string& part) {
     part = std::string(text_.rest());
     if (const std::size_t comment = part.find(" #"); comment != part.npos) part.resize(comment);
+    group_changed_ = true;
+    if (&part != &material_ && !part.empty() && seen_.insert(part).second) named_.push_back(part);
+}
+
+/// Groups are made by their first face: `o`, `g` and `usemtl` one after the other name one, not
+/// three.
+std::uint32_t ObjReader::current_group() {
+    if (!group_changed_) return current_group_;
+    group_changed_ = false;
     std::string name;
     for (const std::string* s : {&object_, &group_, &material_})
         if (!s->empty() && *s != name) name += (name.empty() ? "" : " / ") + *s;
+    for (const std::string* s : {&object_, &group_}) has_faces_.insert(*s);
     current_group_ = name.empty() ? kNone : builder_.group(name, material_);
+    if (current_group_ != kNone && current_group_ == parts_.size())
+        parts_.push_back(
+            {.object = to_utf8(object_), .group = to_utf8(group_), .material = to_utf8(material_)});
+    return current_group_;
+}
+
+void ObjReader::name_parts(PolygonSoup& soup) const {
+    report_empty(soup);
+    if (soup.group_names.empty()) return;
+    soup.scene = std::make_shared<SourceScene>();
+    soup.scene->parts = parts_;
+    soup.scene->parts.resize(soup.group_names.size());
+}
+
+void ObjReader::report_empty(PolygonSoup& soup) const {
+    constexpr std::size_t kMostNames = 5;
+    std::string names;
+    std::size_t n = 0;
+    for (const std::string& name : named_) {
+        // Maya writes "g default" before the vertices of each object.
+        if (has_faces_.contains(name) || name == "default") continue;
+        if (++n <= kMostNames) names += (n > 1 ? ", " : "") + in_quotes(name);
+    }
+    if (n > 0)
+        soup.warnings.push_back(std::to_string(n) + (n == 1 ? " group has" : " groups have") +
+                                " no faces and " + (n == 1 ? "is" : "are") + " left out: " + names +
+                                (n > kMostNames ? ", ..." : ""));
 }
 
 void ObjReader::read_vertex() {
@@ -150,7 +197,7 @@ void ObjReader::read_face() {
     uv_missing_ = false;
     while (text_.more()) read_corner();
     if (uv_missing_) corner_uvs_.clear();
-    builder_.add_polygon(corners_, corner_uvs_, current_group_, line);
+    builder_.add_polygon(corners_, corner_uvs_, current_group(), line);
 }
 
 void ObjReader::finish_colours() {

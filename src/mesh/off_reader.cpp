@@ -25,7 +25,10 @@ OffKind read_kind(TextCursor& text) {
     std::string_view word = ahead.word();
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     if (is_digit(word.front()) && is_digit(word.back())) return kind;
-    text.word();
+    // Some writers leave out the end of the line: OFF490 518 0.
+    if (const std::size_t head = word.find_last_of("Ff"); head != word.npos && head > 0 && head + 1 < word.size())
+        if (std::all_of(word.begin() + static_cast<std::ptrdiff_t>(head) + 1, word.end(), is_digit)) word = word.substr(0, head + 1);
+    text.skip(word.size());
     const std::string_view whole = word;
     const auto take = [&](std::string_view prefix) {
         if (word.size() < prefix.size() + 3 || !same_word(word.substr(0, prefix.size()), prefix))

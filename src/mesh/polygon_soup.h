@@ -3,11 +3,13 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/types.h"
 #include "mesh/material.h"
+#include "mesh/source_scene.h"
 
 /// What a model file says, before anything is repaired: polygons with any number
 /// of corners over shared points. Readers make it, `build_surface` cleans it.
@@ -25,6 +27,10 @@ struct PolygonSoup {
     /// Materials that lie in other files, which `io::read_model` reads: OBJ's libraries; one name per
     /// material (as above), of an entry there, or of a picture where there is no library.
     std::vector<std::string> material_libraries, material_names;
+    /// What the file says of its objects and their materials, or null. Its parts are the groups, unless
+    /// `polygon_parts` [n_polygons] says of each face in which part it is; all faces of a part are in one group.
+    std::shared_ptr<SourceScene> scene;
+    std::vector<std::uint32_t> polygon_parts;
     std::vector<std::string> warnings;     ///< one line each: what the reader dropped, with line numbers
 
     std::size_t n_polygons() const { return polygon_start.empty() ? 0 : polygon_start.size() - 1; }

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "mesh/half_edges.h"
 #include "mesh/surface_topology.h"
+#include "mesh/text_cursor.h"
 #include "mesh/triangulate.h"
 #include "mesh/weld.h"
 
@@ -25,9 +26,15 @@ void check_soup(const PolygonSoup& soup) {
         (soup.corner_uvs.empty() || soup.corner_uvs.size() == soup.corners.size()) &&
         (soup.point_colours.empty() || soup.point_colours.size() == soup.points.size()) &&
         (soup.polygon_groups.empty() || soup.polygon_groups.size() == soup.n_polygons()) &&
+        (soup.polygon_parts.empty() ||
+         (soup.scene && soup.polygon_parts.size() == soup.n_polygons() &&
+          soup.polygon_groups.size() == soup.n_polygons())) &&
         (soup.materials.empty() ||
          soup.materials.size() == (soup.polygon_groups.empty() ? 1 : soup.group_names.size()));
     if (!sound) throw Error("the mesh's polygon arrays do not fit each other");
+    for (const std::uint32_t part : soup.polygon_parts)
+        if (part >= soup.scene->parts.size())
+            throw Error("a polygon is in a part that does not exist");
     for (const std::uint32_t c : soup.corners)
         if (c >= soup.points.size())
             throw Error("a polygon uses point " + std::to_string(c) + " of " +
@@ -49,6 +56,8 @@ class Repair {
   private:
     void take_points();
     void weld();
+    void count_parts();
+    void report_lost_parts(const TriangleMesh& mesh);
     void cut_polygons();
     void cut_polygon(std::size_t p, EarBudget& budget);
     void add_triangle(std::size_t p, std::size_t c0, std::size_t c1, std::size_t c2);
@@ -62,9 +71,10 @@ class Repair {
     PolygonSoup soup_;
     RepairOptions options_;
     RepairReport report_;
-    RawMesh mesh_;
-    PairingReport pairs_;              ///< the last pairing
-    std::vector<std::uint32_t> ring_;  ///< scratch: corners of one polygon
+    RawMesh mesh_;  ///< its groups are parts where the soup has parts
+    std::vector<std::uint32_t> part_faces_, group_of_part_;  ///< by part, or by group
+    PairingReport pairs_;                                    ///< the last pairing
+    std::vector<std::uint32_t> ring_;                        ///< scratch: corners of one polygon
     std::vector<Vec3> ring_points_;
     std::vector<std::array<std::uint32_t, 3>> cuts_;
 };
@@ -99,6 +109,44 @@ void Repair::take_points() {
             "its detail");
 }
 
+void Repair::count_parts() {
+    const bool parts = !soup_.polygon_parts.empty();
+    const std::vector<std::uint32_t>& part = parts ? soup_.polygon_parts : soup_.polygon_groups;
+    for (std::size_t p = 0; p < part.size(); ++p) {
+        if (part[p] >= part_faces_.size()) part_faces_.resize(part[p] + 1);
+        ++part_faces_[part[p]];
+    }
+    if (!parts) return;
+    group_of_part_.resize(part_faces_.size());
+    for (std::size_t p = 0; p < part.size(); ++p) group_of_part_[part[p]] = soup_.polygon_groups[p];
+}
+
+/// Names the parts of the file of which no face is left.
+void Repair::report_lost_parts(const TriangleMesh& mesh) {
+    std::vector<bool> is_left(part_faces_.size(), false);
+    if (!part_faces_.empty())
+        for (std::size_t t = 0; t < mesh.n_triangles(); ++t) is_left[part_of(mesh, t)] = true;
+    constexpr std::size_t kMostNames = 5;
+    std::string names;
+    std::size_t n = 0, n_faces = 0;
+    for (std::size_t i = 0; i < part_faces_.size(); ++i) {
+        if (is_left[i] || part_faces_[i] == 0) continue;
+        n_faces += part_faces_[i];
+        if (++n > kMostNames) continue;
+        const bool in_scene = mesh.scene && i < mesh.scene->parts.size();
+        std::string name = in_scene ? mesh.scene->parts[i].object : "";
+        if (name.empty() && !mesh.triangle_groups.empty())
+            name = mesh.group_names[group_of_part_.empty() ? i : group_of_part_[i]];
+        names += (n > 1 ? ", " : "") + in_quotes(name);
+    }
+    if (n == 0) return;
+    report_.warnings.push_back(std::to_string(n) + (n == 1 ? " part" : " parts") + " of the file " +
+                               (n == 1 ? "has" : "have") + " no face left (" + names +
+                               (n > kMostNames ? ", ..." : "") + "): all of " +
+                               (n == 1 ? "its " : "their ") + std::to_string(n_faces) +
+                               " faces are without an area or lie on faces of other parts");
+}
+
 void Repair::weld() {
     std::vector<bool> used(mesh_.positions.size(), false);
     for (const std::uint32_t c : soup_.corners) used[c] = true;
@@ -118,7 +166,10 @@ void Repair::add_triangle(std::size_t p, std::size_t c0, std::size_t c1, std::si
         return;
     }
     mesh_.triangles.push_back(v);
-    if (!soup_.polygon_groups.empty()) mesh_.groups.push_back(soup_.polygon_groups[p]);
+    if (!soup_.polygon_parts.empty())
+        mesh_.groups.push_back(soup_.polygon_parts[p]);
+    else if (!soup_.polygon_groups.empty())
+        mesh_.groups.push_back(soup_.polygon_groups[p]);
     if (!soup_.corner_uvs.empty())
         for (const std::size_t c : {c0, c1, c2}) mesh_.uvs.push_back(soup_.corner_uvs[c]);
 }
@@ -162,6 +213,7 @@ void Repair::cut_polygons() {
     soup_.polygon_start = {};
     soup_.corner_uvs = {};
     soup_.polygon_groups = {};
+    soup_.polygon_parts = {};
 }
 
 void Repair::match() {
@@ -272,8 +324,14 @@ Surface Repair::hand_out(const SurfaceTopology& topology) {
     out.corner_uvs = std::move(mesh_.uvs);
     out.vertex_colours = std::move(mesh_.colours);
     out.triangle_groups = std::move(mesh_.groups);
+    out.scene = std::move(soup_.scene);
+    if (!group_of_part_.empty()) {
+        out.triangle_parts = out.triangle_groups;
+        for (std::uint32_t& group : out.triangle_groups) group = group_of_part_[group];
+    }
     if (!out.triangle_groups.empty()) out.group_names = std::move(soup_.group_names);
     out.materials = std::move(soup_.materials);
+    report_lost_parts(out);
     surface.report = std::move(report_);
     return surface;
 }
@@ -282,6 +340,7 @@ Surface Repair::run() {
     tuft::report(options_.progress, "welding", 0);
     take_points();
     weld();
+    count_parts();
     cut_polygons();
     tuft::report(options_.progress, "matching edges", 0);
     match();

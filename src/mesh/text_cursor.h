@@ -32,6 +32,8 @@ class TextCursor {
 
     /// Next token of this line, or "" when the line has no more.
     std::string_view word();
+    /// Goes on by `n` characters of the next token, of which the rest is a token then.
+    void skip(std::size_t n) { skip_blanks(), at_ += n; }
     /// The rest of this line without blanks at its ends.
     std::string_view rest();
     /// Next token as a number; NaN and infinities in any spelling pass through.

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/types.h"
 #include "mesh/material.h"
+#include "mesh/source_scene.h"
 
 /// The mesh as every room above sees it: plain arrays, metres, model frame,
 /// faces counter-clockwise from outside. Made by `mesh::build_surface` (repair.h),
@@ -25,6 +27,8 @@ struct TriangleMesh {
     std::vector<std::uint32_t> triangle_groups;  ///< [n_triangles] index into group_names, or empty
     std::vector<std::string> group_names;
     std::vector<Material> materials;  ///< [n_groups], or one for all without groups, or empty
+    std::shared_ptr<const SourceScene> scene;    ///< objects and materials of the file, or null
+    std::vector<std::uint32_t> triangle_parts;   ///< [n_triangles] index into scene->parts; empty: the groups
     Box bounds;
 
     std::size_t n_vertices() const { return positions.size(); }
@@ -33,6 +37,12 @@ struct TriangleMesh {
         return Vec3(positions[triangles[triangle][corner]]);
     }
 };
+
+/// Index of a triangle's part: object, group and material of the file together.
+inline std::uint32_t part_of(const TriangleMesh& mesh, std::size_t triangle) {
+    if (!mesh.triangle_parts.empty()) return mesh.triangle_parts[triangle];
+    return mesh.triangle_groups.empty() ? 0 : mesh.triangle_groups[triangle];
+}
 
 /// Whether the file gave the faces colours of their own.
 inline bool has_colours(const TriangleMesh& mesh) {

@@ -219,6 +219,50 @@ TEST(Gltf, WhatItCannotReadIsNamed) {
     EXPECT_NE(fault(j).find("compressed"), std::string::npos) << fault(j);
 }
 
+TEST(Gltf, ARequiredExtensionThatIsNotReadIsRefusedByName) {
+    json j = triangle();
+    j["extensionsRequired"] = {"KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"};
+    EXPECT_EQ(fault(j), "read without complaint");
+    j["extensionsRequired"] = {"ACME_spline_surfaces"};
+    EXPECT_EQ(fault(j), "x.gltf: it requires the glTF extension 'ACME_spline_surfaces', which tuft does not know; export it "
+                        "without that extension");
+    for (const char* known : {"KHR_texture_basisu", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression"}) {
+        j["extensionsRequired"] = {known};
+        EXPECT_NE(fault(j).find(std::string("requires the glTF extension ") + known), std::string::npos) << fault(j);
+        EXPECT_NE(fault(j).find("export"), std::string::npos) << "what to do";
+    }
+    j["extensionsRequired"] = {7, nullptr};
+    EXPECT_EQ(fault(j), "read without complaint");
+    j.erase("extensionsRequired");
+    j["extensionsUsed"] = {"ACME_spline_surfaces"};
+    EXPECT_EQ(fault(j), "read without complaint") << "what is not required may be left aside";
+}
+
+TEST(Gltf, NoMessageHoldsAWholeDataUri) {
+    const std::string long_uri = "data:application/octet-stream;base64," + std::string(100'000, 'A') + "*";
+    json j = triangle();
+    j["buffers"][0]["uri"] = long_uri;
+    EXPECT_LT(fault(j).size(), 500u) << fault(j).substr(0, 600);
+    j["buffers"][0]["uri"] = "data:nothing/known," + std::string(100'000, 'A');
+    EXPECT_LT(fault(j).size(), 500u);
+    j["buffers"][0]["uri"] = std::string(100'000, 'a') + ".bin";
+    EXPECT_LT(fault(j).size(), 500u);
+    j = pictured_triangle();
+    j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    j["meshes"][0]["primitives"][0]["material"] = 0;
+    for (const std::string& uri : {"data:image/png;base64," + std::string(100'000, 'A'), "data:image/bmp;base64," + std::string(100'000, 'A'),
+                                   std::string("data:") + std::string(100'000, 'A')}) {
+        j["images"][0]["uri"] = uri;
+        std::string told;
+        try {
+            for (const std::string& warning : read(j).warnings) told += warning;
+        } catch (const Error& e) {
+            told = e.what();
+        }
+        EXPECT_LT(told.size(), 500u) << told.substr(0, 600);
+    }
+}
+
 TEST(Gltf, FaultsAreNamed) {
     const auto with = [](const std::string& pointer, const json& value) {
         json j = triangle();

@@ -93,11 +93,21 @@ TEST(Obj, GroupsObjectsAndMaterialsAreKept) {
                           "f 1 3 4\no Car\nf 1 4 2\ng Door\nusemtl Red Paint # fine\nf 5 6 8 7\n"
                           "usemtl\nf 1 2 6 5\n"),
                  "a.obj");
-    EXPECT_THAT(soup.group_names, ElementsAre("Car", "Car / Door", "Car / Door / Red Paint", ""));
-    EXPECT_THAT(soup.polygon_groups, ElementsAre(3u, 0u, 2u, 1u));
+    EXPECT_THAT(soup.group_names, ElementsAre("Car", "Car / Door / Red Paint", "Car / Door", ""));
+    EXPECT_THAT(soup.polygon_groups, ElementsAre(3u, 0u, 1u, 2u));
     const Surface s = build_surface(soup);
-    EXPECT_THAT(s.mesh.triangle_groups, ElementsAre(3u, 0u, 2u, 2u, 1u, 1u));
-    EXPECT_EQ(s.mesh.group_names[2], "Car / Door / Red Paint");
+    EXPECT_THAT(s.mesh.triangle_groups, ElementsAre(3u, 0u, 1u, 1u, 2u, 2u));
+    EXPECT_EQ(s.mesh.group_names[1], "Car / Door / Red Paint");
+    ASSERT_TRUE(s.mesh.scene);
+    EXPECT_EQ(s.mesh.scene->parts[1], (ScenePart{.object = "Car", .group = "Door", .material = "Red Paint"}));
+}
+
+TEST(Obj, ThereIsNoGroupWithoutFacesAndThoseOfTheFileAreReported) {
+    const PolygonSoup soup = read_obj(bytes_of(kObjPoints + "o Empty\no Car\ng default\ng Door\nusemtl Red\n" + kObjQuads +
+                                               "o Tail\ng Lamp\n"),
+                                      "a.obj");
+    EXPECT_THAT(soup.group_names, ElementsAre("Car / Door / Red")) << "o, g and usemtl name one group together";
+    EXPECT_THAT(soup.warnings, ElementsAre("3 groups have no faces and are left out: 'Empty', 'Tail', 'Lamp'"));
 }
 
 TEST(Obj, VertexColoursAsRealsOrBytes) {
@@ -412,6 +422,7 @@ TEST(Off, CubeInEveryDialect) {
     expect("OFF # a comment\n# another\n\n8 6 0 # counts\n" + kOffBody, "comments");
     expect("OFF 8 6 12\n" + kOffBody, "counts on the first line");
     expect("8 6\n" + kOffBody, "no magic");
+    expect("OFF8 6 12\n" + kOffBody, "no end of the first line, as in ModelNet");
     expect(replaced("off\n8 6 12\n" + kOffBody, "\n", "\r\n"), "CR LF, lower case");
     Binary out("OFF BINARY\n", true);
     out.put(std::int32_t{8}).put(std::int32_t{6}).put(std::int32_t{12});

@@ -350,6 +350,33 @@ TEST(Repair, KeepsColoursGroupsAndTextureCoordinatesThroughEverything) {
     EXPECT_THAT(s.mesh.group_names, ElementsAre("left", "right"));
 }
 
+TEST(Repair, PartsAreKeptAndOneWithoutAFaceLeftIsNamed) {
+    PolygonSoup cubes = make_box();
+    add_box(cubes, Vec3(0), Vec3(1));  // on the faces of the first one
+    add_box(cubes, Vec3(3, 0, 0), Vec3(1));
+    cubes.scene = std::make_shared<SourceScene>();
+    for (const char* name : {"body", "double", "wheel"})
+        cubes.scene->parts.push_back({.object = name});
+    cubes.group_names = {"paint", "rubber"};
+    for (std::uint32_t p = 0; p < 18; ++p) {
+        cubes.polygon_parts.push_back(p / 6);
+        cubes.polygon_groups.push_back(p < 12 ? 0 : 1);
+    }
+    const Surface s = repaired(cubes);
+    ASSERT_EQ(s.mesh.triangle_parts.size(), 24u);
+    for (std::size_t t = 0; t < 24; ++t) {
+        EXPECT_EQ(s.mesh.triangle_parts[t], t < 12 ? 0u : 2u);
+        EXPECT_EQ(s.mesh.triangle_groups[t], t < 12 ? 0u : 1u);
+    }
+    EXPECT_EQ(s.mesh.scene->parts[2].object, "wheel");
+    EXPECT_THAT(
+        s.report.warnings,
+        ElementsAre("1 part of the file has no face left ('double'): all of its 6 faces are "
+                    "without an area or lie on faces of other parts"));
+    cubes.polygon_parts[5] = 3;
+    EXPECT_THROW(build_surface(cubes), Error);
+}
+
 TEST(Repair, NormalsSplitAtCreasesOnly) {
     const Surface box = repaired(make_box());
     for (std::size_t c = 0; c < 36; ++c) {  // every corner has its face's normal

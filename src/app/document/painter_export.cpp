@@ -41,9 +41,11 @@ void Painter::export_model(const ExportModel& command) {
     io::ModelMaps maps = io::make_maps(painting->stack(), m.texels, painting->substrate(), compose);
     if (!command.height) maps.height = {};
     if (!command.orm) maps.orm = {};
-    io::export_model(command.path, *m.mesh, m.atlas, maps, {.frame = work_.frame, .progress = progress("Exporting")});
+    const std::vector<std::string> notes = io::export_model(
+        command.path, *m.mesh, m.atlas, maps,
+        {.frame = work_.frame, .painted = io::painted_parts(painting->stack(), *m.mesh, m.atlas, m.texels), .progress = progress("Exporting")});
     if (command.pictures > 0) draw_pictures(command, *painting);
-    say("Exported " + command.path.string());
+    say("Exported " + command.path.string() + (notes.empty() ? "" : "; " + notes.front()));
     publish();
 }
 

@@ -1,0 +1,466 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "atlas/texels/texel_map.h"
+#include "core/error.h"
+#include "core/files.h"
+#include "io/export.h"
+#include "io/image.h"
+#include "io/project.h"
+#include "io/read_model.h"
+#include "sample_model.h"
+#include "stroke/painting/model.h"
+
+/// Objects, groups and materials of a file, through painting to the exported model.
+namespace tuft::io {
+namespace {
+
+using namespace testing;
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+namespace fs = std::filesystem;
+
+const Image8 kTwoPixels{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
+
+/// A glTF file that is put together in memory.
+class GltfMaker {
+  public:
+    json document{{"asset", {{"version", "2.0"}}}, {"scene", 0}};
+
+    int add_view(const void* data, std::size_t size) {
+        buffer_.resize((buffer_.size() + 3) / 4 * 4);
+        document["bufferViews"].push_back(
+            {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", size}});
+        const auto* from = static_cast<const char*>(data);
+        buffer_.insert(buffer_.end(), from, from + size);
+        return static_cast<int>(document["bufferViews"].size()) - 1;
+    }
+    template <class T>
+    int add_accessor(const std::vector<T>& values, int component, const char* type,
+                     json more = json::object()) {
+        more["bufferView"] = add_view(values.data(), values.size() * sizeof(T));
+        more["componentType"] = component;
+        more["count"] = values.size();
+        more["type"] = type;
+        document["accessors"].push_back(std::move(more));
+        return static_cast<int>(document["accessors"].size()) - 1;
+    }
+    /// A box from -1/2 to 1/2, scaled and moved: 24 vertices, 12 triangles, two sets of UVs.
+    json box(const Vec3f& at, const Vec3f& size, int material) {
+        std::vector<Vec3f> points;
+        std::vector<Vec2f> first, second;
+        std::vector<std::uint16_t> indices;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const float side : {-0.5f, 0.5f}) {
+                const auto base = static_cast<std::uint16_t>(points.size());
+                for (const Vec2f& c : {Vec2f(-0.5f, -0.5f), Vec2f(0.5f, -0.5f), Vec2f(0.5f, 0.5f),
+                                       Vec2f(-0.5f, 0.5f)}) {
+                    Vec3f p;
+                    p[axis] = side;
+                    p[(axis + 1) % 3] = side > 0 ? c.x : -c.x;
+                    p[(axis + 2) % 3] = c.y;
+                    points.push_back(at + size * p);
+                    first.push_back((c + 0.5f + Vec2f(float(axis), side > 0 ? 1.0f : 0.0f)) / 3.0f);
+                    second.push_back(4.0f * c);
+                }
+                for (const int i : {0, 1, 2, 0, 2, 3})
+                    indices.push_back(static_cast<std::uint16_t>(base + i));
+            }
+        const Vec3f lo = at - 0.5f * size, hi = at + 0.5f * size;
+        json attributes{
+            {"POSITION", add_accessor(points, 5126, "VEC3",
+                                      {{"min", {lo.x, lo.y, lo.z}}, {"max", {hi.x, hi.y, hi.z}}})},
+            {"TEXCOORD_0", add_accessor(first, 5126, "VEC2")},
+            {"TEXCOORD_1", add_accessor(second, 5126, "VEC2")}};
+        json primitive{{"attributes", std::move(attributes)},
+                       {"indices", add_accessor(indices, 5123, "SCALAR")}};
+        if (material >= 0) primitive["material"] = material;
+        return primitive;
+    }
+    std::vector<char> glb() {
+        document["buffers"] = json::array({{{"byteLength", buffer_.size()}}});
+        std::string text = document.dump();
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        std::vector<char> bytes;
+        const auto put = [&](const void* data, std::size_t size) {
+            bytes.insert(bytes.end(), static_cast<const char*>(data),
+                         static_cast<const char*>(data) + size);
+        };
+        const auto number = [&](std::size_t value) {
+            const auto v = static_cast<std::uint32_t>(value);
+            put(&v, 4);
+        };
+        put("glTF", 4), number(2), number(28 + text.size() + buffer_.size());
+        number(text.size()), put("JSON", 4), put(text.data(), text.size());
+        number(buffer_.size()), put("BIN\0", 4), put(buffer_.data(), buffer_.size());
+        return bytes;
+    }
+
+  private:
+    std::vector<char> buffer_;
+};
+
+/// A truck: a body of paint and glass, two wheels of one mesh (one of them mirrored) on an axle, a
+/// textured flag whose normals lie by other UVs.
+std::vector<char> truck_glb() {
+    GltfMaker maker;
+    json& d = maker.document;
+    const std::vector<unsigned char> png = png_bytes(view_of(kTwoPixels));
+    for (const char* name : {"rubber", "flag", "flag normals"})
+        d["images"].push_back({{"name", name},
+                               {"mimeType", "image/png"},
+                               {"bufferView", maker.add_view(png.data(), png.size())}});
+    d["samplers"] = {{{"wrapS", 33648}}};
+    for (int i = 0; i < 3; ++i) d["textures"].push_back({{"source", i}, {"sampler", 0}});
+    d["extensionsUsed"] = {"KHR_materials_transmission", "KHR_texture_transform"};
+    d["materials"] = json::parse(R"([
+      {"name":"Paint","doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.6,0.05,0.05,1],"metallicFactor":0.2}},
+      {"name":"Glass","alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[0.6,0.8,0.9,0.3]},
+       "extensions":{"KHR_materials_transmission":{"transmissionFactor":0.5}}},
+      {"name":"Rubber","pbrMetallicRoughness":{"baseColorTexture":{"index":0},"roughnessFactor":0.9}},
+      {"name":"Chrome","emissiveFactor":[0.1,0,0],"pbrMetallicRoughness":{"roughnessFactor":0.1}},
+      {"name":"Flag","alphaMode":"MASK","alphaCutoff":0.4,"pbrMetallicRoughness":{"baseColorTexture":{"index":1}},
+       "normalTexture":{"index":2,"texCoord":1,"extensions":{"KHR_texture_transform":{"scale":[2,2]}}}}])");
+    d["meshes"].push_back(
+        {{"name", "body mesh"},
+         {"primitives", {maker.box({0, 1, 0}, {4, 1, 2}, 0), maker.box({1, 2, 0}, {1, 1, 2}, 1)}}});
+    d["meshes"].push_back({{"name", "wheel mesh"},
+                           {"primitives",
+                            {maker.box({0, 0, 0}, {1, 1, 0.5f}, 2),
+                             maker.box({0.1f, 0, 0}, {0.5f, 0.5f, 0.7f}, 3)}}});
+    d["meshes"].push_back(
+        {{"name", "flag mesh"}, {"primitives", {maker.box({0, 0, 0}, {1, 1, 0.1f}, 4)}}});
+    d["nodes"] = json::parse(R"([
+      {"name":"Truck","children":[1,2,5],"translation":[0.5,0,0.25],"rotation":[0,0.14943813,0,0.98877108]},
+      {"name":"Body","mesh":0,"extras":{"plate":"TU FT 1"}},
+      {"name":"Axle","children":[3,4],"scale":[1,1,1.5]},
+      {"name":"Wheel left","mesh":1,"translation":[1.5,0.4,-1.5]},
+      {"name":"Wheel right","mesh":1,"translation":[1.5,0.4,1.5],"scale":[1,1,-1]},
+      {"name":"Flag","mesh":2,"translation":[-1,3,0]}])");
+    d["scenes"] = {{{"nodes", {0}}}};
+    return maker.glb();
+}
+
+stroke::Model model_of(mesh::PolygonSoup soup, double metres_per_unit = 1) {
+    stroke::ModelOptions options;
+    options.repair.metres_per_unit = metres_per_unit;
+    options.unwrap.size = 256;
+    return stroke::prepare_model(std::move(soup), options);
+}
+
+/// Texels with ink all over the parts of an object and material.
+ink::Canvas ink_on(const stroke::Model& model, const std::string& object,
+                   const std::string& material) {
+    ink::Canvas canvas(model.texels.n_slots());
+    ink::Pigment pigment;
+    pigment.name = "black";
+    canvas.add_pigment(pigment);
+    std::mutex guard;
+    atlas::visit_texels(*model.mesh, model.atlas, model.texels,
+                        [&](std::uint32_t slot, int texel, std::uint32_t t, const Vec3&) {
+                            const mesh::ScenePart& part =
+                                model.mesh->scene->parts[mesh::part_of(*model.mesh, t)];
+                            if (part.object != object || part.material != material) return;
+                            const std::scoped_lock lock(guard);
+                            canvas.touch(slot, 0)[static_cast<std::size_t>(texel)] = 2;
+                        });
+    return canvas;
+}
+
+std::vector<std::string> export_painted(const fs::path& path, const stroke::Model& model,
+                                        const ink::Canvas& canvas, bool flat = true) {
+    const ink::Stack stack(canvas);
+    const ModelMaps maps = pattern_maps(model.atlas.size, flat);
+    return export_model(path, *model.mesh, model.atlas, maps,
+                        {.painted = painted_parts(stack, *model.mesh, model.atlas, model.texels)});
+}
+
+json glb_json(const fs::path& path) {
+    const std::vector<char> bytes = read_file(path);
+    std::uint32_t size = 0;
+    std::memcpy(&size, &bytes[12], 4);
+    return json::parse(bytes.begin() + 20, bytes.begin() + 20 + size);
+}
+
+struct PartSum {
+    std::size_t triangles = 0;
+    Box bounds;
+};
+
+/// Triangles and extent (metres) of each "object / material" of a file.
+std::map<std::string, PartSum> parts_in(const fs::path& path, double metres_per_unit = 1) {
+    const mesh::PolygonSoup soup = read_model(path);
+    std::map<std::string, PartSum> parts;
+    for (std::size_t p = 0; p < soup.n_polygons(); ++p) {
+        const std::uint32_t index =
+            soup.polygon_parts.empty() ? soup.polygon_groups[p] : soup.polygon_parts[p];
+        const mesh::ScenePart& part = soup.scene->parts[index];
+        PartSum& sum = parts[part.object + " / " + part.material];
+        ++sum.triangles;
+        for (std::size_t c = soup.polygon_start[p]; c < soup.polygon_start[p + 1]; ++c)
+            sum.bounds.add(metres_per_unit * soup.points[soup.corners[c]]);
+    }
+    return parts;
+}
+
+const json& material_named(const json& document, const std::string& name) {
+    static const json none;
+    for (const json& m : document["materials"])
+        if (m["name"] == name) return m;
+    return none;
+}
+
+std::vector<std::string> names_in(const json& list) {
+    std::vector<std::string> names;
+    for (const json& item : list) names.push_back(item.value("name", ""));
+    return names;
+}
+
+class Parts : public ::testing::Test {
+  protected:
+    Parts() {
+        const std::vector<char> bytes = truck_glb();
+        write_file(folder / "truck.glb", bytes.data(), bytes.size());
+    }
+    Folder folder{"parts"};
+};
+
+TEST_F(Parts, OnlyWhatIsPaintedGetsTheDecoratedMaterial) {
+    const stroke::Model model = model_of(read_model(folder / "truck.glb"));
+    export_painted(folder / "out.glb", model, ink_on(model, "Wheel right", "Rubber"));
+    const json before = glb_json(folder / "truck.glb"), after = glb_json(folder / "out.glb");
+    EXPECT_EQ(names_in(after["nodes"]), names_in(before["nodes"]));
+    for (std::size_t n = 0; n < before["nodes"].size(); ++n)
+        for (const char* key : {"children", "translation", "rotation", "scale", "extras"})
+            EXPECT_EQ(after["nodes"][n].value(key, json()), before["nodes"][n].value(key, json()))
+                << n << key;
+    EXPECT_THAT(names_in(after["materials"]),
+                ElementsAre("Paint", "Glass", "Rubber", "Chrome", "Flag", "decorated"));
+    EXPECT_THAT(names_in(after["meshes"]),
+                ElementsAre("body mesh", "wheel mesh", "flag mesh", "wheel mesh"))
+        << "the other wheel shows the mesh that both had";
+    for (const char* name : {"Paint", "Glass", "Rubber", "Chrome"})
+        EXPECT_EQ(material_named(after, name), material_named(before, name));
+    const auto& wheel = after["meshes"][after["nodes"][4]["mesh"].get<std::size_t>()]["primitives"];
+    ASSERT_EQ(wheel.size(), 2u);
+    EXPECT_EQ(after["materials"][wheel[0]["material"].get<std::size_t>()]["name"], "decorated");
+    EXPECT_EQ(after["materials"][wheel[1]["material"].get<std::size_t>()]["name"], "Chrome");
+    EXPECT_TRUE(wheel[1]["attributes"].contains("TEXCOORD_1")) << "written as it was read";
+}
+
+TEST_F(Parts, TheExportHasTheSameTrianglesInTheSamePlaces) {
+    const stroke::Model model = model_of(read_model(folder / "truck.glb"));
+    const auto before = parts_in(folder / "truck.glb");
+    for (const auto& [object, material] : {std::pair("Wheel right", "Rubber"),
+                                           std::pair("Body", "Paint"), std::pair("Flag", "Flag")}) {
+        export_painted(folder / "out.glb", model, ink_on(model, object, material), false);
+        auto after = parts_in(folder / "out.glb");
+        const std::string painted = std::string(object) + " / ";
+        ASSERT_TRUE(after.contains(painted + "decorated")) << painted;
+        after[painted + material] = after[painted + "decorated"];
+        after.erase(painted + "decorated");
+        ASSERT_EQ(after.size(), before.size());
+        for (const auto& [name, sum] : before) {
+            EXPECT_EQ(after[name].triangles, sum.triangles) << name;
+            // There and back through the node's frame in floats, 4 m across.
+            EXPECT_LT(glm::distance(after[name].bounds.lo, sum.bounds.lo), 2e-6) << name;
+            EXPECT_LT(glm::distance(after[name].bounds.hi, sum.bounds.hi), 2e-6) << name;
+        }
+        const stroke::Model again = model_of(read_model(folder / "out.glb"));
+        EXPECT_EQ(again.repairs.faces_flipped, model.repairs.faces_flipped)
+            << "also in the frame that mirrors";
+    }
+}
+
+TEST_F(Parts, PicturesAndVerticesThatNothingShowsAnyMoreAreLeftOut) {
+    const stroke::Model model = model_of(read_model(folder / "truck.glb"));
+    export_painted(folder / "out.glb", model, ink_on(model, "Flag", "Flag"));
+    const json after = glb_json(folder / "out.glb");
+    EXPECT_THAT(names_in(after["images"]), ElementsAre("rubber", "base_colour", "orm"));
+    EXPECT_EQ(material_named(after, "Flag"), json());
+    const json& rubber = material_named(after, "Rubber");
+    const auto texture =
+        rubber["pbrMetallicRoughness"]["baseColorTexture"]["index"].get<std::size_t>();
+    EXPECT_EQ(after["images"][after["textures"][texture]["source"].get<std::size_t>()]["name"],
+              "rubber");
+    EXPECT_EQ(after["textures"][texture]["sampler"], 0);
+    EXPECT_EQ(after["samplers"][0]["wrapS"], 33648);
+    const json before = glb_json(folder / "truck.glb");
+    // The flag's three vectors of 24 vertices and its indices went, those of the new one with
+    // normals came.
+    EXPECT_EQ(after["accessors"].size(), before["accessors"].size());
+}
+
+TEST_F(Parts, AProjectKeepsThem) {
+    const stroke::Model model = model_of(read_model(folder / "truck.glb"));
+    const ink::Canvas canvas = ink_on(model, "Body", "Paint");
+    export_painted(folder / "out.glb", model, canvas);
+    const std::vector<char> expected = read_file(folder / "out.glb");
+    ProjectModel stored;
+    stored.source = "truck.glb";
+    stored.mesh = *model.mesh;
+    stored.atlas = model.atlas;
+    stored.substrate = "name = 'x'\n";
+    Project::create(folder / "p.tuft", stored);
+    fs::remove(folder / "truck.glb");
+    ProjectModel back = Project::open(folder / "p.tuft").model();
+    ASSERT_TRUE(back.mesh.scene);
+    EXPECT_EQ(back.mesh.scene->parts, model.mesh->scene->parts);
+    EXPECT_EQ(back.mesh.triangle_parts, model.mesh->triangle_parts);
+    const stroke::Model again = stroke::prepare_model(std::move(back.mesh), std::move(back.atlas));
+    export_painted(folder / "out.glb", again, canvas);
+    EXPECT_EQ(read_file(folder / "out.glb"), expected);
+}
+
+TEST_F(Parts, ObjHasTheObjectsAndMaterialsToo) {
+    const stroke::Model model = model_of(read_model(folder / "truck.glb"));
+    const std::vector<std::string> notes =
+        export_painted(folder / "out.obj", model, ink_on(model, "Body", "Paint"));
+    auto before = parts_in(folder / "truck.glb");
+    before["Body / decorated"] = before["Body / Paint"];
+    before.erase("Body / Paint");
+    const auto after = parts_in(folder / "out.obj", 1e-3);
+    ASSERT_EQ(after.size(), before.size());
+    for (const auto& [name, sum] : before) {
+        ASSERT_TRUE(after.contains(name)) << name;
+        EXPECT_EQ(after.at(name).triangles, sum.triangles) << name;
+        EXPECT_LT(glm::distance(after.at(name).bounds.hi, sum.bounds.hi), 2e-6) << name;
+    }
+    const mesh::PolygonSoup soup = read_model(folder / "out.obj");
+    EXPECT_TRUE(soup.warnings.empty());
+    std::map<std::string, const mesh::Material*> materials;
+    for (std::size_t i = 0; i < soup.scene->parts.size(); ++i)
+        materials[soup.scene->parts[i].material] = &soup.materials[i];
+    ASSERT_TRUE(materials.at("Rubber")->picture);
+    EXPECT_EQ(materials.at("Rubber")->picture->rgb, kTwoPixels.pixels);
+    EXPECT_NEAR(materials.at("Glass")->colour.b, 0.9547, 1e-3) << "sRGB of 0.9";
+    const json document = json::parse(soup.scene->document);
+    EXPECT_NEAR(material_named(document, "Glass")["pbrMetallicRoughness"]["baseColorFactor"][3],
+                0.3, 1e-6);
+    EXPECT_EQ(material_named(document, "Glass")["alphaMode"], "BLEND");
+    EXPECT_NEAR(material_named(document, "Chrome")["pbrMetallicRoughness"]["roughnessFactor"], 0.1,
+                1e-6);
+    EXPECT_NEAR(material_named(document, "Chrome")["pbrMetallicRoughness"]["metallicFactor"], 1,
+                1e-6);
+    EXPECT_NEAR(material_named(document, "Chrome")["emissiveFactor"][0], 0.1, 1e-6);
+    EXPECT_THAT(notes, Contains(HasSubstr("1 of 7 parts get the material 'decorated'")));
+}
+
+TEST_F(Parts, InkOnATransparentPartIsReported) {
+    const stroke::Model model = model_of(read_model(folder / "truck.glb"));
+    EXPECT_THAT(export_painted(folder / "out.glb", model, ink_on(model, "Body", "Glass")),
+                Contains(HasSubstr("part 'Body' is transparent in its file")));
+}
+
+TEST_F(Parts, WithoutInkTheFileIsWrittenAsItWas) {
+    const stroke::Model model = model_of(read_model(folder / "truck.glb"));
+    export_painted(folder / "out.glb", model, ink::Canvas(model.texels.n_slots()));
+    json before = glb_json(folder / "truck.glb"), after = glb_json(folder / "out.glb");
+    for (const char* key : {"nodes", "meshes", "materials", "textures", "images", "samplers",
+                            "accessors", "scenes", "extensionsUsed"})
+        EXPECT_EQ(after[key], before[key]) << key;
+    EXPECT_EQ(parts_in(folder / "out.glb").size(), parts_in(folder / "truck.glb").size());
+}
+
+void put(const fs::path& path, const std::string& text) {
+    write_file(path, text.data(), text.size());
+}
+
+/// Two objects, one of them with two groups; pictures and transparency in the library.
+void put_obj(const Folder& folder) {
+    std::string text = "mtllib m.mtl\n";
+    for (int i = 0; i < 3; ++i) {
+        const std::string x = std::to_string(100 * i), x1 = std::to_string(100 * i + 80);
+        text += "v " + x + " 0 0\nv " + x1 + " 0 0\nv " + x1 + " 80 0\nv " + x + " 80 0\n";
+    }
+    text +=
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\no Car\ng doors\nusemtl Red paint\nf 1/1 2/2 3/3 4/4\n"
+        "g windows\nusemtl Glass\nf 5/1 6/2 7/3 8/4\no Bench seat\ng\nusemtl Cloth\nf 9/1 10/2 "
+        "11/3 12/4\n";
+    put(folder / "m.obj", text);
+    put(folder / "m.mtl",
+        "newmtl Red paint\nKd 0.8 0.1 0.1\nNs 225\n\nnewmtl Glass\nKd 0.5 0.7 0.9\nd 0.25\nNi 1.5\n"
+        "newmtl Cloth\nmap_Kd -s 2 2 2 cloth.png\nmap_Bump -bm 0.5 cloth.png\nKe 0.5 0 0\n");
+    const std::vector<unsigned char> png = png_bytes(view_of(kTwoPixels));
+    put(folder / "cloth.png", {png.begin(), png.end()});
+}
+
+TEST(PartsOfObj, AreNodesAndMaterialsOfGltf) {
+    const Folder folder("obj_parts");
+    put_obj(folder);
+    const stroke::Model model = model_of(read_model(folder / "m.obj"), 1e-3);
+    export_painted(folder / "out.glb", model, ink_on(model, "Car", "Red paint"));
+    const json j = glb_json(folder / "out.glb");
+    EXPECT_THAT(names_in(j["nodes"]), ElementsAre("Car", "doors", "windows", "Bench seat"));
+    EXPECT_EQ(j["nodes"][0]["children"], json({1, 2}));
+    EXPECT_THAT(names_in(j["materials"]), UnorderedElementsAre("Glass", "Cloth", "decorated"));
+    const json& glass = material_named(j, "Glass");
+    EXPECT_EQ(glass["alphaMode"], "BLEND");
+    EXPECT_EQ(glass["pbrMetallicRoughness"]["baseColorFactor"][3], 0.25);
+    const json& cloth = material_named(j, "Cloth");
+    EXPECT_EQ(cloth["emissiveFactor"], json({0.5, 0.0, 0.0}));
+    EXPECT_TRUE(cloth["pbrMetallicRoughness"].contains("baseColorTexture"));
+    EXPECT_TRUE(cloth.contains("normalTexture"));
+    const auto parts = parts_in(folder / "out.glb");
+    ASSERT_TRUE(parts.contains("windows / Glass") && parts.contains("doors / decorated") &&
+                parts.contains("Bench seat / Cloth"));
+    EXPECT_NEAR(parts.at("Bench seat / Cloth").bounds.hi.x, 0.28, 1e-6);
+}
+
+TEST(PartsOfObj, StayWithTheStatementsOfTheirMaterials) {
+    const Folder folder("obj_obj");
+    put_obj(folder);
+    const stroke::Model model = model_of(read_model(folder / "m.obj"), 1e-3);
+    export_painted(folder / "out.obj", model, ink_on(model, "Car", "Red paint"));
+    const std::vector<char> obj = read_file(folder / "out.obj"),
+                            mtl = read_file(folder / "out.mtl");
+    const std::string text(obj.begin(), obj.end()), library(mtl.begin(), mtl.end());
+    for (const char* line : {"\no Car\n", "\ng doors\n", "\ng windows\n", "\no Bench seat\n",
+                             "\nusemtl Glass\n", "\nusemtl decorated\n"})
+        EXPECT_THAT(text, HasSubstr(line));
+    for (const char* line : {"newmtl Glass\nKd 0.5 0.7 0.9\nd 0.25\nNi 1.5\n",
+                             "map_Kd -s 2 2 2 out_cloth.png\n", "map_Bump -bm 0.5 out_cloth.png\n"})
+        EXPECT_THAT(library, HasSubstr(line));
+    const mesh::PolygonSoup soup = read_model(folder / "out.obj");
+    EXPECT_THAT(soup.group_names, ElementsAre("Car / doors / decorated", "Car / windows / Glass",
+                                              "Bench seat / Cloth"));
+    EXPECT_TRUE(soup.warnings.empty());
+    const mesh::Surface again = mesh::build_surface(soup);
+    for (std::size_t t = 0; t < again.mesh.n_triangles(); ++t)
+        for (std::size_t c = 3 * t; c < 3 * t + 3 && again.mesh.triangle_groups[t] > 0; ++c)
+            EXPECT_EQ(again.mesh.corner_uvs[c], model.mesh->corner_uvs[c])
+                << "without ink they lie by their own UVs";
+}
+
+// Groups of colours, and projects made before scenes were kept.
+TEST(PartsOfGroups, AreNodesWithTheirColours) {
+    const Folder folder("groups");
+    put(folder / "m.off",
+        "OFF\n6 2 0\n0 0 0\n100 0 0\n0 100 0\n200 0 0\n300 0 0\n200 100 0\n3 0 1 2 255 0 51\n3 3 4 "
+        "5 0 102 0\n");
+    const stroke::Model model = model_of(read_model(folder / "m.off"), 1e-3);
+    const std::vector<std::uint8_t> painted{1, 0};
+    const ModelMaps maps = pattern_maps(256, true);
+    export_model(folder / "out.glb", *model.mesh, model.atlas, maps, {.painted = painted});
+    const json j = glb_json(folder / "out.glb");
+    EXPECT_THAT(names_in(j["nodes"]), ElementsAre("#ff0033", "#006600"));
+    EXPECT_NEAR(material_named(j, "#006600")["pbrMetallicRoughness"]["baseColorFactor"][1], 0.1329,
+                1e-3)
+        << "linear of 102 / 255";
+    EXPECT_NE(material_named(j, "decorated"), json());
+    export_model(folder / "out.obj", *model.mesh, model.atlas, maps, {.painted = painted});
+    EXPECT_THAT(read_model(folder / "out.obj").group_names,
+                ElementsAre("out / _ff0033 / decorated", "out / _006600 / _006600"))
+        << "a # begins a comment";
+}
+
+}  // namespace
+}  // namespace tuft::io
