@@ -118,7 +118,7 @@ class Window : public testing::Test {
                 if (entry.path().extension() == ".tuft") found = entry.path();
         if (found.empty() || !fs::exists(found)) return -1;
         try {
-            return static_cast<int>(io::Project::open(found).n_strokes());
+            return static_cast<int>(io::Project::open(found, {.access = io::Access::read}).n_strokes());
         } catch (const std::exception&) {
             return -1;  // being written
         }

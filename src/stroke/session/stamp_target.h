@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ink/canvas.h"
-#include "ink/colour/presets.h"
+#include "ink/colour/pigments.h"
 #include "stroke/painting/mask.h"
 #include "stroke/painting/model.h"
 #include "stroke/session/plan_scratch_pool.h"

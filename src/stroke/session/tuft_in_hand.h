@@ -3,7 +3,7 @@
 #include <string>
 
 #include "brush/tuft.h"
-#include "ink/colour/presets.h"
+#include "ink/colour/pigments.h"
 #include "ink/touch/reservoir.h"
 
 namespace tuft::stroke {
