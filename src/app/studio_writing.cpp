@@ -20,14 +20,7 @@ std::optional<stroke::Placement> Studio::writing_placement() const {
     const auto hit = aim_at(*s.painter->model().query, aim);
     if (!hit) return std::nullopt;
     const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
-    stroke::Placement placement = place_writing(s.writing, *s.painter->model().query, hit->position, normal, aim.view_right);
-    if (s.writing.laying == stroke::Laying::project) {
-        // Straight through the picture: as it is seen now it comes to lie.
-        const double c = std::cos(s.writing.turn), t = std::sin(s.writing.turn);
-        placement.right = (s.writing.mirrored ? -1.0 : 1.0) * (c * aim.view_right - t * aim.view_up);
-        placement.down = -t * aim.view_right - c * aim.view_up;
-    }
-    return placement;
+    return place_writing(s.writing, *s.painter->model().query, hit->position, normal, aim.view_right, glm::cross(aim.view_right, aim.view_up));
 }
 
 void Studio::watch_writing() {

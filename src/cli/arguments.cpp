@@ -15,6 +15,7 @@
 #include "core/units.h"
 #include "ink/colour/match.h"
 #include "io/export_maps.h"
+#include "stroke/hand/free_area.h"
 #include "stroke/journal/trace.h"
 
 // What help and manual call the value of an option that is a path.
@@ -235,9 +236,13 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->check(CLI::IsMember({"surface", "plane"}));
     p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
         ->check(CLI::IsMember({"exact", "vertices"}));
-    p->add_option("--dip", paint.dip, "dip a fresh brush for each stroke, or carry hair and ink on until told")
-        ->check(CLI::IsMember({"each", "carry"}));
-    p->add_option("--film", paint.film, "still: ink stays where it is put; wet: it flows, soaks in, dries and is picked up")
+    p->add_option("--dip", paint.dip,
+                  "dip a fresh brush for each stroke, carry hair and ink on until told, or paint "
+                  "with a brush that never runs dry (endless)")
+        ->check(CLI::IsMember({"each", "carry", "endless"}));
+    p->add_option(
+         "--film", paint.film,
+         "still: ink stays where it is put; wet: it flows, soaks in, dries and is picked up")
         ->check(CLI::IsMember({"still", "wet"}));
     p->add_option_function<std::string>(
          "--down", 
@@ -282,6 +287,35 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
          },
          "where flat strokes go that have no place of their own: X,Y,Z in millimetres")
         ->type_name("X,Y,Z");
+    p->add_option("--on", paint.on,
+                  "puts flat strokes onto the largest calm area of a side, as by default onto the "
+                  "front or what lies flat: "
+                  "front (-y), back, left (-x), right, top, bottom, inside (of what is open above)")
+        ->check(CLI::IsMember({"front", "back", "left", "right", "top", "bottom", "inside"}))
+        ->excludes("--place")
+        ->type_name("SIDE");
+    p->add_option_function<std::string>(
+         "--read-from",
+         [&paint](const std::string& text) {
+             const auto side = stroke::side_named(text);
+             if (side && *side != stroke::Side::inside) {
+                 const Vec3 from = -stroke::look_at_side(*side);
+                 paint.read_from = {from.x, from.y, from.z};
+                 return;
+             }
+             paint.read_from = numbers(text, ',', 3, 1e9);
+             if (paint.read_from.empty() ||
+                 std::hypot(paint.read_from[0], paint.read_from[1], paint.read_from[2]) < 1e-6)
+                 throw CLI::ValidationError("--read-from",
+                                            "'" + text +
+                                                "' is neither front, back, left, right, top or "
+                                                "bottom nor a direction X,Y,Z");
+         },
+         "where a person stands who reads the drawing: front, back, left, right, top, bottom, or a "
+         "direction X,Y,Z from the model; "
+         "it stands upright for them, and --laying project goes straight away from them (default: "
+         "before the surface)")
+        ->type_name("DIRECTION");
     p->add_option("--laying", paint.laying,
                   "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap (round its very "
                   "triangles, into each groove), project (straight, as seen from before the place); default: as their file says, "

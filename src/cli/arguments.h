@@ -53,7 +53,7 @@ struct Paint {
     std::string spine = "rod";      ///< rod | table
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";  ///< exact | vertices
-    std::string dip = "each";       ///< each | carry
+    std::string dip = "each";       ///< each | carry | endless
     std::string film = "still";     ///< still | wet
     std::vector<double> down{0, 0, -1};  ///< towards the ground, for wet ink
     double dry = -1;                ///< seconds that the ink dries after each stroke file; 0: until dry; < 0: not at all
@@ -63,6 +63,8 @@ struct Paint {
     double stabilise_mm = 0;        ///< length of the string; 0: off
     std::filesystem::path habit;    ///< habit to undo, or empty
     std::vector<double> place_mm;   ///< x,y,z of the placement for flat strokes, or empty
+    std::string on;                 ///< side of the model (stroke::side_name) for flat strokes, or empty
+    std::vector<double> read_from;  ///< direction of who reads the drawing, three numbers, or empty
     double place_width_mm = 0;      ///< of the whole drawing placed; 0: as written
     std::string laying;             ///< drape, wrap, project; empty: see place_strokes
     double place_turn_deg = 0;      ///< anticlockwise, as seen by who stands before the surface

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,18 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+nlohmann::json to_json(const PlacedDrawing& p) {
+    const Vec3 at = p.at / kMillimetre;
+    nlohmann::json j{{"at_mm", {at.x, at.y, at.z}},
+                     {"normal", {p.normal.x, p.normal.y, p.normal.z}},
+                     {"width_mm", p.size.x / kMillimetre},
+                     {"height_mm", p.size.y / kMillimetre}};
+    if (!p.side.empty()) j["side"] = p.side;
+    if (p.part > 0)
+        j["free_mm"] = {p.free.x / kMillimetre, p.free.y / kMillimetre}, j["part"] = p.part;
+    return j;
 }
 
 std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
@@ -42,6 +55,20 @@ std::vector<const stroke::Stroke*> painted_strokes(const stroke::Journal& journa
     for (std::size_t i = first; i < journal.strokes().size(); ++i)
         if (journal.strokes()[i].action == stroke::Action::stroke) strokes.push_back(&journal.strokes()[i]);
     return strokes;
+}
+
+// Warnings for strokes whose brush was full and ran out of ink.
+void note_dry(const std::vector<stroke::StrokeReport>& reports, Console& console) {
+    const auto dry =
+        std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
+    if (dry == 0) return;
+    const auto first =
+        std::find_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
+    console.note(fmt::format(
+        "warning: {} full brush{} run{} dry: stroke {} after {:.0f} of {:.0f} mm{} (see --dip "
+        "endless, a larger --brush; dry_from_mm of --json)",
+        dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id,
+        first->dry_from / kMillimetre, first->path / kMillimetre, dry == 1 ? "" : ", and others"));
 }
 
 std::string stroke_name(const stroke::StrokeReport& report, const stroke::Stroke& stroke) {
@@ -91,7 +118,7 @@ int run(const Paint& a) {
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, a.surface, console);
     const stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;
-    place_strokes(strokes, model, a, console);
+    const std::optional<PlacedDrawing> placed = place_strokes(strokes, model, a, console);
     if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
 
     stroke::Painting painting(model, {.substrate = a.surface.substrate,
@@ -145,6 +172,7 @@ int run(const Paint& a) {
     console.clear();
     const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal(), n_before);
     note_misses(reports, done, console);
+    note_dry(reports, console);
     note_inside(reports, done, console);
 
     show_layers(painting, a.view.layers);
@@ -164,6 +192,7 @@ int run(const Paint& a) {
         j["triangles"] = model.mesh->n_triangles();
         j["mesh"] = to_json(model.repairs);
         j["atlas"] = to_json(model.atlas, model.atlas_report);
+        if (placed) j["placed"] = to_json(*placed);
         j["strokes"] = nlohmann::json::array();
         for (std::size_t i = 0; i < reports.size(); ++i)
             j["strokes"].push_back(to_json(reports[i], *done[i]));

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include "contact/outside.h"
+#include "core/error.h"
 #include "core/units.h"
 #include "stroke/hand/drawing.h"
-#include "stroke/hand/room.h"
+#include "stroke/hand/free_area.h"
 
 namespace tuft::cli {
 
@@ -29,71 +29,108 @@ void note_widths(const stroke::WidthMismatch& m, Console& console) {
 
 constexpr double kTooLarge = 3;  // diagonals of the model
 
-double extent_along(const Box& box, const Vec3& direction) {
-    return glm::dot(box.size(), glm::abs(direction));
+/// A point for the middle of a drawing, and the normal that it is laid out across.
+struct Spot {
+    mesh::SurfacePoint at;
+    Vec3 normal{0, 0, 1};
+};
+
+Vec3 vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+/// Its middle at a point that was named.
+Spot named_spot(const stroke::Model& model, const Paint& a, Console& console) {
+    const Vec3 place = kMillimetre * vector_of(a.place_mm);
+    const auto at = model.query->closest_point(place);
+    if (const double inside = contact::depth_inside(*model.query, place); inside > kInsideNoted)
+        console.note(fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.2f} mm inside the model; the drawing goes to the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
+                                 a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre));
+    return {*at, at->normal};
 }
 
-void lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths, Console& console) {
+/// On a side, and how large: where it is not said as it is written, if that suits the largest calm area, else as a part of it.
+Spot free_spot(const stroke::Model& model, const Paint& a, const Vec2& size, double& scale, PlacedDrawing& placed) {
+    const stroke::Side side = stroke::side_named(a.on).value_or(stroke::usual_side(model.mesh->bounds));
+    placed.side = stroke::side_name(side);
+    const auto free = stroke::find_free_area(*model.query, side, std::max(size.x, 1e-9) / std::max(size.y, 1e-9));
+    if (!free) {
+        if (!a.on.empty())
+            throw Error(fmt::format("{}: no calm area is found on its {}{}", a.model.string(), placed.side,
+                                    side == stroke::Side::inside ? " (the inside is looked for from above, within walls)" : ""));
+        const Vec3 look = stroke::look_at_side(side), before = model.mesh->bounds.centre() - model.mesh->bounds.diagonal() * look;
+        auto at = model.query->ray(before, look);
+        if (!at) at = model.query->closest_point(before);
+        return {*at, at->normal};
+    }
+    placed.free = free->size;
+    const auto part = [&] { return scale * std::max(size.x / free->size.x, size.y / free->size.y); };
+    if (a.place_width_mm <= 0 && part() > 0 && (part() > stroke::kMostPart || part() < stroke::kLeastPart)) scale *= stroke::kUsualPart / part();
+    placed.part = part();
+    return {free->at, free->normal};
+}
+
+/// Which way up it is read.
+stroke::Placement placement_at(const Spot& spot, const Paint& a, bool project) {
+    const double turn = a.place_turn_deg * kDegree;
+    if (a.read_from.empty()) return stroke::upright_placement(spot.at.position, spot.normal, turn);
+    const Vec3 from = vector_of(a.read_from);
+    return stroke::placement_seen(spot.at.position, project ? glm::normalize(from) : spot.normal, stroke::reading_right(from), turn);
+}
+
+void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double scale, Console& console) {
+    std::string line = fmt::format("{} the {} of the model, at {:.1f},{:.1f},{:.1f} mm", a.on.empty() ? "the strokes name no place; they go to" : "the strokes go to",
+                                   p.side, p.at.x / kMillimetre, p.at.y / kMillimetre, p.at.z / kMillimetre);
+    if (p.part > 0)
+        line += fmt::format(", the middle of its largest calm area, {:.4g} x {:.4g} mm, of which they take {:.0f} %", p.free.x / kMillimetre,
+                            p.free.y / kMillimetre, 100 * p.part);
+    line += " (see --place, --on)";
+    if (scale != 1 && a.place_width_mm <= 0)
+        line += fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide{} (see --place-width, --brush)", area.size().x / kMillimetre,
+                            scale * area.size().x / kMillimetre, a.brush.empty() ? " with brushes of that scale" : "");
+    console.note(line);
+}
+
+std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, const stroke::BrushFit& fit,
+                                         stroke::WidthTables& widths, Console& console) {
     for (stroke::Stroke& s : strokes) {
         if (s.layer == stroke::kPaletteLayer) continue;  // in its own frame
         if (!s.trace.placed) s.trace.placement.laying = stroke::Laying::drape;
         if (const auto laying = stroke::laying_named(a.laying)) s.trace.placement.laying = *laying;
     }
-    const std::vector<stroke::Trace*> drawing = stroke::drawing_in(strokes, !a.place_mm.empty());
-    if (drawing.empty()) return stroke::choose_brushes(strokes, {}, 1, 0, fit, widths);
+    const std::vector<stroke::Trace*> drawing = stroke::drawing_in(strokes, !a.place_mm.empty() || !a.on.empty());
+    if (drawing.empty()) {
+        stroke::choose_brushes(strokes, {}, 1, 0, fit, widths);
+        return {};
+    }
     stroke::arrange_parts(drawing);
     const Box area = stroke::extent_of(drawing);
-    const Box& box = model.mesh->bounds;
-    // What lies flat, such as a sheet or a plate, is written on from above.
-    const bool lies = box.size().z < 0.25 * std::min(box.size().x, box.size().y);
-    const Vec3 look = lies ? Vec3{0, 0, -1} : Vec3{0, 1, 0}, before = box.centre() - box.diagonal() * look;
     const double turn = a.place_turn_deg * kDegree, width = stroke::width_of(area);
     double scale = a.place_width_mm > 0 && width > 0 ? a.place_width_mm * kMillimetre / width : 1;
-    std::optional<mesh::SurfacePoint> at;
-    Vec3 normal;
-    std::string note;
-    if (a.place_mm.empty()) {
-        const Vec2 size = std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);
-        const stroke::Placement seen = stroke::upright_placement({}, -look, 0);
-        const double fill = std::max(size.x / extent_along(box, seen.right), size.y / extent_along(box, seen.down));
-        if (a.place_width_mm <= 0 && fill > 0 && (fill > 1 || fill < 0.01)) scale = 0.6 / fill;
-        if (const auto room = stroke::find_room(*model.query, look, scale * size)) {
-            at = room->at, normal = room->normal;
-            if (a.place_width_mm <= 0) scale *= room->scale;
-        } else {
-            if (at = model.query->ray(before, look); !at) at = model.query->closest_point(before);
-            normal = at->normal;
-        }
-        if (scale != 1 && a.place_width_mm <= 0)
-            note = fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide{} (see --place-width, --brush)", area.size().x / kMillimetre,
-                               scale * area.size().x / kMillimetre, a.brush.empty() ? " with brushes of that scale" : "");
-    } else {
-        const Vec3 place = kMillimetre * Vec3(a.place_mm[0], a.place_mm[1], a.place_mm[2]);
-        at = model.query->closest_point(place);
-        normal = at->normal;
-        if (const double inside = contact::depth_inside(*model.query, place); inside > kInsideNoted)
-            console.note(fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.2f} mm inside the model; the drawing goes to the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
-                                     a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre));
-    }
-    if (a.place_mm.empty())
-        console.note(fmt::format("the strokes name no place; they go to the {} of the model, at {:.1f},{:.1f},{:.1f} mm (see --place){}",
-                                 lies ? "top" : "front", at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre, note));
-    if (const double large = scale * std::max(area.size().x, area.size().y); large > kTooLarge * box.diagonal())
+    PlacedDrawing placed;
+    const Vec2 size = std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);
+    const Spot spot = a.place_mm.empty() ? free_spot(model, a, size, scale, placed) : named_spot(model, a, console);
+    placed.at = spot.at.position;
+    placed.normal = spot.normal;
+    placed.size = scale * Vec2(area.size());
+    if (a.place_mm.empty()) note_placed(placed, a, area, scale, console);
+    if (const double large = scale * std::max(area.size().x, area.size().y), whole = model.mesh->bounds.diagonal(); large > kTooLarge * whole)
         console.note(fmt::format("the drawing is {:.4g} mm large, the model {:.4g} mm: most of it meets no surface (see --place-width, --unit)",
-                                 large / kMillimetre, box.diagonal() / kMillimetre));
-    const stroke::DrawingPlace place{stroke::upright_placement(at->position, normal, turn, a.place_mirror), Vec2(area.centre()), scale};
-    stroke::place_drawing(drawing, place);
+                                 large / kMillimetre, whole / kMillimetre));
+    const bool project = drawing.front()->placement.laying == stroke::Laying::project;
+    stroke::place_drawing(drawing, {placement_at(spot, a, project), Vec2(area.centre()), scale, a.place_mirror});
     stroke::choose_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), fit, widths);
+    return placed;
 }
 
 }  // namespace
 
-void place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a,
-                   Console& console) {
+std::optional<PlacedDrawing> place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, Console& console) {
     stroke::WidthTables widths;
     const bool chosen = !a.brush.empty();
-    lay_drawing(strokes, model, a, {.grow = !chosen, .fit = !chosen || a.fit_brush}, widths, console);
+    const stroke::BrushFit fit{.grow = !chosen, .fit = !chosen || a.fit_brush};
+    const std::optional<PlacedDrawing> placed = lay_drawing(strokes, model, a, fit, widths, console);
+    stroke::redip_long_lines(strokes, fit, widths);
     note_widths(stroke::press_to_widths(strokes, widths), console);
+    return placed;
 }
 
 void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, const stroke::Model& model) {

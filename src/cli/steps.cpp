@@ -139,7 +139,8 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     settings.spine = a.spine;
     settings.footprint = a.footprint;
     settings.contact = a.contact;
-    settings.dip = a.dip;
+    settings.endless = a.dip == "endless";
+    settings.dip = settings.endless ? "each" : a.dip;
     settings.smooth = a.smooth;
     settings.stabilise = a.stabilise_mm * kMillimetre;
     settings.film = a.film;
@@ -405,7 +406,12 @@ nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::Stroke& s) {
             {"touched", r.touched()},
             {"nearest_mm", r.nearest / kMillimetre},
             {"inside_mm", r.deepest / kMillimetre},
-            {"origin_inside_mm", r.origin_inside / kMillimetre}};
+            {"origin_inside_mm", r.origin_inside / kMillimetre},
+            {"path_mm", r.path / kMillimetre},
+            {"dry_from_mm",
+             r.dry_from < 0 ? nlohmann::json() : nlohmann::json(r.dry_from / kMillimetre)},
+            {"dry_path_mm", r.dry_path / kMillimetre},
+            {"ran_dry", r.ran_dry()}};
 }
 
 double peak_megabytes() {

@@ -12,8 +12,28 @@ namespace tuft::io {
 
 /// Kinds of loss, in the order in which they are told.
 enum class SvgLoss {
-    text, image, foreign, missing_use, outside_use, missing_paint, clip, mask, filter, gradient, pattern, dash, marker, opacity,
-    blend, scaled_width, white, frame, transform, animation, script, rule,
+    text,
+    image,
+    foreign,
+    missing_use,
+    outside_use,
+    missing_paint,
+    clip,
+    mask,
+    filter,
+    gradient,
+    pattern,
+    dash,
+    marker,
+    opacity,
+    blend,
+    scaled_width,
+    white,
+    frame,
+    transform,
+    animation,
+    script,
+    rule,
 };
 inline constexpr std::size_t kSvgLosses = static_cast<std::size_t>(SvgLoss::rule) + 1;
 
@@ -23,7 +43,8 @@ class SvgLosses {
     void add(SvgLoss loss) { ++counts_[static_cast<std::size_t>(loss)]; }
     /// A colour that something is drawn in, as the file writes it.
     void add_colour(const std::string& colour);
-    /// One line for each kind that was met, with its count; one more for the colours where they are more than black.
+    /// One line for each kind that was met, with its count; one more for the colours where they are
+    /// more than black.
     std::vector<std::string> lines() const;
 
   private:

@@ -32,7 +32,7 @@ TEST(Writing, LiesWithItsMiddleAtTheCursorTurnedAndScaled) {
     constexpr double kRounding = 2e-6;  // metres: the turn is 0.01 degrees off at most, on 15 mm
     const auto at = query.ray(mesh.bounds.centre() + Vec3(0.01, 0.02, 1), Vec3(0, 0, -1));
     ASSERT_TRUE(at);
-    const auto lines = ghost_lines(query, w, place_writing(w, query, at->position, Vec3(0, 0, 1), Vec3(1, 0, 0)));
+    const auto lines = ghost_lines(query, w, place_writing(w, query, at->position, Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, 1)));
     ASSERT_EQ(lines.size(), 2u);
     // Seen from above with x to the right, a turn goes clockwise: the line's right end sinks.
     const Vec3 right = lines[0].back().position - at->position;
@@ -67,7 +67,7 @@ class WritingOnModel : public ::testing::Test {
         const mesh::SurfaceQuery& query = *work.model->query;
         const auto at = query.ray(from, along);
         EXPECT_TRUE(at);
-        const stroke::Placement placement = place_writing(w, query, at->position, -along, right);
+        const stroke::Placement placement = place_writing(w, query, at->position, -along, right, -along);
         {
             Painter painter(std::move(work));
             painter.post(PaintDrawing{placed_writing(w, placement, hand), stroke::group_name(w.file)});
@@ -139,6 +139,16 @@ TEST_F(WritingOnModel, HandwritingWithBrushesAndPlacesOfItsOwnIsTheSame) {
     w.scale = 0.4;
     const Painted studio = by_studio("vase.ply", w, {0, -1, 0.08}, {0, 1, 0}, {1, 0, 0}, kHand);
     expect_same(studio, by_program("vase.ply", w, studio.words, ""));
+}
+
+TEST_F(WritingOnModel, StraightThroughThePictureItIsTheSame) {
+    Writing w = roundel(0.05);
+    w.laying = stroke::Laying::project;
+    w.turn = -0.2;
+    // The eye is above the rim and to the left; its picture leans a little.
+    const Vec3 along = glm::normalize(Vec3(0.3, 1, -0.2)), right = glm::normalize(Vec3(1, -0.3, 0.05));
+    const Painted studio = by_studio("bowl.ply", w, Vec3(0, 0, 0.03) - along, along, right, kHand);
+    expect_same(studio, by_program("bowl.ply", w, studio.words, ""));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -276,6 +277,58 @@ TEST_F(Place, AFileWithYUpIsTheSameModelStandingUpAndGoesBackAsItCame) {
     EXPECT_EQ(tuft("unwrap " + path("y.obj") + " --up y -o " + path("u.obj")).status, 0);
     EXPECT_EQ(points("u.obj"), points("y.obj"));
     EXPECT_EQ(tuft("inspect " + path("y.obj") + " --up x").status, 2);
+}
+
+TEST_F(Place, ADrawingGoesToTheSideThatIsNamedAndSaysWhatWasChosen) {
+    write("box.obj", box(false));
+    write("lines.inkml", lines(0, 0, 8000));  // far too large
+    const std::map<std::string, std::array<double, 3>> sides{{"front", {0, -30, 0}}, {"back", {0, 30, 0}}, {"left", {-40, 0, 0}},
+                                                             {"right", {40, 0, 0}}, {"top", {0, 0, 20}}, {"bottom", {0, 0, -20}}};
+    for (const auto& [side, at] : sides) {
+        const Ran ran = tuft("paint " + path("box.obj") + " --brush wolf-small --atlas-size 256 --strokes " + path("lines.inkml") + " --on " + side + " --json");
+        ASSERT_EQ(ran.status, 0) << ran.err;
+        const json placed = json::parse(ran.out)["placed"];
+        EXPECT_EQ(placed["side"], side);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(placed["at_mm"][k].get<double>(), at[k], 0.7) << side << ": a cell of 129";
+        const double across = side == "left" || side == "right" ? 60 : 80;
+        EXPECT_NEAR(placed["free_mm"][0].get<double>(), across, 1.3) << side;
+        EXPECT_NEAR(placed["part"].get<double>(), 0.6, 1e-9);
+        EXPECT_NEAR(placed["width_mm"].get<double>(), 0.6 * across, 1) << side;
+        EXPECT_NE(ran.err.find("the " + side + " of the model"), std::string::npos) << ran.err;
+        EXPECT_NE(ran.err.find("of which they take 60 %"), std::string::npos) << ran.err;
+    }
+    const Ran none = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") + " --on inside");
+    EXPECT_EQ(none.status, 1) << "a closed box has no inside";
+    EXPECT_NE(none.err.find("no calm area is found on its inside"), std::string::npos) << none.err;
+    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --on lid").status, 2);
+    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --on top --place 0,0,0").status, 2);
+}
+
+TEST_F(Place, WhoReadsItSaysWhichWayUpItIs) {
+    write("box.obj", box(false));
+    write("lines.inkml", lines(0, 0, 30));
+    // Up to the lead of the hand, as in the tests above.
+    const Reach front = painted("lines.inkml", "--on top"), left = painted("lines.inkml", "--on top --read-from left"),
+                back = painted("lines.inkml", "--on top --read-from 0,1,0.5");
+    EXPECT_NEAR(left.size(1), front.size(0), kStep) << "the lines go from back to front";
+    EXPECT_NEAR(left.size(0), front.size(1), kStep);
+    EXPECT_NEAR(back.size(0), front.size(0), kStep);
+    EXPECT_NEAR(back.middle(0), -front.middle(0), kStep) << "turned half round";
+    EXPECT_EQ(painted("lines.inkml", "--on top --read-from front").low, front.low);
+    // Straight away from the reader, onto whatever lies there.
+    const Reach slant = painted("lines.inkml", "--place 0,-30,10 --laying project --read-from 0,-1,1");
+    EXPECT_NEAR(slant.size(0), front.size(0), kStep);
+    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --read-from nowhere").status, 2);
+    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --read-from 0,0,0").status, 2);
+}
+
+TEST_F(Place, TheInsideOfABowlIsWithinItsWalls) {
+    write("lines.inkml", lines(0, 0, 8000));
+    const Ran ran = tuft("paint " + source_folder() + "/models/bowl.ply --brush wolf-small --atlas-size 256 --strokes " + path("lines.inkml") + " --on inside --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const json placed = json::parse(ran.out)["placed"];
+    EXPECT_GT(placed["normal"][2].get<double>(), 0.9);
+    EXPECT_LT(std::hypot(placed["at_mm"][0].get<double>(), placed["at_mm"][1].get<double>()), 6) << "its middle, within a few of 129 cells";
 }
 
 }  // namespace

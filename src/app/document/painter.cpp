@@ -368,12 +368,14 @@ void Painter::paint_drawing(PaintDrawing& command) {
     const ProgressFn shown = progress("Placing the drawing");
     shown("", 0);
     PlacedWriting& drawing = command.drawing;
+    drawing.fit.film = [this](const std::string& ink) { return work_.painting->ink(ink).film * ink::kFilmUnit; };
     stroke::choose_brushes(drawing.entries, stroke::drawing_in(drawing.entries, true), drawing.scale, drawing.extent, drawing.fit, widths_);
+    stroke::redip_long_lines(drawing.entries, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
     std::vector<stroke::Stroke> all = drawing.entries;
     const std::size_t in_group = std::max<std::size_t>(1, all.size());
     for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry)) {
-        const double reads = glm::determinant(map.linear) < 0 ? -1 : 1;
+        const double reads = glm::determinant(map.linear) < 0 ? -1 : 1;  // with its right turned back it reads as the original
         for (stroke::Stroke entry : drawing.entries) {
             stroke::Placement& p = entry.trace.placement;
             p = {map.point(p.origin), reads * (map.linear * p.right), map.linear * p.down, p.laying};

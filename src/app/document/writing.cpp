@@ -14,11 +14,20 @@ namespace tuft::app {
 
 namespace {
 
-constexpr double kPlaceStep = 1000, kTurnStep = 100;  // steps in a millimetre, in a degree
+constexpr double kPlaceStep = 1000, kTurnStep = 100,
+                 kEyeStep = 1e6;  // steps in a millimetre, in a degree, in a unit vector
 
-double rounded(double value, double steps) { return std::round(value * steps) / steps; }
+double rounded(double value, double steps) {
+    return std::round(value * steps) / steps;
+}
 
-double width_mm(const Writing& w) { return rounded(w.scale * w.width / kMillimetre, kPlaceStep); }
+Vec3 rounded_direction(const Vec3& v) {
+    return {rounded(v.x, kEyeStep), rounded(v.y, kEyeStep), rounded(v.z, kEyeStep)};
+}
+
+double width_mm(const Writing& w) {
+    return rounded(w.scale * w.width / kMillimetre, kPlaceStep);
+}
 
 std::vector<stroke::Trace*> pointers(std::vector<stroke::Trace>& traces) {
     std::vector<stroke::Trace*> all;
@@ -27,17 +36,25 @@ std::vector<stroke::Trace*> pointers(std::vector<stroke::Trace>& traces) {
 }
 
 // Fills and washes are of the model and the palette, not of a drawing that is placed by hand.
-bool belongs_to_brush(const stroke::Care& care) { return stroke::has_brush(care.action) || care.action == stroke::Action::dry; }
+bool belongs_to_brush(const stroke::Care& care) {
+    return stroke::has_brush(care.action) || care.action == stroke::Action::dry;
+}
 
 }  // namespace
 
 Writing read_writing(const std::filesystem::path& file) {
     Writing out{.file = file};
     const std::string prefix = file.string() + ": ";
-    const auto note = [&](const std::string& line) { out.notes.push_back(line.starts_with(prefix) ? line.substr(prefix.size()) : line); };
+    const auto note = [&](const std::string& line) {
+        out.notes.push_back(line.starts_with(prefix) ? line.substr(prefix.size()) : line);
+    };
     out.traces = io::read_strokes(file, {.note = note});
-    std::erase_if(out.traces, [](const stroke::Trace& t) { return !t.flat || t.on_palette || t.samples.empty(); });
-    if (out.traces.empty()) throw Error(file.string(), "its strokes lie in space already; only flat writing can be placed");
+    std::erase_if(out.traces, [](const stroke::Trace& t) {
+        return !t.flat || t.on_palette || t.samples.empty();
+    });
+    if (out.traces.empty())
+        throw Error(file.string(),
+                    "its strokes lie in space already; only flat writing can be placed");
     const std::vector<stroke::Trace*> all = pointers(out.traces);
     if (out.traces.front().placed) out.laying = out.traces.front().placement.laying;
     stroke::arrange_parts(all);
@@ -48,15 +65,26 @@ Writing read_writing(const std::filesystem::path& file) {
     return out;
 }
 
-stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal, const Vec3& right) {
+stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& query, const Vec3& at,
+                                const Vec3& normal, const Vec3& right, const Vec3& eye) {
     Vec3 place = at;
     for (int k = 0; k < 3; ++k) place[k] = kMillimetre * rounded(at[k] / kMillimetre, kPlaceStep);
     const auto on = query.closest_point(place);
     if (!on) return {.origin = at};
     const Vec3 n = glm::dot(on->normal, normal) < 0 ? -on->normal : on->normal;
-    const stroke::Placement seen = stroke::placement_seen(place, n, right, -w.turn, w.mirrored);
-    const double turn = kDegree * rounded(stroke::turn_of(n, seen.right, w.mirrored) / kDegree, kTurnStep);
-    stroke::Placement out = stroke::upright_placement(on->position, n, turn, w.mirrored);
+    const auto turned = [&](const Vec3& normal, const Vec3& upright) {
+        const stroke::Placement seen = stroke::placement_seen(place, normal, right, -w.turn);
+        return kDegree * rounded(stroke::turn_of(normal, upright, seen.right) / kDegree, kTurnStep);
+    };
+    stroke::Placement out;
+    if (w.laying == stroke::Laying::project) {
+        // Straight through the picture: as it is seen now it comes to lie.
+        const Vec3 from = rounded_direction(eye), towards = glm::normalize(from),
+                   upright = stroke::reading_right(from);
+        out = stroke::placement_seen(on->position, towards, upright, turned(towards, upright));
+    } else {
+        out = stroke::upright_placement(on->position, n, turned(n, stroke::upright_right(n)));
+    }
     out.laying = w.laying;
     return out;
 }
@@ -66,40 +94,58 @@ double painted_scale(const Writing& w) {
 }
 
 std::string place_words(const Writing& w, const stroke::Placement& p) {
-    const Vec3 normal = glm::normalize(w.mirrored ? glm::cross(p.right, p.down) : glm::cross(p.down, p.right));
+    const Vec3 normal = glm::normalize(glm::cross(p.down, p.right));
     const Vec3 at = p.origin / kMillimetre;
-    std::string words = fmt::format("--place {:.3f},{:.3f},{:.3f} --place-width {:.3f} --place-turn {:.2f}", at.x, at.y, at.z, width_mm(w),
-                                    stroke::turn_of(normal, p.right, w.mirrored) / kDegree);
+    const bool project = w.laying == stroke::Laying::project;
+    const Vec3 from = rounded_direction(normal),
+               upright = project ? stroke::reading_right(from) : stroke::upright_right(normal);
+    std::string words =
+        fmt::format("--place {:.3f},{:.3f},{:.3f} --place-width {:.3f} --place-turn {:.2f}", at.x,
+                    at.y, at.z, width_mm(w), stroke::turn_of(normal, upright, p.right) / kDegree);
     if (w.mirrored) words += " --place-mirror";
-    if (w.laying != stroke::Laying::drape) words += " --laying " + std::string(stroke::laying_name(w.laying));
+    if (w.laying != stroke::Laying::drape)
+        words += " --laying " + std::string(stroke::laying_name(w.laying));
+    if (project) words += fmt::format(" --read-from {:.6f},{:.6f},{:.6f}", from.x, from.y, from.z);
     return words;
 }
 
 bool has_widths(const Writing& w) {
-    return std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return t.line_width > 0 && !t.pressed; });
+    return std::any_of(w.traces.begin(), w.traces.end(),
+                       [](const auto& t) { return t.line_width > 0 && !t.pressed; });
 }
 
-PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement, const WritingHand& hand) {
+PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement,
+                             const WritingHand& hand) {
     std::vector<stroke::Trace> traces = w.traces;
     for (stroke::Trace& trace : traces) {
-        std::erase_if(trace.before, [](const stroke::Care& care) { return !belongs_to_brush(care); });
+        std::erase_if(trace.before,
+                      [](const stroke::Care& care) { return !belongs_to_brush(care); });
         trace.placement.laying = w.laying;
         trace.layer.clear();
         trace.mask.clear();
         if (!w.own_width) trace.line_width = 0;
         if (!trace.pressed && !(trace.line_width > 0))
-            for (stroke::TraceSample& s : trace.samples) s.pressure = std::min(1.0, s.pressure * hand.pressure);
+            for (stroke::TraceSample& s : trace.samples)
+                s.pressure = std::min(1.0, s.pressure * hand.pressure);
     }
-    PlacedWriting out{.entries = {}, .scale = painted_scale(w), .extent = 0, .fit = {.grow = w.own_ink, .fit = w.own_width, .otherwise = hand.brush}};
-    stroke::append_entries(out.entries, std::move(traces), {.brush = w.own_ink ? "" : hand.brush, .ink = w.own_ink ? "" : hand.ink, .other_ink = hand.ink});
+    PlacedWriting out{.entries = {},
+                      .scale = painted_scale(w),
+                      .extent = 0,
+                      .fit = {.grow = w.own_ink, .fit = w.own_width, .otherwise = hand.brush}};
+    stroke::append_entries(out.entries, std::move(traces),
+                           {.brush = w.own_ink ? "" : hand.brush,
+                            .ink = w.own_ink ? "" : hand.ink,
+                            .other_ink = hand.ink});
     const std::vector<stroke::Trace*> drawing = stroke::drawing_in(out.entries, true);
-    stroke::place_drawing(drawing, {placement, w.centre, out.scale});
+    stroke::place_drawing(drawing, {placement, w.centre, out.scale, w.mirrored});
     const Box box = stroke::extent_of(drawing);
     out.extent = std::max(box.size().x, box.size().y);
     return out;
 }
 
-std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& w, const stroke::Placement& placement, std::size_t most) {
+std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& w,
+                                                 const stroke::Placement& placement,
+                                                 std::size_t most) {
     std::size_t all = 0;
     for (const stroke::Trace& trace : w.traces) all += trace.samples.size();
     const std::size_t step = std::max<std::size_t>(1, all / most);
@@ -112,7 +158,7 @@ std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query
         for (std::size_t i = 0; i < n; i += step) thin.samples.push_back(trace.samples[i]);
         if ((n - 1) % step != 0) thin.samples.push_back(trace.samples.back());
     }
-    stroke::transform_trace(thin, w.centre, painted_scale(w));
+    stroke::transform_trace(thin, w.centre, painted_scale(w), w.mirrored);
     const std::vector<stroke::LaidSample> laid = stroke::lay(query, thin).samples;
     std::vector<std::vector<GhostPoint>> lines;
     for (std::size_t i = 0, next = 0; i < laid.size(); ++i) {
@@ -120,8 +166,10 @@ std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query
             lines.emplace_back();
             ++next;
         }
-        if (laid[i].on_surface) lines.back().push_back({.position = laid[i].position, .normal = laid[i].normal});
-        else if (!lines.back().empty()) lines.emplace_back();
+        if (laid[i].on_surface)
+            lines.back().push_back({.position = laid[i].position, .normal = laid[i].normal});
+        else if (!lines.back().empty())
+            lines.emplace_back();
     }
     return lines;
 }

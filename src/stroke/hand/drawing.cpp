@@ -4,6 +4,9 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "core/error.h"
+#include "ink/colour/pigments.h"
+#include "stroke/hand/long_lines.h"
 #include "stroke/hand/practise.h"
 
 namespace tuft::stroke {
@@ -20,27 +23,35 @@ bool same_place(const Placement& a, const Placement& b) {
 
 /// Whether the hand presses as the drawing's line widths say.
 bool has_width(const Stroke& s) {
-    return s.action == Action::stroke && s.trace.flat && !s.trace.pressed && s.trace.line_width > 0 &&
-           s.settings.pressure == "none";
+    return s.action == Action::stroke && s.trace.flat && !s.trace.pressed &&
+           s.trace.line_width > 0 && s.settings.pressure == "none";
 }
 
-Placement turned(const Vec3& origin, const Vec3& normal, const Vec3& right, double turn, bool mirrored) {
+double film_of(const BrushFit& fit, const std::string& ink) {
+    if (fit.film) return fit.film(ink);
+    try {
+        return ink::load_ink(ink).film * ink::kFilmUnit;
+    } catch (const Error&) {
+        return ink::Ink{}.film * ink::kFilmUnit;  // of a project
+    }
+}
+
+Placement turned(const Vec3& origin, const Vec3& normal, const Vec3& right, double turn) {
     const Vec3 down = glm::cross(right, normal);
-    Placement place{.origin = origin,
-                    .right = std::cos(turn) * right - std::sin(turn) * down,
-                    .down = std::cos(turn) * down + std::sin(turn) * right,
-                    .laying = Laying::drape};
-    if (mirrored) place.right = -place.right;
-    return place;
-}
-
-Vec3 upright_right(const Vec3& n) {
-    return std::abs(n.z) < kLies ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n)) : make_frame(Vec3{0}, n).t;
+    return {.origin = origin,
+            .right = std::cos(turn) * right - std::sin(turn) * down,
+            .down = std::cos(turn) * down + std::sin(turn) * right,
+            .laying = Laying::drape};
 }
 
 }  // namespace
 
-void transform_trace(Trace& trace, const Vec2& centre, double scale) {
+Vec3 upright_right(const Vec3& n) {
+    return std::abs(n.z) < kLies ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n))
+                                 : make_frame(Vec3{0}, n).t;
+}
+
+void transform_trace(Trace& trace, const Vec2& centre, double scale, bool mirrored) {
     for (TraceSample& sample : trace.samples) {
         sample.position = scale * (sample.position - Vec3(centre, 0));
         sample.time *= scale;
@@ -48,6 +59,10 @@ void transform_trace(Trace& trace, const Vec2& centre, double scale) {
     for (TapeEdge& edge : trace.tape)
         for (Vec2* end : {&edge.from, &edge.to}) *end = scale * (*end - centre);
     trace.line_width *= scale;
+    if (!mirrored) return;
+    for (TraceSample& sample : trace.samples) sample.position.x *= -1, sample.tilt.x *= -1;
+    for (TapeEdge& edge : trace.tape)
+        edge = {Vec2(-edge.to.x, edge.to.y), Vec2(-edge.from.x, edge.from.y)};
 }
 
 Box extent_of(std::span<Trace* const> drawing) {
@@ -56,16 +71,20 @@ Box extent_of(std::span<Trace* const> drawing) {
     return box;
 }
 
-double width_of(const Box& extent) { return std::max(extent.size().x, 0.05 * extent.size().y); }
+double width_of(const Box& extent) {
+    return std::max(extent.size().x, 0.05 * extent.size().y);
+}
 
 void arrange_parts(std::span<Trace* const> drawing) {
     double edge = 0;
     for (std::size_t i = 0; i < drawing.size();) {
         std::size_t end = i;
-        while (end < drawing.size() && same_place(drawing[end]->placement, drawing[i]->placement)) ++end;
+        while (end < drawing.size() && same_place(drawing[end]->placement, drawing[i]->placement))
+            ++end;
         const std::span<Trace* const> part = drawing.subspan(i, end - i);
         const Box box = extent_of(part);
-        const double shift = i == 0 ? 0 : edge - box.lo.x + kPartGap * std::max(box.size().x, box.size().y);
+        const double shift =
+            i == 0 ? 0 : edge - box.lo.x + kPartGap * std::max(box.size().x, box.size().y);
         if (shift != 0)
             for (Trace* trace : part) transform_trace(*trace, {-shift, 0}, 1);
         edge = box.hi.x + shift;
@@ -73,31 +92,38 @@ void arrange_parts(std::span<Trace* const> drawing) {
     }
 }
 
-Placement upright_placement(const Vec3& origin, const Vec3& normal, double turn, bool mirrored) {
-    return turned(origin, normal, upright_right(normal), turn, mirrored);
+Placement upright_placement(const Vec3& origin, const Vec3& normal, double turn) {
+    return turned(origin, normal, upright_right(normal), turn);
 }
 
-Placement placement_seen(const Vec3& origin, const Vec3& normal, const Vec3& right, double turn, bool mirrored) {
+Placement placement_seen(const Vec3& origin, const Vec3& normal, const Vec3& right, double turn) {
     const Vec3 along = right - glm::dot(right, normal) * normal;
-    if (!(glm::length(along) > 1e-6 * glm::length(right))) return upright_placement(origin, normal, turn, mirrored);
-    return turned(origin, normal, glm::normalize(along), turn, mirrored);
+    if (!(glm::length(along) > 1e-6 * glm::length(right)))
+        return upright_placement(origin, normal, turn);
+    return turned(origin, normal, glm::normalize(along), turn);
 }
 
-double turn_of(const Vec3& normal, const Vec3& right, bool mirrored) {
-    const Vec3 r = upright_right(normal), down = glm::cross(r, normal), x = mirrored ? -right : right;
-    return std::atan2(-glm::dot(x, down), glm::dot(x, r));
+Vec3 reading_right(const Vec3& from) {
+    const Vec3 right = glm::cross(Vec3{0, 0, 1}, from);
+    return glm::length(right) > 1e-6 * glm::length(from) ? glm::normalize(right) : Vec3{1, 0, 0};
+}
+
+double turn_of(const Vec3& normal, const Vec3& upright, const Vec3& right) {
+    const Vec3 down = glm::cross(upright, normal);
+    return std::atan2(-glm::dot(right, down), glm::dot(right, upright));
 }
 
 std::vector<Trace*> drawing_in(std::vector<Stroke>& entries, bool all) {
     std::vector<Trace*> drawing;
     for (Stroke& s : entries)
-        if (s.layer != kPaletteLayer && s.trace.flat && (all || !s.trace.placed)) drawing.push_back(&s.trace);
+        if (s.layer != kPaletteLayer && s.trace.flat && (all || !s.trace.placed))
+            drawing.push_back(&s.trace);
     return drawing;
 }
 
 void place_drawing(std::span<Trace* const> drawing, const DrawingPlace& place) {
     for (Trace* trace : drawing) {
-        transform_trace(*trace, place.centre, place.scale);
+        transform_trace(*trace, place.centre, place.scale, place.mirrored);
         trace->placement.origin = place.placement.origin;
         trace->placement.right = place.placement.right;
         trace->placement.down = place.placement.down;
@@ -105,8 +131,8 @@ void place_drawing(std::span<Trace* const> drawing, const DrawingPlace& place) {
     }
 }
 
-void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawing, double scale, double extent,
-                    const BrushFit& fit, WidthTables& widths) {
+void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawing, double scale,
+                    double extent, const BrushFit& fit, WidthTables& widths) {
     // What is done with a brush before a stroke is done with the brush of that stroke.
     const std::unordered_set<const Trace*> among(drawing.begin(), drawing.end());
     std::string own, sized;
@@ -115,9 +141,12 @@ void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawin
         if (s->action == Action::stroke && s->layer != kPaletteLayer) {
             own = sized = trace.brush;
             const bool placed = among.contains(&trace);
-            if (own.empty() && !fit.otherwise.empty()) sized = fit.otherwise;
-            else if (own.empty() && placed) sized = brush::name_of({kDefaultBrush, std::min(1.0, extent / kWriting)});
-            else if (own.empty()) sized = kDefaultBrush;
+            if (own.empty() && !fit.otherwise.empty())
+                sized = fit.otherwise;
+            else if (own.empty() && placed)
+                sized = brush::name_of({kDefaultBrush, std::min(1.0, extent / kWriting)});
+            else if (own.empty())
+                sized = kDefaultBrush;
             else if (fit.grow && placed) {
                 const brush::SizedName name = brush::sized_name(own);
                 sized = brush::name_of({name.base, name.factor * scale});
@@ -125,7 +154,13 @@ void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawin
             if (fit.fit && has_width(*s)) {
                 // The line says how large the brush is, not the size that the brush was in.
                 const std::string base = brush::sized_name(sized).base;
-                sized = brush_for_width(base, widths.of(base), trace.line_width);
+                const double length = length_of(trace),
+                             speed = length / std::max(trace.samples.back().time -
+                                                           trace.samples.front().time,
+                                                       1e-9);
+                sized =
+                    brush_for_line(base, widths, trace.line_width, s->settings.endless ? 0 : length,
+                                   film_of(fit, trace.ink), speed);
             }
             trace.brush = sized;
         } else if (trace.brush == own) {
@@ -133,7 +168,29 @@ void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawin
         }
     }
     for (Stroke& s : entries)
-        if (s.trace.brush.empty() && has_brush(s.action)) s.trace.brush = fit.otherwise.empty() ? kDefaultBrush : fit.otherwise;
+        if (s.trace.brush.empty() && has_brush(s.action))
+            s.trace.brush = fit.otherwise.empty() ? kDefaultBrush : fit.otherwise;
+}
+
+void redip_long_lines(std::vector<Stroke>& entries, const BrushFit& fit, WidthTables& widths) {
+    constexpr double kMargin = 1.1;  // of both ends that lie over each other
+    std::vector<Stroke> out;
+    out.reserve(entries.size());
+    for (Stroke& s : entries) {
+        if (!has_width(s) || s.settings.dip != "each" || s.settings.endless || s.trace.erases) {
+            out.push_back(std::move(s));
+            continue;
+        }
+        const double width = s.trace.line_width, film = film_of(fit, s.trace.ink);
+        pace_line(s.trace, widths.preset(s.trace.brush), film);
+        const double longest = whole_length(widths.preset(s.trace.brush), width, film);
+        Stroke piece = s;
+        for (Trace& trace : cut_line(s.trace, longest, kMargin * 2 * line_end(width))) {
+            piece.trace = std::move(trace);
+            out.push_back(piece);
+        }
+    }
+    entries = std::move(out);
 }
 
 WidthMismatch press_to_widths(std::vector<Stroke>& entries, WidthTables& tables) {
@@ -146,7 +203,8 @@ WidthMismatch press_to_widths(std::vector<Stroke>& entries, WidthTables& tables)
         draw_to_width(s.trace, widths);
         drawn.push_back(&s.trace);
         if (width >= widths.least() && width <= widths.most()) continue;
-        mismatch = {s.trace.brush, std::min(mismatch.least, width), std::max(mismatch.most, width), widths.least(), widths.most()};
+        mismatch = {s.trace.brush, std::min(mismatch.least, width), std::max(mismatch.most, width),
+                    widths.least(), widths.most()};
     }
     practise(drawn, tables);
     for (Stroke& s : entries) s.trace.line_width = 0;

@@ -46,15 +46,19 @@ double LineWidths::pressure(double width) const {
 
 const LineWidths& WidthTables::of(const std::string& brush) {
     const auto at = known_.find(brush);
-    return at != known_.end() ? at->second : known_.emplace(brush, brush::load_preset(brush)).first->second;
+    return at != known_.end() ? at->second : known_.emplace(brush, preset(brush)).first->second;
+}
+
+const brush::Preset& WidthTables::preset(const std::string& brush) {
+    const auto at = presets_.find(brush);
+    return at != presets_.end() ? at->second : presets_.emplace(brush, brush::load_preset(brush)).first->second;
 }
 
 const HoldOptions& WidthTables::hold(const std::string& brush) {
     const auto at = holds_.find(brush);
     if (at != holds_.end()) return at->second;
-    const brush::Preset preset = brush::load_preset(brush);
-    HoldOptions options = hold_options(preset);
-    options.lead = drag_lead(preset);
+    HoldOptions options = hold_options(preset(brush));
+    options.lead = drag_lead(preset(brush));
     return holds_.emplace(brush, std::move(options)).first->second;
 }
 
@@ -91,6 +95,8 @@ void overlap(Trace& trace, double more) {
 
 }  // namespace
 
+double line_end(double width) { return kEnd * width; }
+
 void add_extent(Box& box, const Trace& trace) {
     for (const TapeEdge& edge : trace.tape) box.add(Vec3(edge.from, 0)), box.add(Vec3(edge.to, 0));
     if (!trace.tape.empty()) return;
@@ -101,7 +107,7 @@ void add_extent(Box& box, const Trace& trace) {
 void draw_to_width(Trace& trace, const LineWidths& widths) {
     if (trace.samples.empty()) return;
     const double whole = travelled<TraceSample>(trace.samples).back();
-    const double end = std::min(kEnd * trace.line_width, kMostOfLine * whole);
+    const double end = std::min(line_end(trace.line_width), kMostOfLine * whole);
     overlap(trace, 2 * end);
     const std::vector<double> along = travelled<TraceSample>(trace.samples);
     const auto part = [&](const TraceSample& s) { return s.pressure / kMiddle; };

@@ -36,10 +36,12 @@ class LineWidths {
 class WidthTables {
   public:
     const LineWidths& of(const std::string& brush);
+    const brush::Preset& preset(const std::string& brush);
     /// An upright holder over a plane that leads its line (`drag_lead`).
     const HoldOptions& hold(const std::string& brush);
 
   private:
+    std::map<std::string, brush::Preset> presets_;
     std::map<std::string, LineWidths> known_;
     std::map<std::string, HoldOptions> holds_;
 };
@@ -53,6 +55,9 @@ std::string brush_for_width(const std::string& name, const LineWidths& widths, d
 /// Adds what the ink of a line takes up to a box: its tape, or its samples, with half of its width beside them where it has one;
 /// metres, in its own frame.
 void add_extent(Box& box, const Trace& trace);
+
+/// Metres of a line with this width over which a hand that set down or lifts comes to its pressure.
+double line_end(double width);
 
 /// Lays out the pressures of a trace with made-up ones so that it draws its `line_width`, or as much less of it as they
 /// are below 0.5: the hand sets down and

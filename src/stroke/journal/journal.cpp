@@ -28,10 +28,12 @@ constexpr std::uint64_t kMostGroupId = std::uint64_t{1} << 62;  // ids in files 
 constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe", "wash"};
 
 nlohmann::json json_of(const Settings& s) {
-    return {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
+    nlohmann::json j = {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
             {"spacing", s.spacing},     {"lead", s.lead},           {"dip", s.dip},
             {"pressure", s.pressure},   {"smooth", s.smooth},       {"stabilise", s.stabilise},
             {"film", s.film},           {"down", {s.down.x, s.down.y, s.down.z}}};
+    if (s.endless) j["endless"] = true;  // left out by default: entries stay as older versions wrote them
+    return j;
 }
 
 nlohmann::json parsed(const std::string& text) {
@@ -52,6 +54,7 @@ Settings settings_of(const nlohmann::json& j) {
         s.spacing = j.value("spacing", s.spacing);
         s.lead = j.value("lead", s.lead);
         s.dip = j.value("dip", s.dip);
+        s.endless = j.value("endless", s.endless);
         s.pressure = j.value("pressure", s.pressure);
         s.smooth = j.value("smooth", s.smooth);
         s.stabilise = j.value("stabilise", s.stabilise);

@@ -21,6 +21,8 @@ struct Settings {
     bool lead = true;                   ///< flat traces: the hand runs ahead so that the ink lies on them
     std::string dip = "each";           ///< each: every stroke with a fresh full brush | carry: with
                                         ///< the hair and ink that the last one with it left
+    bool endless = false;               ///< the ink that leaves the tuft is replaced at once, and what it takes up from
+                                        ///< the surface is gone: it paints as full as it began
     std::string pressure = "none";      ///< flat traces: none (as sampled) | speed | dwell | speed+dwell
     double smooth = 0;                  ///< strength of the hand's filter; 0: off, 1: its defaults
     std::string film = "still";         ///< still: ink stays where it is put | wet: it flows, soaks in

@@ -26,6 +26,10 @@ struct StrokeReport {
     std::size_t unconverged = 0;     ///< of them, solved only to the iteration limit
     double ink_given = 0;            ///< film·m², now on the texels
     double ink_left = 0;             ///< film·m², in the tuft
+    double path = 0;                 ///< metres that the hand went while the tuft touched
+    double dry_from = -1;            ///< metres of it after which single hairs drew for want of ink until the end; < 0: none
+    double dry_path = 0;             ///< metres of it on which they did
+    double full_at_start = 1;        ///< part of the tuft's capacity that it held before the stroke
     ink::Amounts removed;            ///< by an eraser, of all films of its layer
     double nearest = 0;              ///< metres: least distance of tuft and model; 0 when it touched
     std::size_t inside = 0;          ///< poses whose ferrule would be within the model: it was held on the surface
@@ -34,6 +38,8 @@ struct StrokeReport {
     std::vector<ForceRecord> forces; ///< one for each sample of the stroke, in order; only when asked for
 
     bool touched() const { return stamps > 0; }
+    /// A full brush ran out of ink on the way, for a twentieth of it or more.
+    bool ran_dry() const { return full_at_start > 0.95 && dry_from > 0 && path - dry_from > 0.05 * path; }
 };
 
 }  // namespace tuft::stroke

@@ -45,6 +45,9 @@ StrokeSession::StrokeSession(SessionInput input)
       deposit_(make_deposit()) {
     if (input_.stroke.settings.contact == "vertices") contact_.options.method = contact::Method::vertices;
     report_.nearest = std::numeric_limits<double>::infinity();
+    report_.full_at_start = tuft_.brush.reservoir.fullness();
+    if (input_.stroke.settings.endless && !input_.stroke.trace.erases)
+        refill_ = tuft_.brush.reservoir;
 }
 
 std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
@@ -85,6 +88,7 @@ void StrokeSession::paint_poses() {
 
 // Bends the tuft on the surface at the next pose; ink spreads within the hair meanwhile.
 contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double dt) {
+    if (refill_) tuft_.brush.reservoir = *refill_;
     tuft_.update_wetness();
     ink::flow(tuft_.brush.reservoir, dt, hair_.by_hair() ? ink::FlowTo::now : ink::FlowTo::whole_step);
     // Hair that painted before comes through the air, as it sprang back.
@@ -129,6 +133,19 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
 
+void StrokeSession::note_dryness(double separation, double displacement) {
+    constexpr double kDry = 0.5;        // of `Stamp::separation`: gaps are seen
+    constexpr double kWetAgain = 5e-3;  // metres without gaps after which a stroke is no longer dry
+    report_.path += displacement;
+    if (separation >= kDry) {
+        if (report_.dry_from < 0) report_.dry_from = report_.path;
+        report_.dry_path += displacement;
+        wet_from_ = report_.path;
+    } else if (report_.path - wet_from_ > kWetAgain) {
+        report_.dry_from = -1;
+    }
+}
+
 void StrokeSession::step(const brush::Pose& pose) {
     report(progress_, "painting", done_);
     const double dt = path_.started ? pose.time - path_.time : 0.0;
@@ -146,6 +163,7 @@ void StrokeSession::step(const brush::Pose& pose) {
     if (!stencil_.empty() && !(area > 0)) return;
 
     ++report_.stamps;
+    note_dryness(static_cast<double>(stamp.separation), glm::length(moved.hand));
     set_motion(stamp, moved, area);
     set_ink(stamp, area);
     report_.ink_given += deposit_->deposit(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -93,6 +94,7 @@ class StrokeSession {
     contact::Result bend_on_surface(const brush::Pose& pose, double dt);
     void set_motion(Stamp& stamp, const ContactMotion& moved, double area) const;
     void set_ink(Stamp& stamp, double area) const;
+    void note_dryness(double separation, double displacement);
 
     SessionInput input_;
     bool mixed_ = false;         // the tuft holds several inks, or thicker ink on one side
@@ -109,6 +111,8 @@ class StrokeSession {
     StrokeReport report_;
     ProgressFn progress_;
     double done_ = 0;            // part of the stroke
+    double wet_from_ = 0;        // metres of the hand's path up to the last stamp that lacked ink
+    std::optional<ink::Reservoir> refill_;  // what the tuft holds before every pose; none: it runs dry
 };
 
 }  // namespace tuft::stroke

@@ -1,0 +1,124 @@
+#include "stroke/hand/free_area.h"
+
+#include <gtest/gtest.h>
+
+#include "grids.h"
+
+namespace tuft::stroke {
+namespace {
+
+// A place or a size found on the grid of 129 rays is off by two cells at most: one for each edge.
+// In parts of a side of the view.
+constexpr double kGrid = 1.0 / 129;
+
+/// Upright rectangles that face -y: x from, x to, z from, z to, y.
+TriangleMesh walls(const std::vector<std::array<double, 5>>& all) {
+    TriangleMesh m;
+    for (const auto& [x0, x1, z0, z1, y] : all) {
+        const auto v = static_cast<std::uint32_t>(m.positions.size());
+        for (const Vec3& p : {Vec3{x0, y, z0}, Vec3{x1, y, z0}, Vec3{x1, y, z1}, Vec3{x0, y, z1}}) {
+            m.positions.push_back(Vec3f(p));
+            m.bounds.add(p);
+        }
+        m.triangles.push_back({v, v + 1, v + 2});
+        m.triangles.push_back({v, v + 2, v + 3});
+        m.corner_normals.insert(m.corner_normals.end(), 6, Vec3f(0, -1, 0));
+    }
+    m.neighbours.assign(3 * m.triangles.size(), kNone);
+    return m;
+}
+
+TEST(FreeArea, OnASphereItIsInTheMiddle) {
+    const TriangleMesh m = make_sphere();
+    const SurfaceQuery query(m);
+    for (const Side side :
+         {Side::front, Side::back, Side::left, Side::right, Side::top, Side::bottom}) {
+        const auto free = find_free_area(query, side, 1);
+        ASSERT_TRUE(free) << side_name(side);
+        EXPECT_NEAR(glm::distance(free->at.position, -0.05 * look_at_side(side)), 0, 0.2 * kGrid)
+            << side_name(side);
+        EXPECT_GT(-glm::dot(free->normal, look_at_side(side)), 0.999);
+        EXPECT_LT(free->size.x, 0.0709) << "a square in the circle is 0.71 wide";
+        EXPECT_GT(free->size.x, 0.045);
+    }
+}
+
+TEST(FreeArea, AHoleIsPassedBy) {
+    // A frame 100 mm wide and 60 high about a hole of 20 x 20, nearer to its right end.
+    const TriangleMesh m = walls({{-0.05, 0.01, -0.03, 0.03, 0},
+                                  {0.03, 0.05, -0.03, 0.03, 0},
+                                  {0.01, 0.03, -0.03, -0.01, 0},
+                                  {0.01, 0.03, 0.01, 0.03, 0}});
+    const SurfaceQuery query(m);
+    const auto free = find_free_area(query, Side::front, 1);
+    ASSERT_TRUE(free);
+    EXPECT_NEAR(free->at.position.x, -0.02, 0.2 * kGrid) << "the whole wall beside the hole";
+    EXPECT_NEAR(free->at.position.z, 0, 0.2 * kGrid);
+    EXPECT_NEAR(free->size.x, 0.06, 0.3 * kGrid);
+}
+
+TEST(FreeArea, AStepIsNotCrossedAndTheLargerSideOfItIsTaken) {
+    // Two thirds of the front stand 30 mm behind the rest.
+    const TriangleMesh m =
+        walls({{-0.06, -0.02, -0.02, 0.02, 0}, {-0.02, 0.06, -0.02, 0.02, 0.03}});
+    const SurfaceQuery query(m);
+    const auto free = find_free_area(query, Side::front, 2);
+    ASSERT_TRUE(free);
+    EXPECT_NEAR(free->at.position.x, 0.02, 0.24 * kGrid);
+    EXPECT_NEAR(free->at.position.y, 0.03, 1e-6);
+    EXPECT_NEAR(free->size.x, 0.08, 0.4 * kGrid);
+}
+
+TEST(FreeArea, AShutLineIsNotAnEdge) {
+    const TriangleMesh m = walls({{-0.1, -0.001, -0.05, 0.05, 0},
+                                  {0.001, 0.1, -0.05, 0.05, 0},
+                                  {-0.001, 0.001, -0.05, 0.05, 0.02}});
+    const SurfaceQuery query(m);
+    const auto free = find_free_area(query, Side::front, 2);
+    ASSERT_TRUE(free);
+    EXPECT_NEAR(free->at.position.x, 0, 0.4 * kGrid);
+    EXPECT_NEAR(free->size.x, 0.2, 0.6 * kGrid);
+}
+
+TEST(FreeArea, ItHasTheDrawingsShape) {
+    const TriangleMesh m = walls({{-0.1, 0.1, -0.01, 0.01, 0}});
+    const SurfaceQuery query(m);
+    const auto square = find_free_area(query, Side::front, 1),
+               wide = find_free_area(query, Side::front, 4);
+    ASSERT_TRUE(square && wide);
+    // A cell is 1.6 x 0.16 mm: two of them for the edges.
+    EXPECT_NEAR(square->size.x, 0.02, 0.4 * kGrid);
+    EXPECT_NEAR(wide->size.x, 0.08, 0.4 * kGrid);
+    EXPECT_NEAR(square->at.position.x, 0, 0.4 * kGrid)
+        << "the middle of all the places that are as good";
+    EXPECT_FALSE(find_free_area(query, Side::back, 1)) << "its back is not painted on";
+}
+
+TEST(FreeArea, ACalmAreaIsPreferredToALargerRoughOne) {
+    // A flat wall on the left, a larger one of pleats that lean by 30 degrees to the right of it.
+    std::vector<std::array<double, 5>> all{{-0.1, 0, -0.05, 0.05, 0}};
+    TriangleMesh m = walls(all);
+    const double pleat = 0.004, deep = pleat * std::tan(0.52);
+    for (int k = 0; k < 35; ++k)
+        for (int half = 0; half < 2; ++half) {
+            const double x0 = pleat * (k + 0.5 * half), x1 = x0 + 0.5 * pleat,
+                         y0 = half ? 0.5 * deep : 0, y1 = half ? 0 : 0.5 * deep;
+            const auto v = static_cast<std::uint32_t>(m.positions.size());
+            for (const Vec3& p : {Vec3{x0, y0, -0.05}, Vec3{x1, y1, -0.05}, Vec3{x1, y1, 0.05},
+                                  Vec3{x0, y0, 0.05}}) {
+                m.positions.push_back(Vec3f(p));
+                m.bounds.add(p);
+            }
+            m.triangles.push_back({v, v + 1, v + 2});
+            m.triangles.push_back({v, v + 2, v + 3});
+            m.corner_normals.insert(m.corner_normals.end(), 6, Vec3f(0, -1, 0));
+        }
+    m.neighbours.assign(3 * m.triangles.size(), kNone);
+    const SurfaceQuery query(m);
+    const auto free = find_free_area(query, Side::front, 1);
+    ASSERT_TRUE(free);
+    EXPECT_NEAR(free->at.position.x, -0.05, 0.012) << "within the flat wall";
+}
+
+}  // namespace
+}  // namespace tuft::stroke
