@@ -149,6 +149,7 @@ void save_ink(Session& s, const fs::path& path) {
 const ink::Ink* find_ink(const Session& s, const std::string& name) {
     for (const ink::Ink& ink : s.own_inks)
         if (ink.name == name) return &ink;
+    if (s.colour.in_hand && s.colour.in_hand->name == name) return &*s.colour.in_hand;
     static std::map<std::string, std::optional<ink::Ink>> shipped;
     const auto [at, is_new] = shipped.try_emplace(name);
     try {
@@ -297,6 +298,9 @@ void accept_inspected(Session& s) {
 
 void close_model(Session& s) {
     if (!s.painter) return;
+    remember_brush(s);
+    s.colour.in_hand.reset();
+    s.layer_list.pictures.clear();
     const bool empty = s.strokes.empty() && s.painter->idle();
     fs::path project = s.last.project;
     const bool viewing = s.last.viewing;
@@ -354,6 +358,7 @@ void poll_session(Session& s) {
         }
         if (s.is_sample) accept_inspected(s);
     }
+    const bool opened = result.work.has_value();
     if (result.work) {
         std::vector<stroke::Misfit> misfits = std::move(result.work->misfits);
         std::vector<std::string> fit = std::move(result.work->fit);
@@ -379,6 +384,8 @@ void poll_session(Session& s) {
         s.show_misfits = !s.misfits.empty();
     }
     poll_painter(s);
+    if (opened) choose_brush(s);
+    poll_colour(s);
 }
 
 void poll_painter(Session& s) {
@@ -399,6 +406,11 @@ void poll_painter(Session& s) {
     if (u.outline) s.journal.outline = std::move(*u.outline);
     u.outline.reset();
     if (u.own_inks) s.own_inks = std::move(*u.own_inks);
+    for (Thumbnail& picture : u.thumbnails) {
+        s.layer_list.fresh.insert(picture.layer);
+        s.layer_list.pictures.insert_or_assign(picture.layer, std::move(picture));
+    }
+    u.thumbnails.clear();
     if (u.palette) {
         s.palette.picture = std::move(*u.palette);
         s.palette.fresh = true;
@@ -429,7 +441,7 @@ void poll_painter(Session& s) {
 }
 
 bool settled(const Session& s) {
-    return !s.opening.running() && (!s.painter || s.painter->idle()) && !s.hand_down;
+    return !s.opening.running() && !s.colour.finder.busy() && (!s.painter || s.painter->idle()) && !s.hand_down;
 }
 
 void save_as(Session& s, const fs::path& path) {
@@ -519,6 +531,7 @@ void load_settings(Session& s) {
         else if (key == "cap_speed") s.cap.speed = number_within(value, 0.1, 4.0);
         else if (key == "cap_level") s.cap.level = value == "1";
         else if (key == "cap_eye") s.cap.moves_eye = value == "1";
+        else if (key == "clean_ends") s.hand.clean_ends = value == "1";
         else if (key == "keymap") s.keymap = value == "maya" ? Keymap::maya : Keymap::blender;
     }
 }
@@ -529,7 +542,7 @@ void store_settings(const Session& s) {
         << (s.wanted.theme == Theme::light ? "light" : "dark") << "\nleft_handed "
         << s.wanted.left_handed << "\nkeymap " << (s.keymap == Keymap::maya ? "maya" : "blender") << "\npen_least " << s.hand.pen_least << "\npen_full "
         << s.hand.pen_full << "\npen_gamma " << s.hand.pen_gamma << "\ncap_speed " << s.cap.speed << "\ncap_level " << s.cap.level
-        << "\ncap_eye " << s.cap.moves_eye << '\n';
+        << "\ncap_eye " << s.cap.moves_eye << "\nclean_ends " << s.hand.clean_ends << '\n';
     if (s.wanted.own_scale) out << "own_scale " << s.wanted.scale << '\n';
     out << "guide_seen " << s.help.seen << "\n";
     out << "panels -" << (s.tools_shown ? "t" : "") << (s.journal_shown ? "j" : "") << '\n';

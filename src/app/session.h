@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "app/document/colours.h"
 #include "app/document/curve.h"
 #include "app/document/help_state.h"
 #include "app/document/journal_state.h"
 #include "app/document/opening.h"
 #include "app/document/painter.h"
 #include "app/document/pictures.h"
+#include "app/document/layer_list.h"
 #include "app/document/references.h"
 #include "app/document/snapshots.h"
 #include "app/document/state_folder.h"
@@ -148,6 +150,9 @@ struct Session {
     double dip_side = 0;                   ///< of the tuft's width, from the right flank (> 0) or the left; 0: all
     PaletteState palette;
     std::vector<ink::Ink> own_inks;        ///< of this work
+    ColourChoice colour;                   ///< chosen on the wheel, and the mix found for it
+    LayerList layer_list;                  ///< how the layers are listed
+    std::string brush_remembered;          ///< for this model
     Looks looks;
     bool show_colours = false;
     bool journal_fits = true, show_journal = false;  ///< beside the model; else in place of the tools, when asked for
@@ -218,6 +223,23 @@ void save_ink(Session& s, const std::filesystem::path& path);
 const ink::Ink* find_ink(const Session& s, const std::string& name);
 /// Adds a layer on top, which is painted on from now on.
 void add_layer(Session& s, const std::string& name);
+/// Pigments that strokes of the work have, as far as their inks are known.
+std::vector<ink::Pigment> pigments_in_use(const Session& s);
+/// Takes a mix into the hand. It becomes part of the work when something is painted with it.
+void take_mix(Session& s, ink::Ink ink);
+/// Makes the ink in hand part of the work, if it is a mix that is not yet.
+void bring_in_colour(Session& s);
+/// Chooses a colour by its hex code; the mix found for it comes into the hand.
+void set_colour(Session& s, const std::string& hex);
+/// Takes over a mix that was found.
+void poll_colour(Session& s);
+/// Metres: how wide a line a model's first brush shall draw, and the brush of that hair that does at a pressure.
+double wanted_line(const Box& box);
+std::string brush_for_line(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure, double width);
+/// Takes the brush that a person last had in hand for this model, else one in the size of the model (session_brush.cpp).
+void choose_brush(Session& s);
+/// Remembers the brush in hand for the next time with this model, where a person chose it.
+void remember_brush(Session& s);
 /// Shows the palette or puts it away. With it out, the brush keeps what is in it.
 void show_palette(Session& s, bool on);
 /// Takes the brush in hand in another size, times that of its make, within what there is.

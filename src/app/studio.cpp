@@ -46,6 +46,7 @@ Studio::Studio() : scene_(std::make_unique<render::GlScene>()), view_(std::make_
     std::sort(s.samples.begin(), s.samples.end());
     s.recent = recent_projects();
     s.lost = find_lost_work();
+    load_colours(s.colour);
     load_settings(s);
     if (const std::string missing = s.ui.prepare(s.wanted); !missing.empty()) say(s, missing);
     cursor_.x = cursor_.y = -1;
@@ -71,6 +72,8 @@ void Studio::make_graphics() {
     scene_ = std::make_unique<render::GlScene>();
     view_ = std::make_unique<render::GlView>();
     s.palette.texture = 0;
+    s.layer_list.textures.clear();
+    for (const auto& [layer, picture] : s.layer_list.pictures) s.layer_list.fresh.insert(layer);
     s.palette.fresh = true;
     colours_shown_ = ModelView::glaze;
     if (s.painter && !s.model_is_new) {
@@ -151,6 +154,8 @@ void Studio::panels() {
         tuft_inset(s);
         update_palette_picture();
         palette_panel(s);
+        update_thumbnails();
+        colour_panel(s);
         references_over_view(s);
         swipe_line(s);
         comparison_bar(s);
@@ -191,6 +196,7 @@ void Studio::take_model() {
         const stroke::Model& m = s.painter->model();
         hand_.reset();
         line_start_.reset();
+        thumbnails_from_.reset();
         s.hand_down = false;
         scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
         const render::MapPixels pixels = s.painter->take_pixels();

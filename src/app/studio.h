@@ -72,6 +72,7 @@ class Studio {
     void curve_wheel(const Event& event);
     bool curve_key(const Event& event);
     void paint_curve();
+    TipLag tip_lag(const brush::Preset& preset);
     void watch_curve();
     std::optional<stroke::Placement> writing_placement() const;
     void watch_writing();
@@ -89,6 +90,7 @@ class Studio {
     Aim palette_aim(const Event& event) const;
     void palette_press(const Event& event);
     void update_palette_picture();
+    void update_thumbnails();
     void mask_press(const Event& event);
     void lasso_move(const Event& event);
     void lasso_release();
@@ -129,6 +131,7 @@ class Studio {
     std::string preview_brush_;
     ModelView colours_shown_ = ModelView::glaze;
     float content_scale_ = 1;
+    std::optional<render::GlCamera> thumbnails_from_;  ///< from where the layers' pictures are seen
     double now_ = 0, last_event_ = 0, last_turn_ = -1, picture_due_ = 0;
     std::size_t strokes_seen_ = 0, frames_ = 0, draw_every_ = 1;
     unsigned framebuffer_ = 0;  ///< of the newest frame

@@ -105,6 +105,10 @@ void Studio::fly(const Event& e) {
 
 void Studio::press(const Event& e) {
     Session& s = session_;
+    if (!ImGui::GetIO().WantCaptureMouse || in_palette(e)) {
+        bring_in_colour(s);
+        remember_brush(s);
+    }
     if (s.painter && !dialog_open() && !hand_ && in_palette(e)) return palette_press(e);
     if (!s.painter || ImGui::GetIO().WantCaptureMouse || dialog_open() || hand_ || s.curve.grabbed >= 0) return;
     if (in_atlas(e)) return atlas_press(e);
@@ -129,7 +133,8 @@ void Studio::press(const Event& e) {
     s.erasing = s.tool == Tool::eraser || e.eraser;
     if (s.tool == Tool::line || s.tool == Tool::curve) return curve_press(e);
     try {
-        hand_.emplace(*s.painter->model().query, brush::load_preset(s.brush), s.hand);
+        const brush::Preset preset = brush::load_preset(s.brush);
+        hand_.emplace(*s.painter->model().query, preset, s.hand, tip_lag(preset));
     } catch (const Error& error) {
         say(s, error.what());
         return;
@@ -201,6 +206,11 @@ void Studio::key(const Event& e) {
         return;
     }
     if (s.painter && !dialog_open() && curve_key(e)) return;
+    if (s.painter && !dialog_open() && e.key == GLFW_KEY_F2) {
+        s.layer_list.renamed = s.layer;
+        s.layer_list.focus = true;
+        return;
+    }
     if (const auto act = s.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)})) perform(*act);
 }
 

@@ -38,7 +38,8 @@ void Studio::palette_press(const Event& e) {
     }
     try {
         if (!plate_) plate_ = stroke::make_palette();
-        hand_.emplace(*plate_->query, brush::load_preset(s.brush), s.hand);
+        const brush::Preset preset = brush::load_preset(s.brush);
+        hand_.emplace(*plate_->query, preset, s.hand, tip_lag(preset));
     } catch (const Error& error) {
         say(s, error.what());
         return;

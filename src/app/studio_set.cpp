@@ -34,6 +34,8 @@ void Studio::set(const std::string& name, const std::string& value) {
     };
     if (name == "brush") s.brush = s.brushes[static_cast<std::size_t>(one_of(s.brushes))];
     else if (name == "brush-size") size_brush(s, number);
+    else if (name == "colour") set_colour(s, value);
+    else if (name == "clean-ends") s.hand.clean_ends = on;
     else if (name == "ink" || name == "tip-ink") {
         std::vector<std::string> names = s.inks;
         for (const ink::Ink& ink : s.own_inks) names.push_back(ink.name);

@@ -24,6 +24,43 @@
 namespace tuft::app {
 namespace {
 
+// All by the mouse, in a window high enough for the whole column of tools.
+TEST_F(StudioProgram, LayersAreCopiedBlendedRenamedAndMergedInTheirList) {
+    const Ran ran = studio(kBowl + "stroke 46%,58% 50%,61% 54%,58%\nclick \"Add a layer\"\nwait-ready\nset layer \"Layer 2\"\nset ink cinnabar\n"
+                           "stroke 46%,56% 50%,63% 54%,56%\nwait-ready\nexpect label \"layer Layer 2\"\n"
+                           "click \"layer Layer 1\"\nwait 0.1\nclick \"layer Layer 2\"\nwait 0.1\nclick Duplicate\nwait-ready\nexpect label \"layer Layer 2 copy\"\n"
+                           "click \"layer Layer 2 copy\"\nwait 0.1\nclick Multiply\nwait-ready\n"
+                           "key f2\nwait 0.1\ntype gold\nkey enter\nwait-ready\nexpect label \"layer gold\"\n"
+                           "click \"layer Layer 2\"\nwait 0.1\nclick \"Merge down\"\nwait-ready\nsave work.tuft\nwait-ready\n",
+                           "--headless --size 1280x1500");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const nlohmann::json project = tuft("inspect '" + path("work.tuft") + "' --json");
+    ASSERT_EQ(project["layers"].size(), 2u);
+    EXPECT_EQ(project["layers"][1]["name"], "gold");
+    EXPECT_EQ(project["layers"][1]["blend"], "multiply");
+    tuft("replay '" + path("work.tuft") + "' --json");
+}
+
+// A colour chosen by its code is mixed from the pigments, painted with, and part of the project.
+TEST_F(StudioProgram, AChosenColourIsMixedAndPaintedWith) {
+    const Ran ran = studio(kBowl + "click Colour...\nwait-ready\nexpect label Hex\nset colour \"#603010\"\nwait-ready\nstroke 46%,58% 50%,61% 54%,58%\n"
+                           "wait-ready\nexpect strokes 1\nsave work.tuft\nwait-ready\n",
+                           "--headless --size 1280x900");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const nlohmann::json project = tuft("inspect '" + path("work.tuft") + "' --json");
+    EXPECT_EQ(project["strokes"][0]["ink"], "#603010");
+    const std::string recent = read(path("state") + "/tuft/colours");
+    EXPECT_EQ(recent, "#603010\n");
+}
+
+// The brush fits the model, and a person's choice is there the next time.
+TEST_F(StudioProgram, TheBrushOfAModelIsRemembered) {
+    ASSERT_EQ(studio(kBowl + "set brush goat-small\nstroke 46%,58% 50%,61% 54%,58%\nwait-ready\n").status, 0);
+    const Ran ran = studio(kBowl + "stroke 46%,58% 50%,61% 54%,58%\nwait-ready\nsave work.tuft\nwait-ready\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(tuft("inspect '" + path("work.tuft") + "' --json")["strokes"][0]["brush"], "goat-small");
+}
+
 TEST_F(StudioProgram, PaintsToTheBitWhatAReplayPaints) {
     const Ran ran = studio(kBowl + kTwoStrokes +
                            "stroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\nundo\nwait-ready\nexpect strokes 2\nredo\nwait-ready\n"

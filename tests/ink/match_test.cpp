@@ -207,6 +207,31 @@ TEST(Match, SaysHowFarAColourOutOfReachIs) {
               std::string::npos);
 }
 
+TEST(Match, LabAndLinearLightAreInverse) {
+    Draws draw{9};
+    for (int i = 0; i < 100; ++i) {
+        const std::array<double, 3> rgb{draw(), draw(), 0.01 * draw()}, back = rgb_of_lab(lab_of_rgb(rgb));
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(back[c], rgb[c], 1e-9);  // constants of nine digits
+    }
+}
+
+// Eight pigments are all that a canvas holds.
+TEST(Match, OnAFullCanvasUsesItsPigmentsOnly) {
+    const Substrate porcelain = load_substrate("porcelain");
+    std::vector<Pigment> held(pigments().begin(), pigments().end());
+    std::erase_if(held, [](const Pigment& p) { return p.name == "gamboge"; });
+    ASSERT_EQ(held.size(), static_cast<std::size_t>(kMaxPigments));
+    const Rgb yellow = *colour_of_hex("#e0c040");
+    const ColourMatch free = match_on_canvas(yellow, porcelain, {});
+    const ColourMatch bound = match_on_canvas(yellow, porcelain, held);
+    const auto has = [](const ColourMatch& m) {
+        return std::any_of(m.ink.parts.begin(), m.ink.parts.end(), [](const InkPart& p) { return p.pigment.name == "gamboge"; });
+    };
+    EXPECT_TRUE(has(free));
+    EXPECT_FALSE(has(bound));
+    EXPECT_GT(bound.delta_e, free.delta_e);
+}
+
 TEST(Match, HexIsReadAndWritten) {
     EXPECT_EQ(to_hex(*colour_of_hex("#c03020")), "#c03020");
     EXPECT_EQ(to_hex(*colour_of_hex("#fA0")), "#ffaa00");

@@ -96,6 +96,7 @@ Update Painter::take() {
     update_.can_redo = out.can_redo;
     update_.layers = out.layers;
     update_.masks = out.masks;
+    update_.thumbnails.clear();
     update_.own_inks.reset();
     update_.palette.reset();
     update_.on_palette = out.on_palette;
@@ -144,6 +145,7 @@ void Painter::run() {
             say(error.what());
             publish(true);
         }
+        draw_thumbnails();
         if (work_.keeper.unkept()) look_outside();
     }
     if (work_.painting->in_stroke()) end();
@@ -199,6 +201,7 @@ void Painter::perform(Command& command) {
                           [this](PickInk& c) { pick(c); }, [this](TakeInk& c) { add_ink(std::move(c.ink)); },
                           [this](RecolourInk& c) { recolour(c); }, [this](ShowOn& c) { show_on(c); },
                           [this](ChangeMasks& c) { change_masks(c); }, [this](ShowMask& c) { show_mask(c); },
+                          [this](LookFrom& c) { thumbnails_.look_from(*work_.model, c.camera); },
                           [this](ExportModel& c) { export_model(c); }, [this](EditStrokes& c) { edit(c); },
                           [this](HighlightStrokes& c) { highlight(c); },
                           [this](AttachToProject& c) { work_.keeper.attach(c.kind, c.attachment); publish(); },
@@ -229,7 +232,9 @@ ProgressFn Painter::progress(const std::string& name) {
 // Hands over what changed. Only this thread calls it (or the maker, before there is one).
 void Painter::publish(bool strokes_changed) {
     stroke::Painting& painting = *work_.painting;
-    std::vector<render::TilePixels> tiles = work_.texture->refresh(painting.take_dirty(), painting);
+    const std::vector<std::uint32_t> dirty = painting.take_dirty();
+    thumbnails_.touch(dirty);
+    std::vector<render::TilePixels> tiles = work_.texture->refresh(dirty, painting);
     if (strokes_changed) {
         const auto& strokes = painting.journal().strokes();
         // Entries that are still right stay; ids and order tell.

@@ -17,6 +17,7 @@
 
 #include "app/document/keeper.h"
 #include "app/document/snapshots.h"
+#include "app/document/thumbnails.h"
 #include "app/document/writing.h"
 #include "app/view/texture.h"
 #include "stroke/hand/symmetry.h"
@@ -105,6 +106,10 @@ struct ShowMask {
 struct ChangeLayers {
     stroke::LayerEdit edit;
 };
+/// From where the layers' small pictures are seen, and how large they are.
+struct LookFrom {
+    render::GlCamera camera;
+};
 /// Hands over the whole texture anew.
 struct SendTexture {
     bool wetness = false;         ///< its fourth channel: the liquid, not the ink's height
@@ -166,7 +171,7 @@ struct RestoreSnapshot {
     std::string id;
 };
 using Command = std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot, BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, CareForBrush, UndoStroke, RedoStroke, SaveProject, RetryKeeping,
-                             ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask>;
+                             ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, ShowOn, ChangeMasks, ShowMask, LookFrom>;
 
 /// A stroke for the list.
 struct StrokeLine {
@@ -214,6 +219,7 @@ struct Update {
     stroke::LayerTable layers;
     bool from_outside = false;    ///< another program had a part in the change
     stroke::MaskTable masks;
+    std::vector<Thumbnail> thumbnails;  ///< of layers, those that changed
     std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones
     std::optional<Looks> looks;
     std::optional<std::vector<SnapshotLine>> snapshots;
@@ -313,6 +319,7 @@ class Painter {
     void publish_looks();
     void look_at_brush();
     std::uint32_t layer_of(std::uint32_t asked) const;
+    void draw_thumbnails();
     void load_tip(const BeginStroke& command, std::size_t& made);
     void paint_drawing(PaintDrawing& command);
     void care(const CareForBrush& command);
@@ -352,6 +359,7 @@ class Painter {
     std::vector<ink::Ink> own_inks_;
     stroke::WidthTables widths_;
     stroke::PalettePicture palette_;
+    Thumbnails thumbnails_;
     std::optional<std::array<std::uint8_t, 3>> brush_colour_;
     double undo_seconds_ = 0;
     double asked_ = 0, last_publish_ = 0;

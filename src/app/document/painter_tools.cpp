@@ -91,9 +91,26 @@ void Painter::show_on(const ShowOn& command) {
     work_.keeper.store_looks(painting);
     painting.take_dirty();
     work_.texture->refresh_all(painting);
+    thumbnails_.forget();
     publish();
     send_pixels();
     publish_looks();
+}
+
+// When nothing else is asked for, and no stroke is in work.
+void Painter::draw_thumbnails() {
+    stroke::Painting& painting = *work_.painting;
+    if (painting.in_stroke() || !thumbnails_.waiting(painting)) return;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!queue_.empty()) return;
+    }
+    std::vector<Thumbnail> changed = thumbnails_.draw(painting);
+    const std::lock_guard lock(mutex_);
+    for (Thumbnail& picture : changed) {
+        std::erase_if(update_.thumbnails, [&](const Thumbnail& t) { return t.layer == picture.layer; });
+        update_.thumbnails.push_back(std::move(picture));
+    }
 }
 
 void Painter::send_pixels() {

@@ -5,6 +5,10 @@
 #include <limits>
 #include <numbers>
 
+#include "core/ease.h"
+#include "stroke/hand/laying.h"
+#include "stroke/hand/lead.h"
+
 namespace tuft::app {
 namespace {
 
@@ -20,6 +24,17 @@ constexpr double kShallow = 0.2;  // of how far gaps are felt: what is less deep
 constexpr double kBent = 0.5;     // of it: how far two sides of a gap may lie out of one plane
 constexpr int kPairs = 12;        // of rays round the aim
 constexpr std::size_t kAgreeing = 3;  // of them that must lie on ground
+constexpr double kKnown = 3;      // pixels after which the direction of a clean stroke is known
+constexpr double kPatience = 0.15;  // seconds after which a hand that rests presses straight down
+constexpr double kSetDown = 0.05; // seconds in which a clean stroke is pressed down
+constexpr double kTouch = 0.7;    // of the pressure, that it is pressed down with; the rest comes along the way
+// Pressed down in place, the tip is pushed back behind the first place by this part of the tuft's length, at pressure 1;
+// the holder goes as far ahead of it there, and loses that over this part of the length. A fast start pulls the tip along.
+constexpr double kSpread = 0.1, kSpreadGone = 0.2;
+constexpr double kTips = 0.12, kTipTurns = 4;  // radians that the holder is tipped ahead at first, over so many `lead_turn`
+constexpr double kSlowest = 0.2;  // seconds in which it arrives at its end, at most
+constexpr double kFlick = 1.5;    // of the working depth: a way to the end on which the brush lifts by the next part
+constexpr double kFlickLift = 0.75;  // of its pressure; the rest goes at the end
 constexpr double kSlanting = 0.35;  // cosine to the line of sight under which no gap is told from an edge
 
 double part(double dt, double constant) { return 1.0 - std::exp(-dt / std::max(constant, 1e-6)); }
@@ -40,9 +55,12 @@ std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, cons
     return std::nullopt;
 }
 
-Hand::Hand(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const HandSettings& settings)
+Hand::Hand(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const HandSettings& settings, TipLag lag)
     : surface_(surface), hold_(stroke::hold_options(preset, surface.mesh())), settings_(settings),
-      reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {}
+      reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {
+    hold_.lead = std::move(lag.upright);
+    hold_.leaned = std::move(lag.leaned);
+}
 
 std::optional<Ground> Hand::ground(const Aim& aim) const {
     const auto facing = [&](const mesh::SurfacePoint& p) { return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal; };
@@ -97,13 +115,35 @@ brush::Pose Hand::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal,
         const Vec3 d = v - glm::dot(v, normal) * normal;
         return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
     };
-    const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) + std::tan(tilt.y) * along(aim.view_up));
+    const double tipped = kTips * (1 - smooth_step(gone_ / (kTipTurns * hold_.lead_turn)));
+    const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) + std::tan(tilt.y) * along(aim.view_up) + tipped * string_);
     const Frame f = make_frame(point, up);
     const Quat upright = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n)));
     const double height = hold_.tuft_length + (pressure > 0 ? -pressure * hold_.working_depth : hold_.hover);
-    return {.position = point + height * up,
+    return {.position = point + ahead_of(aim, normal, pressure) + height * up,
             .rotation = aim.turn == 0 ? upright : glm::normalize(upright * glm::angleAxis(-aim.turn, Vec3(0, 0, 1))),
             .time = time};
+}
+
+// Where the holder is for ink at the point: ahead along the string, and under a lean aside.
+Vec3 Hand::ahead_of(const Aim& aim, const Vec3& normal, double pressure) const {
+    const double taut = glm::length(string_);
+    if (hold_.lead.empty() || !(pressure > 0) || taut < 1e-9) return Vec3(0);
+    const stroke::Axes axes = stroke::axes_across(normal, aim.view_right, -aim.view_up);
+    const Vec2 ahead{glm::dot(string_, axes.right), glm::dot(string_, axes.down)};
+    if (glm::length(ahead) < 1e-9) return Vec3(0);
+    const Vec2 lag = taut * stroke::lead_of(hold_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
+    const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * hold_.tuft_length)));
+    return lag.x * axes.right + lag.y * axes.down + spread * string_;
+}
+
+// The point has moved: what it drags follows on the string, along the surface.
+void Hand::drag() {
+    Vec3 way = point_ - dragged_;
+    way -= glm::dot(way, normal_) * normal_;
+    if (const double length = glm::length(way); length > hold_.lead_turn) way *= hold_.lead_turn / length;
+    dragged_ = point_ - way;
+    string_ = way / hold_.lead_turn;
 }
 
 double Hand::goal_pressure(const Aim& aim) const {
@@ -113,15 +153,57 @@ double Hand::goal_pressure(const Aim& aim) const {
     return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
 }
 
-void Hand::touch_down(const Aim& aim, const Ground& hit, std::vector<HandStep>& steps) {
+void Hand::touch_down(const Aim& aim, const Ground& hit, const Vec3& towards, std::vector<HandStep>& steps) {
     down_ = true;
     goal_ = point_ = hit.position;
     normal_ = hit.normal;
     bridged_ = -1;
     start_ = aim.time;
-    time_ = speed_ = rest_ = pressure_ = 0;
+    time_ = speed_ = rest_ = pressure_ = gone_ = 0;
+    spread_ = 0;
+    string_ = towards;
+    dragged_ = point_ - hold_.lead_turn * string_;
     steps.push_back({HandStep::Kind::begin, {}});
     steps.push_back({HandStep::Kind::poses, {pose_at(aim, point_, normal_, 0, 0)}});
+}
+
+// A clean stroke is asked for: nothing is touched until its direction is known.
+void Hand::wait(const Aim& aim, const Ground& hit, std::vector<HandStep>& steps) {
+    waiting_.push_back({aim, hit});
+    aim_ = aim;
+    goal_ = hit.position;
+    goal_normal_ = hit.normal;
+    const bool known = glm::distance(hit.position, waiting_.front().ground.position) >= kKnown * aim.metres_per_pixel;
+    if (known || aim.time - waiting_.front().aim.time > kPatience) set_down(steps);
+}
+
+// Presses the tuft down at the first place, then goes on to where the cursor is by now.
+void Hand::set_down(std::vector<HandStep>& steps) {
+    const std::vector<Waiting> waiting = std::move(waiting_);
+    waiting_.clear();
+    const Waiting& first = waiting.front();
+    const Waiting& last = waiting.back();
+    Vec3 way = last.ground.position - first.ground.position;
+    way -= glm::dot(way, first.ground.normal) * first.ground.normal;
+    const double length = glm::length(way);
+    touch_down(first.aim, first.ground, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0), steps);
+    start_ -= kSetDown;  // as if it had begun earlier: it lags no further behind
+    speed_ = length / std::max(kFrame, last.aim.time - first.aim.time);
+    spread_ = kSpread * hold_.tuft_length * (1 - std::min(1.0, speed_ / settings_.fast));
+    const double pressure = (glm::length(string_) > 0 ? kTouch : 1.0) * goal_pressure(first.aim);
+    const int n = static_cast<int>(std::ceil(kSetDown / kFrame));
+    HandStep step;
+    for (int i = 1; i <= n; ++i) {
+        time_ = kSetDown * i / n;
+        pressure_ = pressure * i / n;
+        step.poses.push_back(pose_at(first.aim, point_, normal_, pressure_, time_));
+    }
+    for (std::size_t i = 1; i < waiting.size(); ++i) {
+        if (waiting[i].ground.bridged) bridged_ = time_;
+        follow(waiting[i].aim, waiting[i].ground.position, waiting[i].ground.normal, step.poses);
+        goal_normal_ = waiting[i].ground.normal;
+    }
+    steps.push_back(std::move(step));
 }
 
 void Hand::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses) {
@@ -141,6 +223,8 @@ void Hand::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vec
         point_ = behind + (1 - part(dt, settings_.smoothing)) * (point_ - behind + pace * dt);
         normal_ = glm::normalize(normal_ + part(dt, std::max(0.01, settings_.smoothing)) * (normal - normal_));
         onto_surface();
+        if (is_clean(aim)) drag();
+        gone_ += glm::distance(before, point_);
         const double v = glm::distance(before, point_) / dt;
         speed_ += part(dt, 0.05) * (v - speed_);
         rest_ = speed_ < 0.004 ? rest_ + dt : 0;
@@ -155,14 +239,18 @@ std::vector<HandStep> Hand::move(const Aim& aim) {
     std::vector<HandStep> steps;
     const auto hit = ground(aim);
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
-    const double expected = down_ && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
+    const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
                                                glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
                                          : 0;
-    if (down_ && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected))
+    if (drawing() && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected))
         steps = lift();
     if (!hit) return steps;
+    if (!down_ && is_clean(aim)) {
+        wait(aim, *hit, steps);
+        return steps;
+    }
     if (!down_) {
-        touch_down(aim, *hit, steps);
+        touch_down(aim, *hit, Vec3(0), steps);
     } else {
         HandStep step;
         // A tablet reports what changes: where it was silent, the pen was held still until shortly before.
@@ -180,11 +268,36 @@ std::vector<HandStep> Hand::move(const Aim& aim) {
     return steps;
 }
 
+// What the smoothing, or the string, kept the hand behind the cursor. It slows down evenly from the speed that it has,
+// and the pressure goes as what is left of the way, as far as the way is longer than the hand needs to stop anyway.
+void Hand::arrive(std::vector<brush::Pose>& poses) {
+    const Vec3 from = point_;
+    const double way = glm::distance(goal_, from);
+    if (way < 0.25 * aim_.metres_per_pixel) return;
+    const double seconds = std::clamp(2 * way / std::max(speed_, 1e-6), kFrame, kSlowest), start = pressure_;
+    const int n = static_cast<int>(std::ceil(seconds / kFrame));
+    const double flick = std::min(1.0, way / (kFlick * hold_.working_depth));
+    for (int i = 1; i <= n; ++i) {
+        const double t = static_cast<double>(i) / n, left = (1 - t) * (1 - t);
+        const Vec3 before = point_;
+        point_ = from + (1 - left) * (goal_ - from);
+        normal_ = glm::normalize(normal_ + t * (goal_normal_ - normal_));
+        onto_surface();
+        drag();
+        gone_ += glm::distance(before, point_);
+        pressure_ = start * (1 - kFlickLift * flick * (1 - left));
+        time_ += seconds / n;
+        poses.push_back(pose_at(aim_, point_, normal_, pressure_, time_));
+    }
+}
+
 std::vector<HandStep> Hand::lift() {
     std::vector<HandStep> steps;
+    if (!waiting_.empty()) set_down(steps);
     if (!down_) return steps;
     constexpr int count = 12;
     HandStep step;
+    if (is_clean(aim_)) arrive(step.poses);
     const double start = pressure_;
     for (int i = 1; i <= count; ++i) {
         const double s = static_cast<double>(i) / count;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct HandSettings {
     double pen_least = 0, pen_full = 1;  ///< a pen's pressure where the brush begins to sink, and where it is at its deepest
     double pen_gamma = 1;         ///< exponent in between
     Vec2 tilt{0};                 ///< radians, lean of the holder to the right and upwards in the view
+    bool clean_ends = true;       ///< of strokes without a pen: see `Hand`
 };
 
 /// Part of the working depth, 0–1, for a pen's pressure: ((p − least) / (full − least)) ^ gamma, cut.
@@ -36,6 +38,12 @@ struct Aim {
     std::optional<Vec2> tilt;                    ///< of a pen, as `HandSettings::tilt`
     double turn = 0;                             ///< of a pen about itself, radians, clockwise for who holds it
     Vec4f section{0};                            ///< cut plane: what it hides is not met
+};
+
+/// How far ink lies behind the holder of one brush, for `stroke::lead_of`; empty: not at all.
+struct TipLag {
+    std::vector<stroke::Lead> upright;
+    std::function<Vec2(double depth, const Vec2& lean)> leaned = {};
 };
 
 /// What lies under the brush, as a hand feels it.
@@ -58,14 +66,23 @@ struct HandStep {
 /// more, as a hand does); a soft landing and a soft lift. It goes over gaps and grooves narrower than
 /// the tuft, such as shut lines, without dipping into them. Where the cursor leaves the model or
 /// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it.
+///
+/// With `clean_ends`, a hand without pressure makes strokes whose ink begins where the button went down
+/// and ends where it came up. The brush is set down once the cursor has gone three pixels, rested, or
+/// the button is up: then the direction of the stroke is known, and the tuft is pressed at the first place
+/// while the holder tips and goes ahead, so that the hair trails from the first touch. Along the stroke
+/// the holder is ahead of the cursor by the tip lag of its depth (`stroke::lead_of`), in the direction of
+/// a point dragged behind it (stroke/hand/lead.h). At the end the hand slows down evenly to the last
+/// place of the cursor, from which the smoothing kept it, and lifts there; from a fast stroke it lifts on
+/// the way. Pens have ends of their own: their pressure.
 class Hand {
   public:
-    Hand(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const HandSettings& settings);
+    Hand(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const HandSettings& settings, TipLag lag = {});
 
     std::vector<HandStep> move(const Aim& aim);
     /// The hand lifts off.
     std::vector<HandStep> lift();
-    bool drawing() const { return down_; }
+    bool drawing() const { return down_ || !waiting_.empty(); }
 
     /// The brush above what the cursor points at, not pressed; nothing where it meets nothing.
     std::optional<brush::Pose> hover(const Aim& aim) const;
@@ -75,8 +92,19 @@ class Hand {
     std::optional<Ground> ground(const Aim& aim) const;
 
   private:
+    struct Waiting {
+        Aim aim;
+        Ground ground;
+    };
+
+    bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
-    void touch_down(const Aim& aim, const Ground& hit, std::vector<HandStep>& steps);
+    Vec3 ahead_of(const Aim& aim, const Vec3& normal, double pressure) const;
+    void touch_down(const Aim& aim, const Ground& hit, const Vec3& towards, std::vector<HandStep>& steps);
+    void wait(const Aim& aim, const Ground& hit, std::vector<HandStep>& steps);
+    void set_down(std::vector<HandStep>& steps);
+    void arrive(std::vector<brush::Pose>& poses);
+    void drag();
     void follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses);
     void onto_surface();
     double goal_pressure(const Aim& aim) const;
@@ -88,6 +116,11 @@ class Hand {
     double bridged_ = -1;                  ///< `time_` when the goal was last over a gap; below 0: never
     bool down_ = false;
     Aim aim_;                              ///< the last one
+    std::vector<Waiting> waiting_;         ///< of a clean stroke, until its direction is known
+    Vec3 dragged_{0};                      ///< metres: what the point drags on a string of `lead_turn`
+    Vec3 string_{0};                       ///< that string, of length 1 where it is taut
+    double gone_ = 0;                      ///< metres since the touch
+    double spread_ = 0;                    ///< metres that the holder is further ahead there, at pressure 1
     Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};
     double pressure_ = 0, time_ = 0, speed_ = 0, rest_ = 0, start_ = 0;
 };

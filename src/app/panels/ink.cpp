@@ -37,22 +37,50 @@ std::string recipe_text(const Session& s, const std::string& name) {
     return text;
 }
 
+// A swatch with its name under it; true when it was pressed.
+bool named_swatch(Session& s, const std::string& id, const std::string& title, unsigned colour, bool chosen, float width) {
+    const float height = s.ui.px(40), radius = s.ui.px(11);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool pressed = ImGui::InvisibleButton(("ink " + id).c_str(), ImVec2(width, height));
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImVec2 centre(at.x + 0.5f * width, at.y + radius + s.ui.px(3));
+    swatch(draw, centre, radius, colour);
+    if (chosen) draw->AddCircle(centre, radius + s.ui.px(2.5f), s.ui.accent, 32, s.ui.px(2));
+    const float size = 0.72f * ImGui::GetFontSize(), part = size / ImGui::GetFontSize();
+    const std::string text = s.ui.fitted(title, width / part);
+    const float length = part * ImGui::CalcTextSize(text.c_str()).x;
+    draw->AddText(ImGui::GetFont(), size, ImVec2(std::round(centre.x - 0.5f * length), std::round(at.y + height - size - s.ui.px(1))), chosen ? s.ui.strong : s.ui.faint, text.c_str());
+    return pressed;
+}
+
 void swatches(Session& s) {
-    constexpr std::size_t columns = 6;
-    const float gap = s.ui.px(6), size = (ImGui::GetContentRegionAvail().x + gap) / columns - gap;
-    const std::vector<std::string> names = ink_names(s);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const std::string& name = names[i];
-        if (i % columns) ImGui::SameLine(0, gap);
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        if (ImGui::InvisibleButton(("ink " + name).c_str(), ImVec2(size, size))) s.ink = name;
+    constexpr std::size_t columns = 5;
+    const float gap = s.ui.px(2), width = (ImGui::GetContentRegionAvail().x + gap) / columns - gap;
+    std::vector<std::string> names = ink_names(s);
+    if (s.colour.in_hand && std::find(names.begin(), names.end(), s.colour.in_hand->name) == names.end()) names.push_back(s.colour.in_hand->name);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, s.ui.px(2)));
+    std::size_t i = 0;
+    for (const std::string& name : names) {
+        if (i++ % columns) ImGui::SameLine(0, gap);
+        if (named_swatch(s, name, s.ui.tr(name.c_str()), ink_colour(s, name), name == s.ink, width)) s.ink = name;
         s.ui.mark(name);
-        ImDrawList* draw = ImGui::GetWindowDrawList();
-        const ImVec2 centre(at.x + 0.5f * size, at.y + 0.5f * size);
-        swatch(draw, centre, 0.42f * size, ink_colour(s, name));
-        if (name == s.ink) draw->AddCircle(centre, 0.5f * size, s.ui.accent, 32, s.ui.px(2));
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", recipe_text(s, name).c_str());
     }
+    // The person's own, but for those that are part of this work already.
+    for (std::size_t k = 0; k < s.colour.saved.size(); ++k) {
+        const ink::Ink& own = s.colour.saved[k];
+        if (std::find(names.begin(), names.end(), own.name) != names.end()) continue;
+        if (i++ % columns) ImGui::SameLine(0, gap);
+        if (named_swatch(s, "own " + own.name, own.name, ink_colour(own), false, width)) take_mix(s, own);
+        s.ui.mark("own " + own.name);
+        if (ImGui::BeginPopupContextItem()) {
+            const std::string name = own.name;
+            if (s.ui.menu_item("Forget this ink")) forget_own_ink(s.colour, name);
+            ImGui::EndPopup();
+            if (k >= s.colour.saved.size() || s.colour.saved[k].name != name) break;
+        }
+    }
+    ImGui::PopStyleVar();
 }
 
 float part_of_row(Session& s, int n) {
@@ -64,6 +92,7 @@ void care(Session& s) {
     Ui& ui = s.ui;
     const float half = part_of_row(s, 2);
     const auto act = [&](stroke::Action action, double depth = 1, double side = 0) {
+        bring_in_colour(s);
         s.painter->post(CareForBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
     };
     if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half)) act(stroke::Action::dip, s.dip_depth, s.dip_side);
@@ -102,10 +131,14 @@ void ink_section(Session& s) {
     Ui& ui = s.ui;
     if (!ui.section("Ink", true, ui.tr(s.ink.c_str()))) return;
     swatches(s);
-    const float half = part_of_row(s, 2);
-    if (ui.button("Load...", "An ink from a file", half)) s.files.show(FileDialog::Purpose::ink, {});
+    const float third = part_of_row(s, 3);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
+    if (ui.choice("Colour...", s.colour.shown, "Any colour, on a wheel or as a hex code: the nearest mix of pigments is found for it", third - 4)) s.colour.shown = !s.colour.shown;
     ImGui::SameLine();
-    if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", half)) s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
+    if (ui.button("Load...", "An ink from a file", third - 6)) s.files.show(FileDialog::Purpose::ink, {});
+    ImGui::SameLine();
+    if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", part_of_row(s, 1))) s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
+    ImGui::PopStyleVar();
     ui.toggle("Wet ink", s.wet, "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.wet || s.last.wet) {
         if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
@@ -129,6 +162,7 @@ unsigned ink_colour(const Session& s, const std::string& name) {
     const ink::Ink* ink = find_ink(s, name);
     if (!ink) return IM_COL32(40, 40, 40, 255);
     if (!s.own_inks.empty() && ink >= s.own_inks.data() && ink < s.own_inks.data() + s.own_inks.size()) return ink_colour(*ink);
+    if (s.colour.in_hand && ink == &*s.colour.in_hand) return ink_colour(*ink);
     const auto [at, is_new] = shipped.try_emplace(ink);
     if (is_new) at->second = ink_colour(*ink);
     return at->second;

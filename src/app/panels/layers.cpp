@@ -1,7 +1,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "app/panels/panels.h"
 
@@ -20,41 +22,157 @@ std::string fresh_name(const Session& s) {
     }
 }
 
-// What can be done with the chosen layer.
-void details(Session& s, const Layer& layer, std::size_t place) {
-    Ui& ui = s.ui;
-    const auto& all = s.last.layers.layers;
+// The layer as it is, changed in one respect.
+template <class Fn>
+void change(Session& s, Layer layer, Fn&& how) {
+    how(layer);
+    if (const Layer* now = s.last.layers.find(layer.id); now && !(*now == layer)) change(s, stroke::changed(s.last.layers, layer));
+}
+
+constexpr std::pair<ink::Blend, const char*> kBlends[] = {{ink::Blend::normal, "Normal"}, {ink::Blend::glaze, "Glazing"}, {ink::Blend::multiply, "Multiply"}};
+constexpr const char* kBlendHint = "Normal: paint that covers and lets through. Glazing: only absorbs, as colour in clear varnish. Multiply: a filter of its colour";
+
+void duplicate(Session& s, const Layer& layer) {
+    change(s, stroke::duplicated(s.last.layers, layer.id, stroke::free_name(s.last.layers, layer.name + " copy")));
+}
+
+void merge(Session& s, const Layer& layer) {
+    try {
+        const stroke::LayerEdit edit = stroke::merged_down(s.last.layers, layer.id);
+        change(s, edit);
+        s.layer = edit.other;
+    } catch (const Error& error) {
+        say(s, error.what());
+    }
+}
+
+void begin_renaming(Session& s, const Layer& layer) {
+    s.layer_list.renamed = layer.id;
+    s.layer_list.focus = true;
+}
+
+void name_field(Session& s, const Layer& layer) {
     char name[stroke::kMaxNameBytes + 1];
     std::snprintf(name, sizeof name, "%s", layer.name.c_str());
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue) && layer.name != name) {
-        Layer renamed = layer;
-        renamed.name = name;
-        change(s, stroke::changed(s.last.layers, renamed));
+    const bool appeared = std::exchange(s.layer_list.focus, false);
+    if (appeared) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    s.ui.mark("Layer name");
+    if (!entered && (appeared || !ImGui::IsItemDeactivated())) return;
+    s.layer_list.renamed = 0;
+    // Escape leaves the text as it was.
+    if (layer.name != name && name[0]) change(s, layer, [&](Layer& l) { l.name = name; });
+}
+
+void context_menu(Session& s, const Layer& layer, std::size_t place) {
+    Ui& ui = s.ui;
+    const auto& all = s.last.layers.layers;
+    if (!ImGui::BeginPopupContextItem("menu")) return;
+    s.layer = layer.id;
+    if (ui.menu_item("Rename", "F2")) begin_renaming(s, layer);
+    if (ui.menu_item("Duplicate", nullptr, false, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
+    if (ui.menu_item("Merge down", nullptr, false, place > 0)) merge(s, layer);
+    if (ui.begin_menu("Blend")) {
+        for (const auto& [blend, name] : kBlends)
+            if (ui.menu_item(name, nullptr, layer.blend == blend)) change(s, layer, [b = blend](Layer& l) { l.blend = b; });
+        ImGui::EndMenu();
     }
-    ui.mark("Layer name");
+    if (ui.menu_item("Locked", nullptr, layer.locked)) change(s, layer, [](Layer& l) { l.locked = !l.locked; });
+    ImGui::Separator();
+    if (ui.menu_item("Higher", nullptr, false, place + 1 < all.size())) change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
+    if (ui.menu_item("Lower", nullptr, false, place > 0)) change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
+    ImGui::Separator();
+    if (ui.menu_item("Remove layer", nullptr, false, all.size() > 1)) change(s, stroke::removed(layer.id));
+    ImGui::EndPopup();
+}
+
+// A row is dragged onto another one and takes its place; the others make room.
+void drag(Session& s, const Layer& layer, std::size_t place) {
+    if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoHoldToOpenOthers)) {
+        ImGui::SetDragDropPayload("layer", &layer.id, sizeof layer.id);
+        ImGui::TextUnformatted(s.ui.tr_sentence(layer.name).c_str());
+        ImGui::EndDragDropSource();
+    }
+    if (!ImGui::BeginDragDropTarget()) return;
+    if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("layer")) {
+        std::uint32_t id = 0;
+        std::memcpy(&id, payload->Data, sizeof id);
+        if (id != layer.id && s.last.layers.find(id)) change(s, stroke::moved(s.last.layers, id, static_cast<std::uint32_t>(place)));
+    }
+    ImGui::EndDragDropTarget();
+}
+
+// Opacity and blend of the chosen layer, and what is done with it most.
+void details(Session& s, const Layer& layer, std::size_t place) {
+    Ui& ui = s.ui;
+    const auto& all = s.last.layers.layers;
     if (s.layer_opacity < 0) s.layer_opacity = layer.opacity;
     ui.slider("Opacity", s.layer_opacity, 0, 1, "%.0f %%", "Of the whole layer over those below", 0.01);
-    if (ImGui::IsItemDeactivatedAfterEdit() && s.layer_opacity != layer.opacity) {
-        Layer faded = layer;
-        faded.opacity = s.layer_opacity;
-        change(s, stroke::changed(s.last.layers, faded));
-    }
+    if (ImGui::IsItemDeactivatedAfterEdit() && s.layer_opacity != layer.opacity) change(s, layer, [&](Layer& l) { l.opacity = s.layer_opacity; });
     if (!ImGui::IsItemActive()) s.layer_opacity = -1;
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
-    if (ui.button("Higher", nullptr, third, place + 1 < all.size())) change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
+    for (const auto& [blend, name] : kBlends) {
+        if (blend != ink::Blend::normal) ImGui::SameLine();
+        if (ui.choice(name, layer.blend == blend, kBlendHint, third)) change(s, layer, [b = blend](Layer& l) { l.blend = b; });
+    }
+    if (ui.button("Duplicate", "A copy right above it", third, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
     ImGui::SameLine();
-    if (ui.button("Lower", nullptr, third, place > 0)) change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
+    if (ui.button("Merge down", "Lays its films on the layer below; it looks the same", third, place > 0)) merge(s, layer);
     ImGui::SameLine();
-    if (ui.button("Remove", "With its strokes; Undo brings them back", third, all.size() > 1)) change(s, stroke::removed(layer.id));
+    if (ui.button("Remove", "With its strokes; Undo brings them back", 0, all.size() > 1)) change(s, stroke::removed(layer.id));
     ImGui::PopStyleVar();
     bool locked = layer.locked;
-    if (ui.toggle("Locked", locked, "Takes no strokes")) {
-        Layer other = layer;
-        other.locked = locked;
-        change(s, stroke::changed(s.last.layers, other));
+    if (ui.toggle("Locked", locked, "Takes no strokes")) change(s, layer, [locked](Layer& l) { l.locked = locked; });
+}
+
+std::string row_text(const Session& s, const Layer& layer) {
+    std::string text = s.ui.tr_sentence(layer.name), more;
+    const auto add = [&](const std::string& word) { more += (more.empty() ? "" : ", ") + word; };
+    if (layer.blend != ink::Blend::normal) add(s.ui.tr(layer.blend == ink::Blend::glaze ? "Glazing" : "Multiply"));
+    if (layer.opacity < 1) add(std::to_string(std::lround(100 * layer.opacity)) + " %");
+    if (layer.locked) add(s.ui.tr("locked"));
+    return more.empty() ? text : text + "\n" + more;
+}
+
+void row(Session& s, const Layer& layer, std::size_t place) {
+    Ui& ui = s.ui;
+    const float height = ui.px(36), middle = 0.5f * (height - ImGui::GetFrameHeight());
+    const float top = ImGui::GetCursorPosY();
+    ImGui::SetCursorPosY(top + middle);
+    bool visible = layer.visible;
+    if (ImGui::Checkbox("##visible", &visible)) change(s, layer, [visible](Layer& l) { l.visible = visible; });
+    ui.mark("show " + layer.name);
+    ui.hint("Seen or not");
+    ImGui::SameLine();
+    ImGui::SetCursorPosY(top);
+    const bool chosen = layer.id == s.layer;
+    if (s.layer_list.renamed == layer.id) {
+        ImGui::SetCursorPosY(top + middle);
+        name_field(s, layer);
+        ImGui::SetCursorPosY(top + height + ImGui::GetStyle().ItemSpacing.y);
+        return;
     }
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (ImGui::Selectable("##row", chosen, ImGuiSelectableFlags_AllowDoubleClick, ImVec2(0, height))) {
+        if (ImGui::IsMouseDoubleClicked(0)) begin_renaming(s, layer);
+        else {
+            s.layer_details = chosen ? !s.layer_details : true;
+            s.layer = layer.id;
+            s.layer_opacity = -1;
+        }
+    }
+    ui.mark("layer " + layer.name);
+    context_menu(s, layer, place);
+    drag(s, layer, place);
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const float width = height * 4 / 3;
+    if (const auto texture = s.layer_list.textures.find(layer.id); texture != s.layer_list.textures.end() && s.layer_list.pictures.contains(layer.id))
+        draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->second)), at, ImVec2(at.x + width, at.y + height));
+    const std::string text = row_text(s, layer);
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    draw->AddText(ImVec2(at.x + width + ui.px(8), at.y + 0.5f * (height - size.y)), layer.visible ? ui.strong : ui.faint, text.c_str());
 }
 
 }  // namespace
@@ -65,26 +183,10 @@ void layers_section(Session& s) {
     if (all.empty()) return;
     ui.heading("Layers");
     for (std::size_t i = all.size(); i-- > 0;) {
-        const Layer& layer = all[i];
+        const Layer layer = all[i];
         ImGui::PushID(static_cast<int>(layer.id));
-        bool visible = layer.visible;
-        if (ImGui::Checkbox("##visible", &visible)) {
-            Layer other = layer;
-            other.visible = visible;
-            change(s, stroke::changed(s.last.layers, other));
-        }
-        ui.mark("show " + layer.name);
-        ui.hint("Seen or not");
-        ImGui::SameLine();
-        const bool chosen = layer.id == s.layer;
-        const std::string text = ui.tr_sentence(layer.name) + (layer.locked ? std::string("  (") + ui.tr("locked") + ")" : "");
-        if (ImGui::Selectable(text.c_str(), chosen, 0, ImVec2(0, ImGui::GetFrameHeight() - ui.px(4)))) {
-            s.layer_details = chosen ? !s.layer_details : true;
-            s.layer = layer.id;
-            s.layer_opacity = -1;
-        }
-        ui.mark("layer " + layer.name);
-        if (chosen && s.layer_details) details(s, layer, i);
+        row(s, layer, i);
+        if (layer.id == s.layer && s.layer_details) details(s, layer, i);
         ImGui::PopID();
     }
     if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0, all.size() < stroke::kMaxLayers))

@@ -19,6 +19,8 @@ void colours_panel(Session& s, float top, float bottom, float left);
 void journal_panel(Session& s, float top, float bottom, float left);
 void layers_section(Session& s);
 void ink_section(Session& s);
+/// The colour wheel over the view, where it is shown.
+void colour_panel(Session& s);
 void mask_section(Session& s);
 void status_bar(Session& s, float top);
 void welcome(Session& s);

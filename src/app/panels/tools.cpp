@@ -170,6 +170,7 @@ void hand_section(Session& s) {
     ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length", kMillimetre);
     if (ui.button(s.more_hand ? "Less" : "More...", nullptr, 80)) s.more_hand = !s.more_hand;
     if (!s.more_hand) return;
+    ui.toggle("Clean ends", s.hand.clean_ends, "Strokes of a mouse begin where the button goes down and end where it comes up: the brush is set down in the stroke's direction and runs ahead of the cursor by what its tip lags behind. A pen has its pressure for that");
     ui.slider("Speed lightens", s.hand.speed_effect, 0, 1, "%.2f", "As a hand does. Only for a mouse; a pen says its own pressure");
     ui.slider("Rest deepens", s.hand.dwell_effect, 0, 1, "%.2f", "A mouse that stays where it is sinks in slowly");
     ui.note(ui.tr("Pen: from its force to the brush's depth"));

@@ -72,7 +72,7 @@ std::string Ui::prepare(const UiSettings& settings) {
     const std::map<std::string, std::string> fonts = list_fonts();
     const std::string latin = first_of(fonts, {"NotoSans-Regular.ttf", "Inter-Regular.ttf", "Ubuntu-R.ttf", "Cantarell-Regular.otf",
                                                "DejaVuSans.ttf", "LiberationSans-Regular.ttf", "FreeSans.ttf"});
-    static const ImWchar latin_range[] = {0x20, 0x17f, 0x2010, 0x2027, 0x2190, 0x2193, 0x00b0, 0x00b7, 0x03bc, 0x03bc, 0};
+    static const ImWchar latin_range[] = {0x20, 0x17f, 0x2010, 0x2027, 0x2190, 0x2193, 0x00b0, 0x00b7, 0x0394, 0x0394, 0x03bc, 0x03bc, 0};
     const float size = std::round(kFontSize * settings.scale);
     if (latin.empty()) {
         missing = "No font of the system was found; the built-in one is used.";

@@ -25,7 +25,7 @@
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
 ///   right-click LABEL       the same with the right button, for its menu
-///   set NAME VALUE          texels (of the model asked about), brush, brush-size, ink, shading, light, parallel, azimuth, elevation, zoom,
+///   set NAME VALUE          texels (of the model asked about), brush, brush-size, ink, colour (#rrggbb), clean-ends, shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
 ///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise), writing-mirror, writing-laying, string, radial, mirror, carry, tool, language, theme, scale, left-handed, keymap, section, section-axis,
 ///                           see-through, atlas, draw-every (frames of which one is drawn, for tests)

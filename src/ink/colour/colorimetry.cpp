@@ -131,6 +131,24 @@ Lab lab_of_rgb(const std::array<double, 3>& rgb) {
     return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
 }
 
+std::array<double, 3> rgb_of_lab(const Lab& lab) {
+    const double y = (lab[0] + 16) / 116;
+    const std::array<double, 3> f{y + lab[1] / 500, y, y - lab[2] / 200};
+    Eigen::Matrix3d to_xyz;
+    Eigen::Vector3d xyz;
+    for (int i = 0; i < 3; ++i) {
+        const double cube = f[i] * f[i] * f[i];
+        double white = 0;
+        for (int c = 0; c < 3; ++c) {
+            to_xyz(i, c) = kToXyz[i][c];
+            white += kToXyz[i][c];
+        }
+        xyz[i] = white * (cube > 216.0 / 24389 ? cube : (116 * f[i] - 16) * 27 / 24389);
+    }
+    const Eigen::Vector3d rgb = to_xyz.inverse() * xyz;
+    return {rgb[0], rgb[1], rgb[2]};
+}
+
 ColourDifference colour_difference(const Lab& p, const Lab& q) {
     const double c_mean = 0.5 * (std::hypot(p[1], p[2]) + std::hypot(q[1], q[2]));
     const double c7 = std::pow(c_mean, 7), k25 = std::pow(25.0, 7);

@@ -36,6 +36,9 @@ Spectrum spectrum_of_rgb(const Rgb& colour);
 /// CIELAB of a linear sRGB colour, white (1, 1, 1). Negative tristimulus values count as 0.
 Lab lab_of_rgb(const std::array<double, 3>& linear_rgb);
 
+/// The inverse; channels may lie outside [0, 1].
+std::array<double, 3> rgb_of_lab(const Lab& lab);
+
 /// The terms of CIEDE2000 with unit weights: ΔE² = l² + c² + h² + r c h.
 /// Source: Sharma, Wu, Dalal 2005, equations 2 to 22.
 struct ColourDifference {

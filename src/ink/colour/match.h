@@ -114,10 +114,14 @@ std::vector<Pigment> shipped_pigments();
 std::optional<Rgb> colour_of_hex(std::string_view text);
 std::string to_hex(const Rgb& linear);
 
+/// The same, or where a canvas that has the pigments `held` has no room for those of the mix
+/// (`kMaxPigments`), the nearest mix of the held ones.
+ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate,
+                            std::span<const Pigment> held, const MatchOptions& options = {});
+
 /// `load_ink`, which also takes a colour: `#rrggbb` is the nearest mix of the shipped pigments on
-/// `substrate`, as thick as it needs. Where a canvas that has the pigments `held` has no room for
-/// its pigments, the mix is made of those alone. Throws `Error` as `load_ink` does, and for a `#`
-/// without a colour after it.
+/// `substrate`, as thick as it needs (`match_on_canvas`). Throws `Error` as `load_ink` does, and for
+/// a `#` without a colour after it.
 Ink ink_named(std::string_view name, const Substrate& substrate,
               std::span<const Pigment> held = {});
 

@@ -1,0 +1,113 @@
+#include "app/document/colours.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+
+#include "app/document/state_folder.h"
+#include "core/error.h"
+#include "core/files.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::app {
+namespace {
+
+constexpr std::size_t kRecent = 16;
+constexpr std::size_t kMostSaved = 200;
+
+fs::path recent_path() { return state_folder() / "colours"; }
+fs::path saved_folder() { return state_folder() / "inks"; }
+
+// A name for a file: what a path would take amiss becomes a dash.
+fs::path file_of(const std::string& name) {
+    std::string stem = name.substr(0, 100);
+    for (char& c : stem)
+        if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '-';
+    if (stem.empty() || stem[0] == '.') stem = "-" + stem;
+    return saved_folder() / (stem + ".toml");
+}
+
+std::optional<ink::ColourMatch> find(const ColourWish& wish) {
+    try {
+        return ink::match_on_canvas(wish.colour, ink::load_substrate(wish.substrate), wish.held, {.film = wish.film});
+    } catch (const Error&) {
+        // A project may have a substrate of its own.
+        return ink::match_on_canvas(wish.colour, ink::load_substrate("porcelain"), wish.held, {.film = wish.film});
+    }
+}
+
+}  // namespace
+
+void MixFinder::want(ColourWish wish) {
+    if (running_.valid()) {
+        next_ = std::move(wish);
+        return;
+    }
+    running_ = std::async(std::launch::async, [wish = std::move(wish)] { return find(wish); });
+}
+
+std::optional<ink::ColourMatch> MixFinder::poll() {
+    if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+    std::optional<ink::ColourMatch> match;
+    try {
+        match = running_.get();
+    } catch (const std::exception&) {
+        // Without the shipped pigments there is no mix.
+    }
+    if (!next_) return match;
+    ColourWish wish = std::move(*next_);
+    next_.reset();
+    want(std::move(wish));
+    return std::nullopt;
+}
+
+void load_colours(ColourChoice& choice) {
+    std::ifstream in(recent_path());
+    for (std::string hex; choice.recent.size() < kRecent && in >> hex;)
+        if (ink::colour_of_hex(hex)) choice.recent.push_back(hex);
+    std::error_code ec;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(saved_folder(), ec))
+        if (entry.path().extension() == ".toml") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files) {
+        if (choice.saved.size() >= kMostSaved) break;
+        try {
+            choice.saved.push_back(ink::load_ink(file.string()));
+        } catch (const Error&) {
+            // The others are still there.
+        }
+    }
+}
+
+void remember_colour(ColourChoice& choice, const std::string& hex) {
+    std::erase(choice.recent, hex);
+    choice.recent.insert(choice.recent.begin(), hex);
+    if (choice.recent.size() > kRecent) choice.recent.resize(kRecent);
+    std::string text;
+    for (const std::string& one : choice.recent) text += one + "\n";
+    try {
+        write_file(recent_path(), text.data(), text.size());
+    } catch (const Error&) {
+        // They hold for this run then.
+    }
+}
+
+void save_own_ink(ColourChoice& choice, ink::Ink ink) {
+    std::error_code ec;
+    fs::create_directories(saved_folder(), ec);
+    ink.title = ink.name;
+    const std::string text = ink::ink_toml(ink);
+    write_file(file_of(ink.name), text.data(), text.size());
+    std::erase_if(choice.saved, [&](const ink::Ink& other) { return other.name == ink.name; });
+    choice.saved.push_back(std::move(ink));
+}
+
+void forget_own_ink(ColourChoice& choice, const std::string& name) {
+    std::error_code ec;
+    fs::remove(file_of(name), ec);
+    std::erase_if(choice.saved, [&](const ink::Ink& ink) { return ink.name == name; });
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,222 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/panels/panels.h"
+#include "ink/colour/srgb.h"
+
+/// \file
+/// The window in which a person chooses a colour and sees the nearest mix of pigments.
+namespace tuft::app {
+namespace {
+
+constexpr float kWidth = 276;   // pixels at a scale of 1
+constexpr double kUnitUm = 10;  // micrometres of wet ink in a film unit
+
+ink::Rgb linear_of(const std::array<float, 3>& srgb) {
+    return {ink::srgb_decode(srgb[0]), ink::srgb_decode(srgb[1]), ink::srgb_decode(srgb[2])};
+}
+
+unsigned packed(const ink::Rgb& linear) {
+    return IM_COL32(ink::code_of_linear(linear[0]), ink::code_of_linear(linear[1]), ink::code_of_linear(linear[2]), 255);
+}
+
+// A colour was chosen; with `take` the mix found for it goes into the brush.
+void wish(Session& s, bool take) {
+    ColourChoice& c = s.colour;
+    c.hex = ink::to_hex(linear_of(c.wanted));
+    c.take = take;
+    c.finder.want({.colour = linear_of(c.wanted), .substrate = s.looks.painted_on, .film = c.free_film ? 0 : c.film, .held = pigments_in_use(s)});
+}
+
+void keep_hsv(ColourChoice& c) {
+    float h = 0, sat = 0, v = 0;
+    ImGui::ColorConvertRGBtoHSV(c.wanted[0], c.wanted[1], c.wanted[2], h, sat, v);
+    // A grey has no hue, and black no saturation: those that there were stay.
+    if (sat > 0.004f) c.hsv[0] = h;
+    if (v > 0.004f) c.hsv[1] = sat;
+    c.hsv[2] = v;
+}
+
+void wheel(Session& s) {
+    ColourChoice& c = s.colour;
+    const float side = ImGui::GetContentRegionAvail().x;
+    ImGui::SetNextItemWidth(side);
+    constexpr ImGuiColorEditFlags flags = ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoInputs |
+                                          ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoAlpha | ImGuiColorEditFlags_NoOptions |
+                                          ImGuiColorEditFlags_NoSmallPreview;
+    if (ImGui::ColorPicker3("##wheel", c.wanted.data(), flags)) {
+        keep_hsv(c);
+        wish(s, true);
+    }
+    s.ui.mark("Colour wheel");
+}
+
+void hex_field(Session& s) {
+    ColourChoice& c = s.colour;
+    char text[16];
+    std::snprintf(text, sizeof text, "%s", c.hex.c_str());
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(s.ui.tr("Hex"));
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(s.ui.px(74));
+    const bool entered = ImGui::InputText("##hex", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
+    s.ui.mark("Hex");
+    if (ImGui::IsItemActive() || entered) c.hex = text;
+    if (entered || ImGui::IsItemDeactivatedAfterEdit()) set_colour(s, c.hex);
+    static constexpr std::pair<ColourSliders, const char*> modes[] = {{ColourSliders::rgb, "RGB"}, {ColourSliders::hsv, "HSV"}, {ColourSliders::lab, "Lab"}};
+    for (const auto& [mode, name] : modes) {
+        ImGui::SameLine(0, s.ui.px(4));
+        if (s.ui.choice(name, c.sliders == mode, nullptr, 38)) c.sliders = mode;
+    }
+}
+
+void sliders(Session& s) {
+    ColourChoice& c = s.colour;
+    Ui& ui = s.ui;
+    bool changed = false;
+    std::array<double, 3> v;
+    if (c.sliders == ColourSliders::rgb) {
+        for (std::size_t i = 0; i < 3; ++i) v[i] = 255.0 * static_cast<double>(c.wanted[i]);
+        changed |= ui.slider("Red", v[0], 0, 255, "%.0f");
+        changed |= ui.slider("Green", v[1], 0, 255, "%.0f");
+        changed |= ui.slider("Blue", v[2], 0, 255, "%.0f");
+        for (std::size_t i = 0; i < 3; ++i) c.wanted[i] = static_cast<float>(v[i] / 255);
+        if (changed) keep_hsv(c);
+    } else if (c.sliders == ColourSliders::hsv) {
+        v = {360.0 * static_cast<double>(c.hsv[0]), static_cast<double>(c.hsv[1]), static_cast<double>(c.hsv[2])};
+        changed |= ui.slider("Hue", v[0], 0, 360, "%.0f\xc2\xb0");
+        changed |= ui.slider("Saturation", v[1], 0, 1, "%.0f %%", nullptr, 0.01);
+        changed |= ui.slider("Value", v[2], 0, 1, "%.0f %%", nullptr, 0.01);
+        c.hsv = {static_cast<float>(v[0] / 360), static_cast<float>(v[1]), static_cast<float>(v[2])};
+        if (changed) ImGui::ColorConvertHSVtoRGB(c.hsv[0], c.hsv[1], c.hsv[2], c.wanted[0], c.wanted[1], c.wanted[2]);
+    } else {
+        const ink::Rgb linear = linear_of(c.wanted);
+        v = ink::lab_of_rgb({static_cast<double>(linear[0]), static_cast<double>(linear[1]), static_cast<double>(linear[2])});
+        changed |= ui.slider("Lightness", v[0], 0, 100, "%.0f");
+        changed |= ui.slider("Green - red", v[1], -110, 110, "%.0f");
+        changed |= ui.slider("Blue - yellow", v[2], -110, 110, "%.0f");
+        if (changed) {
+            const std::array<double, 3> rgb = ink::rgb_of_lab(v);
+            const ink::Rgb inside = ink::into_gamut({static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])});
+            for (std::size_t i = 0; i < 3; ++i) c.wanted[i] = ink::srgb_encode(inside[i]);
+            keep_hsv(c);
+        }
+    }
+    if (changed) wish(s, true);
+}
+
+// Both colours side by side, how far they are apart, and the recipe.
+void result(Session& s) {
+    ColourChoice& c = s.colour;
+    Ui& ui = s.ui;
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = ui.px(30), middle = at.x + 0.5f * width;
+    draw->AddRectFilled(at, ImVec2(middle, at.y + height), packed(linear_of(c.wanted)), ui.px(4), ImDrawFlags_RoundCornersLeft);
+    draw->AddRectFilled(ImVec2(middle, at.y), ImVec2(at.x + width, at.y + height), packed(c.match ? c.match->reached : linear_of(c.wanted)), ui.px(4),
+                        ImDrawFlags_RoundCornersRight);
+    ImGui::Dummy(ImVec2(width, height));
+    ImGui::TextDisabled("%s", ui.tr("Wanted"));
+    ImGui::SameLine(0.5f * width + ImGui::GetStyle().WindowPadding.x);
+    ImGui::TextDisabled("%s %s", ui.tr("Reached"), c.match ? ink::to_hex(c.match->reached).c_str() : "");
+    if (!c.match) return;
+    char text[160];
+    std::snprintf(text, sizeof text, "\xce\x94""E %.1f: %s", c.match->delta_e, ui.tr(ink::difference_in_words(c.match->delta_e)));
+    ui.wrapped(text);
+    std::string recipe;
+    for (const ink::InkPart& part : c.match->ink.parts) {
+        std::snprintf(text, sizeof text, "%s%.3g %% %s", recipe.empty() ? "" : ", ", 100 * part.fraction, ui.tr(part.pigment.name.c_str()));
+        recipe += text;
+    }
+    if (const double water = 1 - c.match->ink.strength(); water > 5e-4) {
+        std::snprintf(text, sizeof text, ", %.3g %% %s", 100 * water, ui.tr("water"));
+        recipe += text;
+    }
+    std::snprintf(text, sizeof text, " (%.0f \xce\xbcm, %s)", kUnitUm * c.match->ink.film, ui.tr(s.looks.painted_on.c_str()));
+    ui.note(recipe + text);
+}
+
+void recent(Session& s) {
+    ColourChoice& c = s.colour;
+    if (c.recent.empty()) return;
+    const float gap = s.ui.px(4), size = (ImGui::GetContentRegionAvail().x - 7 * gap) / 8;
+    for (std::size_t i = 0; i < c.recent.size(); ++i) {
+        if (i % 8) ImGui::SameLine(0, gap);
+        const std::string hex = c.recent[i];
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const bool pressed = ImGui::InvisibleButton(("recent " + hex).c_str(), ImVec2(size, 0.7f * size));
+        s.ui.mark("recent " + hex);
+        ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + size, at.y + 0.7f * size), packed(*ink::colour_of_hex(hex)), s.ui.px(3));
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", hex.c_str());
+        if (pressed) {
+            set_colour(s, hex);
+            break;
+        }
+    }
+}
+
+void save(Session& s) {
+    ColourChoice& c = s.colour;
+    const ink::Ink* ink = find_ink(s, s.ink);
+    char name[64];
+    std::snprintf(name, sizeof name, "%s", c.name.c_str());
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - s.ui.button_width("Save ink", 84) - ImGui::GetStyle().ItemSpacing.x);
+    if (ImGui::InputTextWithHint("##ink name", s.ui.tr("Name of the ink in hand"), name, sizeof name)) c.name = name;
+    s.ui.mark("Ink name");
+    ImGui::SameLine();
+    if (!s.ui.button("Save ink", "Keeps the ink in hand for every work, among your own", 84, ink && !c.name.empty())) return;
+    try {
+        ink::Ink own = *ink;
+        stroke::check_name(c.name, "ink");
+        own.name = c.name;
+        save_own_ink(c, std::move(own));
+        say(s, "Saved as " + c.name);
+        c.name.clear();
+    } catch (const Error& error) {
+        say(s, error.what());
+    }
+}
+
+}  // namespace
+
+void set_colour(Session& s, const std::string& hex) {
+    const auto colour = ink::colour_of_hex(hex.starts_with('#') ? hex : "#" + hex);
+    if (!colour) return say(s, "A colour is written #rrggbb, such as #c03020.");
+    ColourChoice& c = s.colour;
+    for (std::size_t i = 0; i < 3; ++i) c.wanted[i] = ink::srgb_encode((*colour)[i]);
+    keep_hsv(c);
+    wish(s, true);
+}
+
+void colour_panel(Session& s) {
+    ColourChoice& c = s.colour;
+    if (!c.shown || !s.painter) return;
+    Ui& ui = s.ui;
+    const float pad = ui.px(10), width = ui.px(kWidth);
+    float x = static_cast<float>(s.area.x) + pad;
+    if (s.wanted.left_handed) x = static_cast<float>(s.area.x + s.area.width) - pad - width;
+    ImGui::SetNextWindowPos(ImVec2(x, static_cast<float>(s.area.y) + pad), ImGuiCond_Appearing);
+    ImGui::SetNextWindowSize(ImVec2(width, 0));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, static_cast<float>(s.area.height) - 2 * pad));
+    ImGui::Begin("###colour", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
+                                           ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoCollapse);
+    if (!c.match && !c.finder.busy()) wish(s, false);
+    wheel(s);
+    hex_field(s);
+    sliders(s);
+    if (ui.toggle("As thick as it needs", c.free_film, "Else the film has the thickness below; a thicker one reaches more colours")) wish(s, true);
+    if (!c.free_film && ui.slider("Film", c.film, 0.5, ink::kThickestMix, "%.0f \xce\xbcm", "Thickness of the wet ink that a full brush leaves", 1 / kUnitUm)) wish(s, true);
+    result(s);
+    const bool in_brush = c.match && s.ink == c.match->ink.name;
+    if (!in_brush && c.match && ui.primary_button("Paint with it", (width - 2 * ImGui::GetStyle().WindowPadding.x) / ui.settings().scale))
+        take_mix(s, c.match->ink);
+    save(s);
+    recent(s);
+    if (ui.button("Close the wheel", nullptr, 0)) c.shown = false;
+    ImGui::End();
+}
+
+}  // namespace tuft::app

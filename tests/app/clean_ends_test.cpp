@@ -1,0 +1,221 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "app/input/hand.h"
+#include "models.h"
+#include "paths.h"
+#include "stroke/hand/laying.h"
+#include "stroke/hand/lead.h"
+
+namespace tuft::app {
+namespace {
+
+constexpr double kPixel = 0.33e-3;  // metres at the model, as on a screen that shows 200 mm over 600 pixels
+constexpr double kRate = 125;       // events of a mouse in a second
+
+/// A view from one side in parallel projection; pixels to the right and up of the middle.
+struct View {
+    Vec3 middle{0}, right{1, 0, 0}, up{0, 1, 0};
+    double metres = kPixel;  ///< of a pixel
+
+    Aim aim(const Vec2& pixel, double time) const {
+        const Vec3 forward = -glm::cross(right, up);
+        return {.ray = {middle + metres * (pixel.x * right + pixel.y * up) - 2.0 * forward, forward},
+                .view_right = right, .view_up = up, .metres_per_pixel = metres, .time = time};
+    }
+    Vec2 pixel(const Vec3& p) const { return Vec2(glm::dot(p - middle, right), glm::dot(p - middle, up)) / metres; }
+};
+
+/// The cursor of a mouse along corners (pixels) at a pace of so many pixels a second; `eased`: it begins and ends at rest,
+/// as a careful hand does, else it moves when the button goes down and when it comes up.
+std::vector<Aim> drawn(const View& view, const std::vector<Vec2>& corners, double pace, bool eased) {
+    double length = 0;
+    for (std::size_t i = 1; i < corners.size(); ++i) length += glm::distance(corners[i - 1], corners[i]);
+    const int n = std::max(1, static_cast<int>(std::lround(length / pace * kRate)));
+    std::vector<Aim> aims;
+    for (int i = 0; i <= n; ++i) {
+        const double t = static_cast<double>(i) / n;
+        double gone = length * (eased ? t * t * (3 - 2 * t) : t);
+        std::size_t k = 1;
+        while (k + 1 < corners.size() && gone > glm::distance(corners[k - 1], corners[k])) gone -= glm::distance(corners[k - 1], corners[k]), ++k;
+        const double part = length > 0 ? gone / glm::distance(corners[k - 1], corners[k]) : 0;
+        aims.push_back(view.aim(glm::round(corners[k - 1] + std::min(1.0, part) * (corners[k] - corners[k - 1])), i / kRate));
+    }
+    return aims;
+}
+
+stroke::Painting painted(const stroke::Model& model, const std::string& brush, const std::vector<Aim>& aims, HandSettings settings = {}) {
+    const brush::Preset preset = brush::load_preset(brush);
+    Hand hand(*model.query, preset, settings, {stroke::drag_lead(preset)});
+    stroke::Painting painting(model);
+    const auto take = [&](const std::vector<HandStep>& steps) {
+        for (const HandStep& step : steps) {
+            if (step.kind == HandStep::Kind::begin) {
+                stroke::Stroke s;
+                s.trace.flat = false;
+                s.trace.brush = brush;
+                s.trace.ink = "carbon";
+                painting.begin(std::move(s));
+            } else if (step.kind == HandStep::Kind::end) {
+                painting.end();
+            } else {
+                painting.extend(step.poses);
+            }
+        }
+    };
+    for (const Aim& aim : aims) take(hand.move(aim));
+    Aim last = aims.back();  // the button comes up at the last place, one event later
+    last.time += 1 / kRate;
+    take(hand.move(last));
+    take(hand.lift());
+    return painting;
+}
+
+/// Places of the view with ink, pixels.
+std::vector<Vec2> inked(stroke::Painting& painting, const View& view) {
+    std::vector<Vec2> places;
+    const stroke::Model& model = painting.model();
+    const ink::Canvas& canvas = painting.canvas();
+    for (const std::uint32_t slot : canvas.touched_slots())
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            double film = 0;
+            for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+                if (const ink::Plane* w = canvas.plane(slot, p)) film += static_cast<double>((*w)[t]);
+            // A tenth of a full film of carbon is a dark grey.
+            if (film > 0.18 && model.texels.tiles[slot].piece[t] != atlas::kNoPiece) places.push_back(view.pixel(Vec3(model.texels.position(slot, t))));
+        }
+    return places;
+}
+
+/// Where ink lies along a line from `a` to `b`, pixels from `a`, and half of its width in the middle.
+struct Line {
+    double begin = 1e9, end = -1e9, half = 0, aside = 0;
+};
+Line measure(const std::vector<Vec2>& ink, const Vec2& a, const Vec2& b) {
+    const double length = glm::distance(a, b);
+    const Vec2 along = (b - a) / length, across{-along.y, along.x};
+    Line line;
+    for (const Vec2& p : ink) {
+        const double u = glm::dot(p - a, along), v = glm::dot(p - a, across);
+        line.begin = std::min(line.begin, u);
+        line.end = std::max(line.end, u);
+        if (std::abs(u - 0.5 * length) < 0.1 * length) line.half = std::max(line.half, std::abs(v));
+    }
+    for (const Vec2& p : ink)
+        if (const double u = glm::dot(p - a, along); u < 0.25 * length || u > 0.75 * length) line.aside = std::max(line.aside, std::abs(glm::dot(p - a, across)));
+    return line;
+}
+
+const stroke::Model& sheet() {
+    static const stroke::Model model = test::shipped_model("sheet.ply", 1024);
+    return model;
+}
+
+/// Whether ink covers both ends and goes no further beyond them than half of the line's width.
+void expect_clean(const Line& line, double length, const std::string& what) {
+    constexpr double kTolerance = 2.5;  // pixels: cursors are whole pixels, texels two thirds of one
+    EXPECT_LT(line.begin, kTolerance) << what;
+    EXPECT_GT(line.begin, -line.half - kTolerance) << what;
+    EXPECT_GT(line.end, length - kTolerance) << what;
+    EXPECT_LT(line.end, length + line.half + kTolerance) << what;
+    // No claw: the ends are as slim as the middle. A careful hand is slower there and presses more.
+    EXPECT_LT(line.aside, 1.5 * line.half + kTolerance) << what;
+}
+
+const std::pair<double, bool> kPaces[] = {{100, true}, {400, true}, {400, false}, {1500, false}};
+
+TEST(CleanEnds, InkBeginsAtThePressAndEndsAtTheRelease) {
+    const View view{.middle = sheet().mesh->bounds.centre()};
+    for (const char* brush : {"wolf-small", "wolf-medium", "goat-medium", "mixed-large"})
+        for (const auto& [pace, eased] : kPaces)
+            for (const double angle : {0.0, 2.6}) {
+                const Vec2 d{std::cos(angle), std::sin(angle)}, a = glm::round(-90.0 * d), b = glm::round(90.0 * d);
+                stroke::Painting painting = painted(sheet(), brush, drawn(view, {a, b}, pace, eased));
+                expect_clean(measure(inked(painting, view), a, b), glm::distance(a, b),
+                             std::string(brush) + " at " + std::to_string(pace) + (eased ? " eased" : "") + ", direction " + std::to_string(angle));
+            }
+}
+
+// What it is for: as the hand was, slow strokes began with a claw and fast ones ended short.
+TEST(CleanEnds, WithoutThemStrokesBeginWithAClawAndEndShort) {
+    const View view{.middle = sheet().mesh->bounds.centre()};
+    const Vec2 d{std::cos(1.0), std::sin(1.0)}, a = glm::round(-90.0 * d), b = glm::round(90.0 * d);
+    HandSettings plain;
+    plain.clean_ends = false;
+    stroke::Painting slow = painted(sheet(), "wolf-medium", drawn(view, {a, b}, 100, true), plain);
+    const Line claw = measure(inked(slow, view), a, b);
+    EXPECT_GT(claw.aside, 3 * claw.half);
+    stroke::Painting fast = painted(sheet(), "wolf-medium", drawn(view, {a, b}, 1500, false), plain);
+    EXPECT_LT(measure(inked(fast, view), a, b).end, glm::distance(a, b) - 15);
+}
+
+TEST(CleanEnds, AClickIsADotWhereItWas) {
+    const View view{.middle = sheet().mesh->bounds.centre()};
+    for (const char* brush : {"wolf-small", "goat-large"}) {
+        const Vec2 at{12, -7};
+        stroke::Painting painting = painted(sheet(), brush, {view.aim(at, 0), view.aim(at, 0.08)});
+        const std::vector<Vec2> ink = inked(painting, view);
+        ASSERT_GT(ink.size(), 20u) << brush;
+        double furthest = 0, nearest = 1e9;
+        for (const Vec2& p : ink) furthest = std::max(furthest, glm::distance(p, at)), nearest = std::min(nearest, glm::distance(p, at));
+        EXPECT_LT(nearest, 2) << brush;
+        // A tuft pressed down lies to one side, no further than its pressed length.
+        const brush::Preset preset = brush::load_preset(brush);
+        EXPECT_LT(furthest, 0.45 * stroke::working_depth(preset) * 2 / kPixel + preset.radius / kPixel) << brush;
+    }
+}
+
+TEST(CleanEnds, AZigzagBeginsAndEndsWhereTheHandDid) {
+    const View view{.middle = sheet().mesh->bounds.centre()};
+    for (const double pace : {200.0, 800.0}) {
+        const std::vector<Vec2> corners{{-80, -30}, {-40, 30}, {0, -30}, {40, 30}, {80, -30}};
+        stroke::Painting painting = painted(sheet(), "wolf-small", drawn(view, corners, pace, false));
+        const std::vector<Vec2> ink = inked(painting, view);
+        for (const Vec2& end : {corners.front(), corners.back()}) {
+            double nearest = 1e9, beyond = 0;
+            for (const Vec2& p : ink) {
+                nearest = std::min(nearest, glm::distance(p, end));
+                beyond = std::max(beyond, end.y - p.y);
+            }
+            EXPECT_LT(nearest, 2.5) << pace;
+            EXPECT_LT(beyond, 10) << pace;  // the line is 6 pixels wide, and slants
+        }
+    }
+}
+
+TEST(CleanEnds, HoldOnBowlsAndCars) {
+    const stroke::Model bowl = test::shipped_model("bowl.ply", 1024), car = test::shipped_model("car.ply", 1024);
+    const auto side = [](const stroke::Model& model, const Vec3& up, const Vec3& offset, double metres) {
+        return View{.middle = model.mesh->bounds.centre() + offset, .up = up, .metres = metres};
+    };
+    struct Place {
+        const stroke::Model& model;
+        const char* brush;
+        View view;
+    };
+    const Place places[] = {{bowl, "wolf-small", side(bowl, {0, 1, 0}, {0, 0, 0}, 0.33e-3)},  // inside, from above
+                            {bowl, "wolf-small", side(bowl, {0, 0, 1}, {0, 0, 0}, 0.33e-3)},  // outside, from the front
+                            {car, "wolf-large*3", side(car, {0, 0, 1}, {0, 0, -0.03}, 1.9e-3)}};  // the door; the whole car on 600 pixels
+    for (const auto& [model, brush, view] : places)
+        for (const auto& [pace, eased] : {std::pair{150.0, true}, {800.0, false}})
+            for (const double angle : {0.0, 2.8}) {
+                const Vec2 d{std::cos(angle), std::sin(angle)}, a = glm::round(-45.0 * d), b = glm::round(45.0 * d);
+                stroke::Painting painting = painted(model, brush, drawn(view, {a, b}, pace, eased));
+                const Line line = measure(inked(painting, view), a, b);
+                expect_clean(line, glm::distance(a, b), std::string(brush) + " at " + std::to_string(pace) + ", direction " + std::to_string(angle));
+            }
+}
+
+TEST(CleanEnds, StrokesReplayToTheBit) {
+    const View view{.middle = sheet().mesh->bounds.centre()};
+    const stroke::Painting painting = painted(sheet(), "wolf-medium", drawn(view, {{-60, 0}, {20, 30}, {60, -20}}, 500, false));
+    stroke::Painting again(sheet());
+    again.replay(painting.journal().strokes());
+    EXPECT_EQ(again.hash(), painting.hash());
+}
+
+}  // namespace
+}  // namespace tuft::app
