@@ -5,7 +5,8 @@
 
 #include "mesh/surface_query.h"
 
-/// \file Where on a model a person would put a drawing: sides of a model, and the largest calm area
+/// \file
+/// Where on a model a person would put a drawing: sides of a model, and the largest calm area
 /// of one.
 namespace tuft::stroke {
 

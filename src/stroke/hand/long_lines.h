@@ -5,7 +5,8 @@
 #include "stroke/hand/line_width.h"
 #include "stroke/journal/trace.h"
 
-/// \file Lines that need more ink than a brush holds: larger brushes for them, and where the hand
+/// \file
+/// Lines that need more ink than a brush holds: larger brushes for them, and where the hand
 /// dips again.
 namespace tuft::stroke {
 
