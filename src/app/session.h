@@ -234,8 +234,8 @@ void set_colour(Session& s, const std::string& hex);
 /// Takes over a mix that was found.
 void poll_colour(Session& s);
 /// Metres: how wide a line a model's first brush shall draw, and the brush of that hair that does at a pressure.
-double wanted_line(const Box& box);
-std::string brush_for_line(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure, double width);
+double first_line_width(const Box& box);
+std::string first_brush(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure, double width);
 /// Takes the brush that a person last had in hand for this model, else one in the size of the model (session_brush.cpp).
 void choose_brush(Session& s);
 /// Remembers the brush in hand for the next time with this model, where a person chose it.

@@ -59,13 +59,13 @@ double line_width(const std::string& name, double pressure) {
 
 }  // namespace
 
-double wanted_line(const Box& box) {
+double first_line_width(const Box& box) {
     std::array<double, 3> side{box.size().x, box.size().y, box.size().z};
     std::sort(side.begin(), side.end());
     return std::min(kPartOfDiagonal * box.diagonal(), kPartOfMiddle * side[1]);
 }
 
-std::string brush_for_line(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure, double width) {
+std::string first_brush(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure, double width) {
     const std::string hair = hair_of.substr(0, hair_of.find('-') + 1);
     std::string best;
     double factor = 1, least = 1e9;
@@ -91,7 +91,7 @@ void choose_brush(Session& s) {
         if (model == s.painter->source() && take(brush)) return;
     for (auto line = s.strokes.rbegin(); line != s.strokes.rend(); ++line)
         if (line->action == stroke::Action::stroke && !line->on_palette && take(line->brush)) return;
-    take(brush_for_line(s.brushes, s.brush, s.hand.pressure, wanted_line(s.painter->model().mesh->bounds)));
+    take(first_brush(s.brushes, s.brush, s.hand.pressure, first_line_width(s.painter->model().mesh->bounds)));
 }
 
 void remember_brush(Session& s) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/place.h"
@@ -76,28 +77,39 @@ std::string stroke_name(const stroke::StrokeReport& report, const stroke::Stroke
     return fmt::format("stroke {}{}", report.stroke_id, label.empty() ? "" : " (" + label + ")");
 }
 
-// Warnings for strokes that go into a closed body, in space or by their place.
-void note_inside(const std::vector<stroke::StrokeReport>& reports,
-                 const std::vector<const stroke::Stroke*>& strokes, Console& console) {
+// The strokes of whose reports there is a value, as one line: "stroke 3 (seal)", "43 strokes, from stroke 3 (seal) on,";
+// empty: none. `most` becomes the largest value of them.
+template <typename Value>
+std::string strokes_with(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes, const Value& value_of, double& most) {
+    std::size_t n = 0, first = 0;
     for (std::size_t i = 0; i < reports.size(); ++i) {
-        const stroke::StrokeReport& r = reports[i];
-        if (r.origin_inside > kInsideNoted)
-            console.note(fmt::format("warning: the place of {} lies {:.2f} mm inside the model; it goes {}", stroke_name(r, *strokes[i]), r.origin_inside / kMillimetre,
-                                     strokes[i]->trace.placement.laying == stroke::Laying::project ? "onto the surface before it" : "to the nearest place of its surface"));
-        if (r.deepest > kInsideNoted)
-            console.note(fmt::format("warning: {} takes the ferrule into the model, {:.2f} mm deep; it is held on the surface there (check the place, the unit and the pressure)",
-                                     stroke_name(r, *strokes[i]), r.deepest / kMillimetre));
+        const std::optional<double> value = value_of(reports[i]);
+        if (!value) continue;
+        most = n == 0 ? *value : std::max(most, *value);
+        if (n++ == 0) first = i;
     }
+    if (n == 0) return {};
+    const std::string name = stroke_name(reports[first], *strokes[first]);
+    return n == 1 ? name : fmt::format("{} strokes, the first {},", n, name);
+}
+
+// Warnings for strokes that go into a closed body, in space or by their place.
+void note_inside(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes, const Box& model, Console& console) {
+    const auto noted = [](double depth, double from) { return depth > from ? std::optional(depth) : std::nullopt; };
+    double deepest = 0;
+    if (const std::string which = strokes_with(reports, strokes, [&](const auto& r) { return noted(r.origin_inside, place_inside_noted(model)); }, deepest); !which.empty())
+        console.note(fmt::format("warning: the place of {} lies up to {:.2f} mm inside the model; strokes go onto its surface", which, deepest / kMillimetre));
+    if (const std::string which = strokes_with(reports, strokes, [&](const auto& r) { return noted(r.deepest, kInsideNoted); }, deepest); !which.empty())
+        console.note(fmt::format("warning: {} the ferrule into the model, up to {:.2f} mm deep; it is held on the surface there (check the place, the unit and the pressure)",
+                                 which.ends_with(',') ? which + " take" : which + " takes", deepest / kMillimetre));
 }
 
 // Warnings for strokes that never met the model.
-void note_misses(const std::vector<stroke::StrokeReport>& reports,
-                 const std::vector<const stroke::Stroke*>& strokes, Console& console) {
-    for (std::size_t i = 0; i < reports.size(); ++i) {
-        if (reports[i].touched()) continue;
-        console.note(fmt::format("warning: {} never touches the model; it stays {:.2f} mm away",
-                                 stroke_name(reports[i], *strokes[i]), reports[i].nearest / kMillimetre));
-    }
+void note_misses(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes, Console& console) {
+    double farthest = 0;
+    const std::string which = strokes_with(reports, strokes, [](const auto& r) { return r.touched() ? std::nullopt : std::optional(r.nearest); }, farthest);
+    if (which.empty()) return;
+    console.note(fmt::format("warning: {} the model, up to {:.2f} mm away", which.ends_with(',') ? which + " never touch" : which + " never touches", farthest / kMillimetre));
 }
 
 }  // namespace
@@ -173,7 +185,7 @@ int run(const Paint& a) {
     const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal(), n_before);
     note_misses(reports, done, console);
     note_dry(reports, console);
-    note_inside(reports, done, console);
+    note_inside(reports, done, model.mesh->bounds, console);
 
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);

@@ -41,7 +41,7 @@ Vec3 vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 Spot named_spot(const stroke::Model& model, const Paint& a, Console& console) {
     const Vec3 place = kMillimetre * vector_of(a.place_mm);
     const auto at = model.query->closest_point(place);
-    if (const double inside = contact::depth_inside(*model.query, place); inside > kInsideNoted)
+    if (const double inside = contact::depth_inside(*model.query, place); inside > place_inside_noted(model.mesh->bounds))
         console.note(fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.2f} mm inside the model; the drawing goes to the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
                                  a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre));
     return {*at, at->normal};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,9 +13,11 @@
 /// Where drawings and handwriting without a place of their own go.
 namespace tuft::cli {
 
-/// Metres below the surface of a closed model from which on a place or a ferrule is noted as inside it: facets of a fine
-/// mesh lie within the curve that they stand for by less.
+/// Metres below the surface of a closed model from which on a ferrule is noted as inside it: facets of a fine mesh lie
+/// within the curve that they stand for by less.
 inline constexpr double kInsideNoted = 1e-4;
+/// The same of a place: one that is read off the model to the millimetre lies within 0.87 mm of it.
+inline double place_inside_noted(const Box& model) { return std::min(1e-3, 0.01 * model.diagonal()); }
 
 /// Where a drawing was put.
 struct PlacedDrawing {

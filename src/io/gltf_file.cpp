@@ -180,7 +180,7 @@ std::string refusal_of(const std::string& name) {
            "', which tuft does not know; export it without that extension";
 }
 
-void check_extensions(std::string_view json, const std::string& file) {
+void check_extensions(std::string_view text, const std::string& file) {
     // Only this array is looked at: a buffer in the text may be large.
     const auto only_required = [key = std::string()](int at, nlohmann::json::parse_event_t event,
                                                      nlohmann::json& value) mutable {
@@ -188,7 +188,7 @@ void check_extensions(std::string_view json, const std::string& file) {
         return at == 0 || key == "extensionsRequired";
     };
     const nlohmann::json head =
-        nlohmann::json::parse(json.begin(), json.end(), only_required, false);
+        nlohmann::json::parse(text.begin(), text.end(), only_required, false);
     if (!head.is_object() || !head.contains("extensionsRequired") ||
         !head["extensionsRequired"].is_array())
         return;

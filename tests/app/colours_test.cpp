@@ -93,7 +93,7 @@ Box box(double x, double y, double z) { return {Vec3(0), Vec3(x, y, z)}; }
 
 // The line of the first brush, metres.
 double first_line(const Box& of) {
-    const std::string name = brush_for_line(brush::list_presets(), "wolf-medium", 0.45, wanted_line(of));
+    const std::string name = first_brush(brush::list_presets(), "wolf-medium", 0.45, first_line_width(of));
     const brush::Preset preset = brush::load_preset(name);
     const double depth = 0.45 * stroke::working_depth(preset);
     return brush::sweep_depth(preset, std::span(&depth, 1)).front().width;
@@ -106,14 +106,16 @@ TEST(FirstBrush, DrawsALineInTheSizeOfTheModel) {
         EXPECT_LT(first_line(b), 1.6 * wanted) << b.diagonal();
         EXPECT_GT(first_line(b), wanted / 1.6) << b.diagonal();
     }
-    // A real car takes the largest there is, which is some pixels wide where 5 m lie on 700 pixels.
-    EXPECT_GT(first_line(box(4.6, 1.8, 1.4)), 4 * 5.1 / 700);
+    // A real car takes the largest size there is; its line is no hairline where 5.1 m lie on 700 pixels.
+    const Box car = box(4.6, 1.8, 1.4);
+    EXPECT_EQ(brush::sized_name(first_brush(brush::list_presets(), "wolf-medium", 0.45, first_line_width(car))).factor, brush::kMostSize);
+    EXPECT_GT(first_line(car), 3 * 5.1 / 700) << "three pixels";
     // A thin rod is not painted round.
     EXPECT_LT(first_line(box(1, 0.01, 0.01)), 0.005);
 }
 
 TEST(FirstBrush, OfASampleInBrushSizeIsNotScaled) {
-    const std::string name = brush_for_line(brush::list_presets(), "wolf-medium", 0.45, wanted_line(box(0.151, 0.151, 0.067)));
+    const std::string name = first_brush(brush::list_presets(), "wolf-medium", 0.45, first_line_width(box(0.151, 0.151, 0.067)));
     EXPECT_EQ(name.find('*'), std::string::npos) << name;
     EXPECT_TRUE(name.starts_with("wolf-")) << name;
 }

@@ -322,6 +322,15 @@ TEST_F(Commands, WhatIsPlacedInsideASolidIsSaid) {
     EXPECT_NE(flat.err.find("mm inside the model"), std::string::npos) << flat.err;
     const Ran placed = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-20,50 --strokes " + path("flat.inkml"));
     EXPECT_NE(placed.err.find("--place 0,-20,50 lies"), std::string::npos) << placed.err;
+    // As many strokes as there are, in one line.
+    write("many.inkml", head + "<traceFormat>" + channels + "</traceFormat><annotation type='tuft:origin'>0 -20 50</annotation>"
+                               "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0, 10 0</trace><trace>0 5, 10 5</trace><trace>0 9, 10 9</trace></ink>");
+    const Ran many = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --strokes " + path("many.inkml"));
+    EXPECT_NE(many.err.find("the place of 3 strokes, the first stroke 1, lies up to 29.98 mm inside the model"), std::string::npos) << many.err;
+    EXPECT_EQ(std::count(many.err.begin(), many.err.end(), '\n'), 1) << many.err;
+    // A place that is rounded to the millimetre is what a person reads off the model.
+    const Ran rounded = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-49.3,50 --strokes " + path("flat.inkml"));
+    EXPECT_EQ(rounded.err.find("inside"), std::string::npos) << rounded.err;
     const Ran on = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-50,50 --strokes " + path("flat.inkml"));
     EXPECT_EQ(on.err.find("inside"), std::string::npos) << on.err;
 }

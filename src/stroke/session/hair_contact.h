@@ -40,6 +40,8 @@ class HairContact {
     bool by_hair() const { return by_hair_; }
     /// m² of the outlines of a stamp with gaps; 0: it has none.
     double closed_area() const { return closed_area_; }
+    /// Part of the outlines of its hair that `area` (m²) covers; 1 where no single hairs are drawn.
+    double coverage(double area) const { return closed_area_ > 0 ? area / closed_area_ : 1; }
 
   private:
     struct Wetness {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "brush/tuft_state.h"
@@ -27,8 +28,8 @@ struct StrokeReport {
     double ink_given = 0;            ///< film·m², now on the texels
     double ink_left = 0;             ///< film·m², in the tuft
     double path = 0;                 ///< metres that the hand went while the tuft touched
-    double dry_from = -1;            ///< metres of it after which single hairs drew for want of ink until the end; < 0: none
-    double dry_path = 0;             ///< metres of it on which they did
+    double dry_from = -1;            ///< metres of `path` after which the brush was never wet again for 5 mm; < 0: it was wet at the end
+    double dry_path = 0;             ///< metres after `dry_from` on which a stamp left less than 0.6 of a full film, gaps between hairs counted
     double full_at_start = 1;        ///< part of the tuft's capacity that it held before the stroke
     ink::Amounts removed;            ///< by an eraser, of all films of its layer
     double nearest = 0;              ///< metres: least distance of tuft and model; 0 when it touched
@@ -38,8 +39,8 @@ struct StrokeReport {
     std::vector<ForceRecord> forces; ///< one for each sample of the stroke, in order; only when asked for
 
     bool touched() const { return stamps > 0; }
-    /// A full brush ran out of ink on the way, for a twentieth of it or more.
-    bool ran_dry() const { return full_at_start > 0.95 && dry_from > 0 && path - dry_from > 0.05 * path; }
+    /// A full brush ran out of ink on the way: it was dry on a twentieth of it or more, and on most of what came after `dry_from`.
+    bool ran_dry() const { return full_at_start > 0.95 && dry_from > 0 && dry_path > std::max(0.05 * path, 0.5 * (path - dry_from)); }
 };
 
 }  // namespace tuft::stroke

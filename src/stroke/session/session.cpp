@@ -133,16 +133,17 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
 
-void StrokeSession::note_dryness(double separation, double displacement) {
-    constexpr double kDry = 0.5;        // of `Stamp::separation`: gaps are seen
-    constexpr double kWetAgain = 5e-3;  // metres without gaps after which a stroke is no longer dry
+void StrokeSession::note_dryness(double film, double displacement) {
+    constexpr double kDry = 0.6;        // of a full film: what is paler looks torn
+    constexpr double kWetAgain = 5e-3;  // metres of full film after which a stroke is no longer dry
     report_.path += displacement;
-    if (separation >= kDry) {
+    if (film < kDry * tuft_.ink.film) {
         if (report_.dry_from < 0) report_.dry_from = report_.path;
         report_.dry_path += displacement;
         wet_from_ = report_.path;
     } else if (report_.path - wet_from_ > kWetAgain) {
         report_.dry_from = -1;
+        report_.dry_path = 0;
     }
 }
 
@@ -156,16 +157,17 @@ void StrokeSession::step(const brush::Pose& pose) {
     const ContactMotion moved = motion_.advance(pose, contact, dt);
     deposit_->settle(tuft_, hair_.by_hair());
     Stamp stamp = hair_.make_stamp(tuft_, contact, motion_, dt);
+    const double hair_area = covered_area(stamp.footprint);
     stencil_.cut_off(stamp.footprint);
     if (stamp.footprint.empty()) return motion_.lose_contact();
     motion_.keep_contact(pose);
-    const double area = covered_area(stamp.footprint);
+    const double area = stencil_.empty() ? hair_area : covered_area(stamp.footprint);
     if (!stencil_.empty() && !(area > 0)) return;
 
     ++report_.stamps;
-    note_dryness(static_cast<double>(stamp.separation), glm::length(moved.hand));
     set_motion(stamp, moved, area);
     set_ink(stamp, area);
+    note_dryness(static_cast<double>(stamp.ink.target) * hair_.coverage(hair_area), glm::length(moved.hand));
     report_.ink_given += deposit_->deposit(
         std::move(stamp), tuft_,
         {.hair = hair_,

@@ -94,7 +94,7 @@ class StrokeSession {
     contact::Result bend_on_surface(const brush::Pose& pose, double dt);
     void set_motion(Stamp& stamp, const ContactMotion& moved, double area) const;
     void set_ink(Stamp& stamp, double area) const;
-    void note_dryness(double separation, double displacement);
+    void note_dryness(double film, double displacement);
 
     SessionInput input_;
     bool mixed_ = false;         // the tuft holds several inks, or thicker ink on one side
