@@ -99,7 +99,7 @@ class Tablet : public test::Window {
 
 TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
     std::ofstream(path("script")) << "open " + source_folder() + "/models/sheet.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
-                                     "set elevation 90\nset azimuth 0\nset string 0\nwait 0.1\nscreenshot " << path("ready.png")
+                                     "set elevation 90\nset azimuth 0\nset string 0\nset clean-ends off\nwait 0.1\nscreenshot " << path("ready.png")
                                   << "\nawait strokes 1\nwait-ready\nscreenshot " << path("one.png") << "\nawait strokes 2\nwait-ready\nscreenshot "
                                   << path("two.png") << "\nawait strokes 3\nwait-ready\nreport\nsave " << path("work.tuft") << "\nwait-ready\nexpect kept\n";
     open_studio("", {"--script", path("script")}, "out");
@@ -131,7 +131,7 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
     EXPECT_TRUE(strokes[1].trace.erases);
     EXPECT_FALSE(strokes[2].trace.erases);
 
-    const brush::Preset brush = brush::load_preset("wolf-medium");
+    const brush::Preset brush = brush::load_preset(strokes[0].trace.brush);  // the one in the size of the model
     const double working = stroke::working_depth(brush);
     struct Held {
         double pressure;

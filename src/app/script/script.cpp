@@ -27,7 +27,7 @@ int key_code(const std::string& name) {
     static const std::map<std::string, int> names{
         {"home", GLFW_KEY_HOME}, {"end", GLFW_KEY_END}, {"escape", GLFW_KEY_ESCAPE}, {"enter", GLFW_KEY_ENTER}, {"tab", GLFW_KEY_TAB},
         {"space", GLFW_KEY_SPACE}, {"left", GLFW_KEY_LEFT}, {"right", GLFW_KEY_RIGHT}, {"up", GLFW_KEY_UP}, {"down", GLFW_KEY_DOWN},
-        {"delete", GLFW_KEY_DELETE}, {"backspace", GLFW_KEY_BACKSPACE}, {"f1", GLFW_KEY_F1}};
+        {"delete", GLFW_KEY_DELETE}, {"backspace", GLFW_KEY_BACKSPACE}, {"f1", GLFW_KEY_F1}, {"f2", GLFW_KEY_F2}};
     if (const auto at = names.find(name); at != names.end()) return at->second;
     if (name.size() == 1) return std::toupper(static_cast<unsigned char>(name[0]));
     return -1;
