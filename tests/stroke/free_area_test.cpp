@@ -57,6 +57,16 @@ TEST(FreeArea, AHoleIsPassedBy) {
     EXPECT_NEAR(free->size.x, 0.06, 0.3 * kGrid);
 }
 
+TEST(FreeArea, ALineTakesTheLengthOfALongWall) {
+    const TriangleMesh m = walls({{-1.5, 1.5, -0.15, 0.15, 0}});
+    const SurfaceQuery query(m);
+    for (const double aspect : {10.0, 30.0, 300.0}) {
+        const auto free = find_free_area(query, Side::front, aspect);
+        ASSERT_TRUE(free);
+        EXPECT_NEAR(free->size.x, 3, 2 * 3 * kGrid) << aspect;
+    }
+}
+
 TEST(FreeArea, AStepIsNotCrossedAndTheLargerSideOfItIsTaken) {
     // Two thirds of the front stand 30 mm behind the rest.
     const TriangleMesh m =

@@ -72,9 +72,9 @@ stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& quer
     const auto on = query.closest_point(place);
     if (!on) return {.origin = at};
     const Vec3 n = glm::dot(on->normal, normal) < 0 ? -on->normal : on->normal;
-    const auto turned = [&](const Vec3& normal, const Vec3& upright) {
-        const stroke::Placement seen = stroke::placement_seen(place, normal, right, -w.turn);
-        return kDegree * rounded(stroke::turn_of(normal, upright, seen.right) / kDegree, kTurnStep);
+    const auto turned = [&](const Vec3& facing, const Vec3& upright) {
+        const stroke::Placement seen = stroke::placement_seen(place, facing, right, -w.turn);
+        return kDegree * rounded(stroke::turn_of(facing, upright, seen.right) / kDegree, kTurnStep);
     };
     stroke::Placement out;
     if (w.laying == stroke::Laying::project) {
@@ -132,10 +132,11 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
                       .scale = painted_scale(w),
                       .extent = 0,
                       .fit = {.grow = w.own_ink, .fit = w.own_width, .otherwise = hand.brush}};
-    stroke::append_entries(out.entries, std::move(traces),
-                           {.brush = w.own_ink ? "" : hand.brush,
-                            .ink = w.own_ink ? "" : hand.ink,
-                            .other_ink = hand.ink});
+    stroke::EntryOptions options;
+    options.brush = w.own_ink ? "" : hand.brush;
+    options.ink = w.own_ink ? "" : hand.ink;
+    options.other_ink = hand.ink;
+    stroke::append_entries(out.entries, std::move(traces), options);
     const std::vector<stroke::Trace*> drawing = stroke::drawing_in(out.entries, true);
     stroke::place_drawing(drawing, {placement, w.centre, out.scale, w.mirrored});
     const Box box = stroke::extent_of(drawing);

@@ -25,7 +25,7 @@ constexpr double kBent = 0.85, kTurned = 0.34, kSteep = 2;
 constexpr double kFilled =
     0.5;  // cells between a ray's depth and the closed one from which on it looks into a gap
 constexpr int kRoughReach = 2;  // cells to each side over which roughness is taken
-constexpr double kLeastScale = 1.0 / 32, kMostAspect = 4;
+constexpr double kLeastScale = 1.0 / 32, kMostAspect = 32;
 constexpr int kAround = 8,
               kWalls = 6;  // horizontal rays about a point of the inside, and how many meet a wall
 

@@ -41,7 +41,7 @@ struct FreeArea {
 /// Looks at the model with a grid of 129² rays over its box. A ray is free that sees the surface,
 /// less than 70° from facing it, without a step to its neighbours; at the inside, with walls around
 /// it in six of eight directions. Gaps of one or two rays, such as shut lines, do not count. A
-/// rectangle of `aspect` (width over height, held to 1/4–4) of free rays bends no more than a wide
+/// rectangle of `aspect` (width over height, held to 1/32–32) of free rays bends no more than a wide
 /// arc of a cylinder: the mean of its normals is 0.85 long or more. Surface is calm where normals
 /// vary little over five rays; a rectangle on rough surface counts as if it was smaller, by up to
 /// two thirds. Of equally large ones, the middle of the largest group is taken. Nothing where not
