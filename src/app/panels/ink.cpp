@@ -131,14 +131,14 @@ void ink_section(Session& s) {
     Ui& ui = s.ui;
     if (!ui.section("Ink", true, ui.tr(s.ink.c_str()))) return;
     swatches(s);
-    const float third = part_of_row(s, 3);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
-    if (ui.choice("Colour...", s.colour.shown, "Any colour, on a wheel or as a hex code: the nearest mix of pigments is found for it", third - 4)) s.colour.shown = !s.colour.shown;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons, which fill the row
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(4), ImGui::GetStyle().ItemSpacing.y));
+    if (ui.choice("Colour...", s.colour.shown, "Any colour, on a wheel or as a hex code: the nearest mix of pigments is found for it", 0)) s.colour.shown = !s.colour.shown;
     ImGui::SameLine();
-    if (ui.button("Load...", "An ink from a file", third - 6)) s.files.show(FileDialog::Purpose::ink, {});
+    if (ui.button("Load...", "An ink from a file", 0)) s.files.show(FileDialog::Purpose::ink, {});
     ImGui::SameLine();
     if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", part_of_row(s, 1))) s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
     ui.toggle("Wet ink", s.wet, "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.wet || s.last.wet) {
         if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
