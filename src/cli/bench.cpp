@@ -15,7 +15,7 @@
 #include "cli/steps.h"
 #include "core/parallel.h"
 #include "ink/colour/composite.h"
-#include "ink/touch/deposit.h"
+#include "ink/exchange/deposit.h"
 #include "io/read_model.h"
 #include "stroke/painting/painting.h"
 

@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 #include "ink/film/film.h"
-#include "ink/touch/transfer.h"
+#include "ink/exchange/transfer.h"
 
 namespace tuft::cli {
 namespace {

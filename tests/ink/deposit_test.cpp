@@ -1,4 +1,4 @@
-#include "ink/touch/deposit.h"
+#include "ink/exchange/deposit.h"
 
 #include <gtest/gtest.h>
 

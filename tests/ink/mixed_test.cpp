@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "ink/touch/deposit_mixed.h"
+#include "ink/exchange/deposit_mixed.h"
 #include "texels.h"
 
 namespace tuft::ink {

@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 #include "ink/film/level.h"
-#include "ink/touch/stir.h"
+#include "ink/exchange/stir.h"
 #include "texels.h"
 
 namespace tuft::ink {

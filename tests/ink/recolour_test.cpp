@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 #include "ink/colour/composite.h"
-#include "ink/touch/deposit.h"
+#include "ink/exchange/deposit.h"
 
 namespace tuft::ink {
 namespace {

@@ -1,4 +1,4 @@
-#include "ink/touch/reservoir.h"
+#include "ink/exchange/reservoir.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "ink/film/paste.h"
-#include "ink/touch/deposit_mixed.h"
-#include "ink/touch/transfer.h"
+#include "ink/exchange/deposit_mixed.h"
+#include "ink/exchange/transfer.h"
 
 namespace {
 

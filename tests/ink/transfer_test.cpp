@@ -1,4 +1,4 @@
-#include "ink/touch/transfer.h"
+#include "ink/exchange/transfer.h"
 
 #include <gtest/gtest.h>
 

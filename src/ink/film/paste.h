@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "ink/touch/deposit.h"
-#include "ink/touch/touch_nodes.h"
+#include "ink/exchange/deposit.h"
+#include "ink/exchange/touch_nodes.h"
 
 /// Ink that stands as it was put: thick paint, and the furrows that the hair leaves in it.
 namespace tuft::ink {

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/nesting.h"
 #include "core/text.h"
-#include "ink/touch/reservoir.h"
+#include "ink/exchange/reservoir.h"
 #include "stroke/journal/entry_json.h"
 
 namespace tuft::stroke {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/progress.h"
-#include "ink/touch/erase.h"
+#include "ink/exchange/erase.h"
 #include "stroke/session/film_clock.h"
 #include "stroke/session/hair_contact.h"
 #include "stroke/session/stamp_target.h"

@@ -4,7 +4,7 @@
 
 #include "contact/contact.h"
 #include "footprint/cuts.h"
-#include "ink/touch/touch_nodes.h"
+#include "ink/exchange/touch_nodes.h"
 #include "stroke/session/motion_tracker.h"
 #include "stroke/session/stamp.h"
 #include "stroke/session/tuft_in_hand.h"

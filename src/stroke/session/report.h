@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "brush/tuft_state.h"
-#include "ink/touch/erase.h"
+#include "ink/exchange/erase.h"
 
 namespace tuft::stroke {
 

@@ -2,8 +2,8 @@
 
 #include "footprint/footprint.h"
 #include "footprint/stamp.h"
-#include "ink/touch/deposit.h"
-#include "ink/touch/touch_grid.h"
+#include "ink/exchange/deposit.h"
+#include "ink/exchange/touch_grid.h"
 
 /// \file
 /// One stamp: a footprint with the ink it brings. The session makes stamps, deposit models put them onto texels.

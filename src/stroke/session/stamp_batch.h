@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/progress.h"
-#include "ink/touch/blot.h"
-#include "ink/touch/erase.h"
+#include "ink/exchange/blot.h"
+#include "ink/exchange/erase.h"
 #include "stroke/session/stamp.h"
 #include "stroke/session/stamp_target.h"
 

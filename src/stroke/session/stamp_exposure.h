@@ -2,8 +2,8 @@
 
 #include "ink/film/level.h"
 #include "ink/film/paste.h"
-#include "ink/touch/deposit_mixed.h"
-#include "ink/touch/transfer.h"
+#include "ink/exchange/deposit_mixed.h"
+#include "ink/exchange/transfer.h"
 #include "stroke/session/stamp.h"
 #include "stroke/session/stamp_target.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "brush/bundles.h"
-#include "ink/touch/stir.h"
-#include "ink/touch/touch_nodes.h"
+#include "ink/exchange/stir.h"
+#include "ink/exchange/touch_nodes.h"
 
 namespace tuft::stroke {
 namespace {

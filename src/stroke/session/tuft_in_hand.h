@@ -4,7 +4,7 @@
 
 #include "brush/tuft.h"
 #include "ink/colour/pigments.h"
-#include "ink/touch/reservoir.h"
+#include "ink/exchange/reservoir.h"
 
 namespace tuft::stroke {
 

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "ink/touch/deposit.h"
-#include "ink/touch/touch_nodes.h"
+#include "ink/exchange/deposit.h"
+#include "ink/exchange/touch_nodes.h"
 
 /// Ink from a tuft that holds several, or that holds it thicker on one side.
 namespace tuft::ink {

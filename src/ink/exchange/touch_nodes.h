@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "ink/touch/reservoir.h"
-#include "ink/touch/touch_grid.h"
+#include "ink/exchange/reservoir.h"
+#include "ink/exchange/touch_grid.h"
 
 /// Which hair gives its ink where: cells of the tuft and nodes of the contact patch.
 namespace tuft::ink {

@@ -1,4 +1,4 @@
-#include "ink/touch/deposit_mixed.h"
+#include "ink/exchange/deposit_mixed.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/types.h"
-#include "ink/touch/deposit.h"
+#include "ink/exchange/deposit.h"
 
 /// The ink in a tuft and how much of it a touch may take.
 namespace tuft::ink {

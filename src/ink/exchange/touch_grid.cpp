@@ -1,4 +1,4 @@
-#include "ink/touch/touch_grid.h"
+#include "ink/exchange/touch_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "ink/touch/reservoir.h"
+#include "ink/exchange/reservoir.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "ink/touch/stir.h"
+#include "ink/exchange/stir.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "ink/touch/reservoir.h"
+#include "ink/exchange/reservoir.h"
 
 namespace tuft::ink {
 

@@ -1,4 +1,4 @@
-#include "ink/touch/touch_nodes.h"
+#include "ink/exchange/touch_nodes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "ink/touch/deposit.h"
-#include "ink/touch/touch_nodes.h"
+#include "ink/exchange/deposit.h"
+#include "ink/exchange/touch_nodes.h"
 
 /// Ink both ways between a wet tuft and a wet surface.
 namespace tuft::ink {

@@ -1,4 +1,4 @@
-#include "ink/touch/erase.h"
+#include "ink/exchange/erase.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "ink/colour/elementary.h"
 #include "ink/simd.h"
 #include "ink/tile_store.h"
-#include "ink/touch/deposit.h"
+#include "ink/exchange/deposit.h"
 
 namespace tuft::ink {
 namespace {

@@ -4,7 +4,7 @@
 #include <unordered_map>
 
 #include "atlas/texels/seam_links.h"
-#include "ink/touch/erase.h"
+#include "ink/exchange/erase.h"
 
 namespace tuft::ink {
 

@@ -1,4 +1,4 @@
-#include "ink/touch/blot.h"
+#include "ink/exchange/blot.h"
 
 #include <algorithm>
 #include <array>
