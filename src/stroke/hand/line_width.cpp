@@ -19,7 +19,6 @@ constexpr int kSteps = 12;
 constexpr double kMiddle = 0.5;              // made-up pressure of a line's whole width
 constexpr double kEase = 0.36;                 // in that of a brush chosen for a width: corners come out best
 constexpr double kLight = 0.3, kHeavy = 0.7;  // a pressure between them draws lines with the brush that is there
-constexpr double kSizes = 1.25;              // from one size to the next: few brushes for many widths
 
 }  // namespace
 
@@ -67,7 +66,7 @@ std::string brush_for_width(const std::string& name, const LineWidths& widths, d
     const brush::SizedName sized = brush::sized_name(name);
     const double hair = widths.at(kEase) - 2 * kSkinFilm;  // the ink round it is the same for all sizes
     const double factor = std::clamp(sized.factor * (width - 2 * kSkinFilm) / hair, brush::kLeastSize, brush::kMostSize);
-    return brush::name_of({sized.base, std::pow(kSizes, std::round(std::log(factor) / std::log(kSizes)))});
+    return brush::name_of({sized.base, std::pow(kBrushSizes, std::round(std::log(factor) / std::log(kBrushSizes)))});
 }
 
 namespace {

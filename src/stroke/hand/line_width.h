@@ -46,8 +46,11 @@ class WidthTables {
     std::map<std::string, HoldOptions> holds_;
 };
 
+/// From one size of a brush that is chosen for a line to the next: few brushes for many widths.
+inline constexpr double kBrushSizes = 1.25;
+
 /// The brush in the size that its name has if a pressure from 0.3 to 0.7 draws the width, else in the size
-/// (`brush::scaled`; powers of 1.25) that draws it at about 0.36, at which corners come out best: less, and the tuft
+/// (`brush::scaled`; powers of `kBrushSizes`) that draws it at about 0.36, at which corners come out best: less, and the tuft
 /// is long for the line and swings out; more, and it lies and cuts them. `widths` is of `name`. Sizes are held to
 /// what brushes have.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);

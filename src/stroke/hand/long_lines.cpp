@@ -9,12 +9,11 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kGiven = 0.28;    // part of the ink that a brush gives before gaps show
-constexpr double kLight = 0.3;     // least pressure of a brush that is taken larger for its ink
+constexpr double kInkGiven = 0.28;    // part of the ink that a brush gives before gaps show
+constexpr double kLeastPressure = 0.3;     // least pressure of a brush that is taken larger for its ink
 constexpr double kTipSupply = 30;  // seconds, of a brush that is taken larger
-constexpr double kSizes = 1.25;    // from one size to the next, as in brush_for_width
-constexpr double kSlack = 0.1;     // of a piece, to both sides, within which a cut is looked for
-constexpr double kShortest = 4;    // overlaps
+constexpr double kCutSlack = 0.1;     // of a piece, to both sides, within which a cut is looked for
+constexpr double kShortestPiece = 4;    // overlaps
 
 TraceSample mix(const TraceSample& a, const TraceSample& b, double part) {
     TraceSample out = b;
@@ -96,11 +95,11 @@ class Path {
 /// Where, near `even`, a cut shows least.
 double best_cut(const Path& path, double even, double slack, double overlap) {
     constexpr int kTried = 20;
-    constexpr double kNear = 0.02;  // radians that the whole slack counts
+    constexpr double kSlackTurn = 0.02;  // radians that the whole slack counts
     double best = even, least = 1e30;
     for (int k = -kTried; k <= kTried; ++k) {
         const double off = static_cast<double>(k) / kTried, at = even + off * slack;
-        const double cost = path.turn(at, overlap) + kNear * std::abs(off);
+        const double cost = path.turn(at, overlap) + kSlackTurn * std::abs(off);
         if (cost < least) least = cost, best = at;
     }
     return best;
@@ -109,7 +108,7 @@ double best_cut(const Path& path, double even, double slack, double overlap) {
 }  // namespace
 
 double whole_length(const brush::Preset& preset, double width, double film) {
-    return kGiven * preset.capacity / std::max(film * width, 1e-30);
+    return kInkGiven * preset.capacity / std::max(film * width, 1e-30);
 }
 
 double supply_time(const brush::Preset& preset, double width, double film, double speed) {
@@ -133,13 +132,13 @@ std::string brush_for_line(const std::string& name, WidthTables& tables, double 
     if (whole_length(tables.preset(fits), width, film) >= length) return fits;
     const brush::SizedName sized = brush::sized_name(fits);
     // Hair grows with the brush, the ink round it does not.
-    const double hair = widths.at(kLight) - 2 * kSkinFilm;
+    const double hair = widths.at(kLeastPressure) - 2 * kSkinFilm;
     const double most =
         std::min(brush::kMostSize, (width - 2 * kSkinFilm) / hair * brush::sized_name(name).factor);
     std::string larger = fits;
-    for (double size = std::log(sized.factor) / std::log(kSizes);;) {
+    for (double size = std::log(sized.factor) / std::log(kBrushSizes);;) {
         size = std::floor(size + 1e-6) + 1;
-        const double factor = std::pow(kSizes, size);
+        const double factor = std::pow(kBrushSizes, size);
         if (factor > most * (1 + 1e-9)) break;
         const std::string next = brush::name_of({sized.base, factor});
         if (supply_time(tables.preset(next), width, film, speed) < kTipSupply) continue;
@@ -158,13 +157,13 @@ std::vector<Trace> cut_line(const Trace& trace, double longest, double overlap) 
     const Path path(trace);
     const double whole = path.length();
     const auto n = static_cast<std::size_t>(
-        std::min(std::ceil(whole / longest), std::floor(whole / (kShortest * overlap))));
+        std::min(std::ceil(whole / longest), std::floor(whole / (kShortestPiece * overlap))));
     if (n < 2) return {trace};
     const double even = whole / static_cast<double>(n);
     std::vector<double> cuts{0};
     for (std::size_t k = 1; k < n; ++k)
         cuts.push_back(best_cut(path, even * static_cast<double>(k),
-                                std::min(kSlack * even, 0.5 * even - overlap), overlap));
+                                std::min(kCutSlack * even, 0.5 * even - overlap), overlap));
     cuts.push_back(whole);
     std::vector<Trace> pieces;
     for (std::size_t k = 0; k < n; ++k) {

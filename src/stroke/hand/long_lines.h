@@ -20,7 +20,7 @@ namespace tuft::stroke {
 double whole_length(const brush::Preset& preset, double width, double film);
 
 /// The brush for a line `width` metres wide and `length` metres long: `brush_for_width` where that
-/// draws it whole, else the smallest larger size (powers of 1.25) that does and still presses by a
+/// draws it whole, else the smallest larger size (powers of `kBrushSizes`) that does and still presses by a
 /// pressure of 0.3 or more for the width, else the largest such size. Only where its supply time is
 /// 30 s or more: so large a brush touches with its tip alone. `name` is of the size that brushes
 /// are made in; `film` in metres, `speed` in m/s.
