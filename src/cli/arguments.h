@@ -6,9 +6,14 @@
 #include <variant>
 #include <vector>
 
+#include "core/types.h"
+
 /// What the command line asks for, as plain data. Lengths are in millimetres and
 /// angles in degrees here; the commands convert.
 namespace tuft::cli {
+
+/// Of the three numbers of an option.
+inline Vec3 vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
 /// Options that several commands share.
 struct Surface {

@@ -31,7 +31,7 @@ int inspect_point(const Inspect& a) {
     stroke::Painting painting(project->model);
     restore(*project, painting, console);
     console.clear();
-    const Vec3 at = kMillimetre * Vec3(a.at_mm[0], a.at_mm[1], a.at_mm[2]);
+    const Vec3 at = kMillimetre * vector_of(a.at_mm);
     const stroke::Pick pick = a.palette ? painting.pick_palette(at) : painting.pick(at);
     if (!a.palette) check_on_surface(project->model, at, "--at");
     const std::string name = a.save_ink.empty() ? "picked" : a.save_ink.stem().string();

@@ -16,8 +16,6 @@
 namespace tuft::cli {
 namespace {
 
-Vec3 vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-
 std::vector<Vec2> polygon_of(const std::string& text) {
     std::vector<Vec2> polygon;
     std::istringstream words(text);

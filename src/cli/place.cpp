@@ -35,8 +35,6 @@ struct Spot {
     Vec3 normal{0, 0, 1};
 };
 
-Vec3 vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-
 /// Its middle at a point that was named.
 Spot named_spot(const stroke::Model& model, const Paint& a, Console& console) {
     const Vec3 place = kMillimetre * vector_of(a.place_mm);

@@ -204,7 +204,7 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
     options.view.azimuth = v.azimuth * kDegree;
     options.view.elevation = v.elevation * kDegree;
     if (!v.target_mm.empty()) {
-        options.view.target = kMillimetre * Vec3(v.target_mm[0], v.target_mm[1], v.target_mm[2]);
+        options.view.target = kMillimetre * vector_of(v.target_mm);
         options.view.width_at_target = model.mesh->bounds.diagonal() / v.zoom;
     } else if (v.zoom != 1) {
         options.view.target = model.mesh->bounds.centre();
