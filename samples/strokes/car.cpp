@@ -25,7 +25,7 @@ Stroke line(const char* name, const std::vector<Point>& points) {
 }  // namespace
 
 std::vector<stroke::Trace> car_pinstripe() {
-    const char* brush = "wolf-small";
+    const char* brush = "wolf-medium";  // holds the ink of the whole stripe
     const WidthTable table(brush::load_preset(brush));
     const WriteOptions options{.size = 1.0, .centre = {0, 0}, .speed = 0.16, .tilt = {0, 0}};
     const std::vector<Stroke> strokes = {
