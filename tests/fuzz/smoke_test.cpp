@@ -48,7 +48,7 @@ TEST_P(Fuzz, CorpusAndMutationsAreReadOrRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, Fuzz, testing::ValuesIn(targets().begin(), targets().end()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& target) { return std::string(target.param.name); });
 
 }  // namespace
 }  // namespace tuft::fuzz

@@ -433,9 +433,10 @@ TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
     EXPECT_LT(message(ink("<trace>1 9e300</trace>")).size(), 120u) << "no number of 300 digits";
     for (const char* type : {"origin", "right", "down"})
         for (const char* bad : {"1e300 0 0", "0 nan 0", "0 0 -1e20", "1e-300 0 0"})
-            if (std::string(type) != "origin" || std::string(bad) != "1e-300 0 0")
+            if (std::string(type) != "origin" || std::string(bad) != "1e-300 0 0") {
                 EXPECT_THAT(message(ink(std::string("<annotation type='tuft:") + type + "'>" + bad + "</annotation><trace>1 2</trace>")),
                             HasSubstr("test.inkml:2: ")) << type << " " << bad;
+            }
     EXPECT_THAT(message(ink("<annotation type='tuft:tape'>0 0 1e9 0</annotation><trace>1 2</trace>")), HasSubstr("10 km"));
     EXPECT_THAT(message(ink("<trace>'1 2</trace>")), HasSubstr("before any explicit value"));
     EXPECT_THAT(message(ink("<trace>1 2,\"1 2</trace>")), HasSubstr("before any first difference"));

@@ -21,11 +21,10 @@ namespace {
 
 // What a person reads while the rooms below report, and how far that part is of the whole: as it takes for a model
 // of 100,000 triangles that is looked at and unwrapped, and for a project.
-enum Kind { kLook, kUnwrap, kProject };
 struct Stage {
     std::string_view name;
     const char* title;
-    double span[3][2];
+    double span[3][2];  ///< by `Job::Kind`
 };
 constexpr Stage kStages[] = {
     {"reading", "Reading the file", {{0, 0.6}, {0, 0.04}, {0, 0.1}}},
@@ -48,12 +47,13 @@ constexpr Stage kStages[] = {
 }  // namespace
 
 struct Opening::Job {
+    enum Kind { kLook, kUnwrap, kProject };
     std::thread thread;
     std::atomic<bool> stop{false}, done{false};
     std::mutex mutex;
     const char* phase = kStages[0].title;
     double fraction = 0;
-    Kind kind = kUnwrap;
+    Kind kind = Job::kUnwrap;
     Result result;
 
     ProgressFn progress() {
@@ -223,7 +223,7 @@ void Opening::start(Step step) {
 
 void Opening::inspect(const fs::path& path) {
     start([path](Job& job) {
-        job.kind = kLook;
+        job.kind = Job::kLook;
         job.result.inspected = inspect_file(path, job.progress());
     });
 }
@@ -243,7 +243,7 @@ void Opening::revise(Inspected inspected, const OpenOptions& options, const fs::
 void Opening::load(const fs::path& project, const fs::path& session, OpenAs as) {
     loaded_ = project;
     start([project, session, as](Job& job) {
-        job.kind = kProject;
+        job.kind = Job::kProject;
         job.result.work = load_project(project, session, as, job.progress());
     });
 }
