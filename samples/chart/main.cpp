@@ -43,7 +43,7 @@ ink::Rgb colour_of(const Chip& chip, const ink::Substrate& ground) {
             pigments.push_back(ink::load_pigment(part.pigment));
         }
     }
-    const ink::TileLook look = ink::look_of_films(films, nullptr, pigments, ground);
+    const ink::TileAppearance look = ink::shade_films(films, nullptr, pigments, ground);
     return {look.colour[0][0], look.colour[1][0], look.colour[2][0]};
 }
 

@@ -30,7 +30,7 @@ static stroke::Stroke wavy_line(const stroke::Model& model) {
 }
 
 // Square metres of the texels with any pigment on them.
-static double ink_area(const stroke::Painting& painting) {
+static double ink_area(const stroke::Document& painting) {
     double area = 0;
     for (const std::uint32_t slot : painting.canvas().touched_slots())
         for (int t = 0; t < atlas::kTileTexels; ++t) {
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
         options.repair.metres_per_unit = io::metres_per_unit_of(argv[1]).value_or(1e-3);
         options.unwrap.size = 512;  // texels along the side of the atlas
         const stroke::Model model = stroke::prepare_model(io::read_model(argv[1]), options);
-        stroke::Painting painting(model, {.substrate = "porcelain"});
+        stroke::Document painting(model, {.substrate = "porcelain"});
         painting.paint(wavy_line(model));
         io::export_model(argv[2], *model.mesh, model.atlas,
                          io::make_maps(painting.stack(), model.texels, painting.substrate(),

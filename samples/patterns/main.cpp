@@ -52,7 +52,7 @@ void draw_seams(const stroke::Model& model, ink::AtlasMap<float>& colour) {
     }
 }
 
-void draw(const stroke::Painting& painting, const render::View& view,
+void draw(const stroke::Document& painting, const render::View& view,
           const std::filesystem::path& out) {
     const stroke::Model& model = painting.model();
     for (const bool seams : {false, true}) {
@@ -82,7 +82,7 @@ void draw(const stroke::Painting& painting, const render::View& view,
 /// 20 mm checks, four abreast, over bonnet, its edge, the shoulder and the wheel arch.
 void car(const std::filesystem::path& folder) {
     const stroke::Model model = load("car", 8192);
-    stroke::Painting painting(model, {.substrate = "clay"});
+    stroke::Document painting(model, {.substrate = "clay"});
     const int pigment = painting.canvas().add_pigment(painting.ink("carbon").parts[0].pigment);
     const double check = 20 * kMillimetre, step = check / 48, length = 12 * check;
     const auto way = straight_way(model, {0.34, -0.02, 0.25}, {0.08, -1, 0}, step, 12 * 48);
@@ -99,7 +99,7 @@ void car(const std::filesystem::path& folder) {
 /// A band of waves between two lines round the plate's rim; its ends meet.
 void plate(const std::filesystem::path& folder) {
     const stroke::Model model = load("plate");
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     const int pigment = painting.canvas().add_pigment(painting.ink("cobalt").parts[0].pigment);
     const double radius = 113.5 * kMillimetre;
     constexpr int kPeriods = 48, kRows = 180;  // of a period
@@ -121,7 +121,7 @@ void plate(const std::filesystem::path& folder) {
 /// A stroke with a brush from inside over the rim to the outside.
 void bowl(const std::filesystem::path& folder) {
     const stroke::Model model = load("bowl");
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     stroke::Stroke s;
     s.trace.flat = false;
     s.trace.brush = "wolf-small";

@@ -60,7 +60,7 @@ void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float fi
     f.height = static_cast<int>(std::ceil(width / cell)) + 4;
     f.lo = Vec2(-0.5 * f.width * cell, -0.5 * f.height * cell);
     f.radius = 0.5 * cell * std::hypot(f.width, f.height);
-    // On rows of a few texels the change from one frame for all to one for each piece would show.
+    // On rows of a few texels the change from one frame for all to one for each cluster would show.
     const footprint::StampOptions options{.enter = 0, .leave = 0};
     footprint::PlanScratch scratch;
     footprint::Unpacked unpacked;

@@ -40,7 +40,7 @@ std::vector<stroke::Trace> bowl_inside() {
                     {{0, back * kMillimetre, 11.6 * kMillimetre},
                      {1, 0, 0},
                      {0, -1, 0},
-                     stroke::Laying::wrap},
+                     stroke::SurfaceMapping::wrap},
                     "carbon");
     }
     return out;
@@ -56,7 +56,7 @@ std::vector<stroke::Trace> bowl_outside() {
         const stroke::Placement place{{radius * std::sin(a), -radius * std::cos(a), height},
                                       {std::cos(a), std::sin(a), 0},
                                       {0, 0, -1},
-                                      stroke::Laying::wrap};
+                                      stroke::SurfaceMapping::wrap};
         write_glyph(out, glyph(characters[k]), table, {.size = 36 * kMillimetre}, place, "carbon");
     }
     return out;

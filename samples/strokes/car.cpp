@@ -59,7 +59,7 @@ std::vector<stroke::Trace> car_pinstripe() {
     std::vector<stroke::Trace> out;
     for (const Stroke& s : strokes) {
         stroke::Trace t = write(s, table, options);
-        t.placement = {{0, -0.24, 0}, {1, 0, 0}, {0, 0, -1}, stroke::Laying::project};
+        t.placement = {{0, -0.24, 0}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::project};
         t.brush = brush;
         t.ink = "cinnabar";
         t.seed = out.size() + 1;

@@ -187,7 +187,7 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
     return trace;
 }
 
-void Series::add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::Care> before,
+void Series::add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::BrushAction> before,
                  const Vec2& tilt) {
     WriteOptions options;
     options.size = 1;  // keys are in millimetres

@@ -60,7 +60,7 @@ struct Series {
     stroke::Placement place;
     std::vector<stroke::Trace> out = {};
 
-    void add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::Care> before = {},
+    void add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::BrushAction> before = {},
              const Vec2& tilt = WriteOptions{}.tilt);
 };
 

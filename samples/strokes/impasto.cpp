@@ -10,7 +10,7 @@ namespace tuft::samples {
 namespace {
 
 using stroke::Action;
-using stroke::Care;
+using stroke::BrushAction;
 
 /// Pressed down at its outer end, pulled to the middle and lifted there.
 Stroke petal(double turn, double from, double length, double width) {
@@ -29,7 +29,7 @@ std::vector<stroke::Trace> impasto() {
     constexpr const char* kBlue = "samples/inks/blue-paste.toml";
     constexpr const char* kYellow = "samples/inks/yellow-paste.toml";
     constexpr const char* kGreen = "samples/inks/green-paste.toml";
-    Series k{{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, stroke::Laying::wrap}};
+    Series k{{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, stroke::SurfaceMapping::wrap}};
     // Broad strokes side by side, each into the wet paint of the one before.
     for (int row = 0; row < 5; ++row) {
         const double y = -26 + 12.0 * row, left = row % 2 ? 3.0 : 0.0;
@@ -39,7 +39,7 @@ std::vector<stroke::Trace> impasto() {
     // A flower on top of it when it is dry.
     for (int p = 0; p < 8; ++p)
         k.add(petal(2 * std::numbers::pi * (p + 0.15) / 8, 5, 20, 10), "mixed-medium", kWhite, 0.04,
-              p ? std::vector<Care>{} : std::vector<Care>{{.action = Action::dry}});
+              p ? std::vector<BrushAction>{} : std::vector<BrushAction>{{.action = Action::dry}});
     for (int d = 0; d < 3; ++d) {
         const double a = 2.1 * d;
         const double x = 2.2 * std::cos(a), y = 2.2 * std::sin(a);

@@ -144,7 +144,7 @@ std::vector<stroke::Trace> plate_ornament() {
         const stroke::Placement place{kMillimetre * (kRadius * radial + Vec3(0, 0, kHeight)),
                                       {radial.y, -radial.x, 0},
                                       -radial,
-                                      stroke::Laying::wrap};
+                                      stroke::SurfaceMapping::wrap};
         Hand hand{Random(static_cast<std::uint64_t>(k) + 1)};
         std::vector<Stroke> strokes;
         half_wave(strokes, -0.5 * period, 0.5 * period, 1, rim, hand);

@@ -12,21 +12,21 @@ namespace tuft::samples {
 namespace {
 
 using stroke::Action;
-using stroke::Care;
+using stroke::BrushAction;
 
 constexpr double kPi = std::numbers::pi;
 
-const Care kTip(const char* ink, double depth) {
+const BrushAction kTip(const char* ink, double depth) {
     return {.action = Action::dip, .ink = ink, .extent = {.depth = depth}};
 }
-const Care kWipeTip(double depth) { return {.action = Action::wipe, .extent = {.depth = depth, .amount = 0.95}}; }
-const Care kFlank(const char* ink, double side) {
+const BrushAction kWipeTip(double depth) { return {.action = Action::wipe, .extent = {.depth = depth, .amount = 0.95}}; }
+const BrushAction kFlank(const char* ink, double side) {
     return {.action = Action::dip, .ink = ink, .extent = {.depth = 1, .side = side}};
 }
-const Care kDry{.action = Action::dry};
-const Care kWipe(double amount) { return {.action = Action::wipe, .extent = {.amount = amount}}; }
+const BrushAction kDry{.action = Action::dry};
+const BrushAction kWipe(double amount) { return {.action = Action::wipe, .extent = {.amount = amount}}; }
 
-struct Painter : Series {
+struct PaintThread : Series {
     /// A stroke along (x, y) places that swells from 0 to `width` at `swell` of its length and runs out.
     static Stroke leaf(const char* name, const Vec2& from, double turn, double length, double width, double bend) {
         const Vec2 u{std::cos(turn), std::sin(turn)}, v{-u.y, u.x};
@@ -44,7 +44,7 @@ struct Painter : Series {
             const Vec2 p = heart + f * u;
             return Key{p.x, p.y, w, pace};
         };
-        std::vector<Care> care{kWipeTip(red_tip), kTip("cinnabar", red_tip)};
+        std::vector<BrushAction> care{kWipeTip(red_tip), kTip("cinnabar", red_tip)};
         if (wait) care.insert(care.begin(), kDry);
         add({"petal", {at(from, 0, 0.5), at(from + 0.35 * (to - from), 0.5 * width, 0.5), at(to, width, 0.5), at(to - 0.2, 0.4 * width, 0.6), at(to - 1.3, 0, 1)}},
             "mixed-medium", "samples/inks/blossom-pink.toml", 0.03, care, 20 * kDegree * glm::normalize(u));
@@ -60,7 +60,7 @@ struct Painter : Series {
             const double a = turn + 2 * kPi * (k + 0.3 * std::sin(5.0 * k)) / 7, r = size * (0.5 + 0.1 * std::cos(3.0 * k));
             const Vec2 end = heart + r * Vec2{std::cos(a), flat * std::sin(a)};
             const Vec2 begin = heart + 0.12 * size * Vec2{std::cos(a), flat * std::sin(a)};
-            const std::vector<Care> care = k ? std::vector<Care>{} : std::vector<Care>{kDry};
+            const std::vector<BrushAction> care = k ? std::vector<BrushAction>{} : std::vector<BrushAction>{kDry};
             add({"filament", {{begin.x, begin.y, 0}, {0.5 * (begin.x + end.x), 0.5 * (begin.y + end.y), 0.35}, {end.x, end.y, 0.15}}}, "wolf-small*0.6", "cinnabar", 0.05, care);
             add({"anther", {{end.x, end.y, 0}, {end.x + 0.15, end.y + 0.05, 0.9, 0.5}, {end.x + 0.25, end.y, 0}}}, "wolf-small*0.6", "gamboge", 0.02);
         }
@@ -77,7 +77,7 @@ struct Painter : Series {
 }  // namespace
 
 std::vector<stroke::Trace> vase_plum() {
-    Painter p{{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::Laying::wrap}}};
+    PaintThread p{{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::wrap}}};
     // Two boulders: a thin wash, axe-cut strokes with the side of a half-dry tuft, and their edges.
     const double washes[][4] = {{-43, 33, -46, 50}, {-38, 29, -41, 52}, {-33, 31, -35, 53}, {-14.5, 47, -16, 54}, {-12, 44, -13, 53}};
     for (const auto& c : washes) {
@@ -99,9 +99,9 @@ std::vector<stroke::Trace> vase_plum() {
           "mixed-large", "iron-red", 0.12, {kDry, kWipe(0.4), kFlank("bone-black", 0.5), kWipe(0.62)});
     p.add({"branch", {{-11, 20, 0, 0.7}, {-15, 13, 4, 0.9}, {-20, -4, 3, 1, 0.04}, {-30, -16, 2.4, 1.2}, {-33, -30, 0, 1.4}}}, "mixed-medium", "iron-red", 0.09, {kFlank("bone-black", 0.4), kWipe(0.3)});
     p.add({"branch", {{2, -3, 0}, {10, -3, 3.4, 0.9}, {22, 2, 2.6, 1.1, 0.04}, {36, -2, 0, 1.4}}}, "mixed-medium", "iron-red", 0.09, {kFlank("bone-black", 0.4), kWipe(0.3)});
-    const double twigs[][6] = {{-20, -4, -12, -14, -9, -27}, {14, -12, 10, -24, 14, -38}, {22, 2, 30, 9, 40, 12}, {24, -28, 32, -27, 42, -24}};
-    for (const auto& t : twigs)
-        p.add({"twig", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon", 0.1, {kWipe(0.3)});
+    const double sub_spines[][6] = {{-20, -4, -12, -14, -9, -27}, {14, -12, 10, -24, 14, -38}, {22, 2, 30, 9, 40, 12}, {24, -28, 32, -27, 42, -24}};
+    for (const auto& t : sub_spines)
+        p.add({"sub_spine", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon", 0.1, {kWipe(0.3)});
     // Moss on the trunk.
     for (int k = 0; k < 9; ++k) {
         const double x = -27 + 3.8 * k, y = 33 - 3.3 * k + 2.5 * std::sin(2.0 * k);
@@ -110,7 +110,7 @@ std::vector<stroke::Trace> vase_plum() {
     // Bamboo behind the rock: indigo with gamboge in the tip.
     const double leaves[][4] = {{5, 31, 0.75, 20}, {4, 32, 1.35, 19}, {6, 30, 0.2, 22}, {19, 35, 0.9, 17}, {20, 34, 0.35, 20}, {3, 32, 1.9, 15}, {20, 33, -0.15, 17}};
     for (const auto& l : leaves)
-        p.add(Painter::leaf("bamboo", {l[0], l[1]}, l[2], l[3], 4.2, 0.06), "mixed-medium", "indigo", 0.07,
+        p.add(PaintThread::leaf("bamboo", {l[0], l[1]}, l[2], l[3], 4.2, 0.06), "mixed-medium", "indigo", 0.07,
               {kWipe(0.6), kTip("gamboge", 0.16)});
     p.add({"stem", {{-4, 52, 1.2}, {-2, 46, 1.3}, {1, 36, 1.1, 1, 0.05}, {6, 30, 0}}}, "wolf-medium", "indigo", 0.07);
     p.add({"stem", {{6, 52, 1.1}, {9, 46, 1.2}, {14, 40, 0.9}, {20, 34, 0}}}, "wolf-medium", "indigo", 0.07);

@@ -17,7 +17,7 @@ struct Writer {
     std::vector<stroke::Trace> out;
 
     void add(const Stroke& s, const char* brush, double column, double row, const WriteOptions& how = {},
-             std::vector<stroke::Care> before = {}) {
+             std::vector<stroke::BrushAction> before = {}) {
         const WidthTable table(brush::load_preset(brush));
         WriteOptions options = how;
         options.size = kSquare * kMillimetre;
@@ -25,7 +25,7 @@ struct Writer {
         t.placement = {{(column - 2.5) * kCell * kMillimetre, (2.5 - row) * kCell * kMillimetre, 0},
                        {1, 0, 0},
                        {0, -1, 0},
-                       stroke::Laying::wrap};
+                       stroke::SurfaceMapping::wrap};
         t.brush = brush;
         t.ink = "carbon";
         t.seed = out.size() + 1;
@@ -58,7 +58,7 @@ std::vector<stroke::Trace> stroke_sheet() {
         ++row;
     }
     using stroke::Action;
-    const auto wiped = [](double amount) { return std::vector<stroke::Care>{{.action = Action::wipe, .extent = {.amount = amount}}}; };
+    const auto wiped = [](double amount) { return std::vector<stroke::BrushAction>{{.action = Action::wipe, .extent = {.amount = amount}}}; };
     const char* brush = "mixed-medium";
     // The holder leans across the stroke, so that the tip runs along one side of it.
     w.add(sweep("slanted tip", {60, 300}, {940, 300}, 200), brush, 0, row, {.tilt = {0, 0.7}});

@@ -11,18 +11,18 @@ namespace tuft::samples {
 namespace {
 
 using stroke::Action;
-using stroke::Care;
+using stroke::BrushAction;
 
 constexpr double kSquare = 1;    // metres: keys are in millimetres
 constexpr double kRedTip = 0.085;  // of the tuft's length
 
-const Care kDry{.action = Action::dry};
+const BrushAction kDry{.action = Action::dry};
 
 struct How {
     const char* brush = "goat-medium";
     const char* ink = "carbon";
     WriteOptions options = {};
-    std::vector<Care> before = {};
+    std::vector<BrushAction> before = {};
 };
 
 /// Writes strokes on one place of a model, keys in millimetres from it.
@@ -46,7 +46,7 @@ struct Writer {
 };
 
 Writer on_sheet(double x, double y) {
-    return {{{x * kMillimetre, y * kMillimetre, 0}, {1, 0, 0}, {0, -1, 0}, stroke::Laying::wrap}};
+    return {{{x * kMillimetre, y * kMillimetre, 0}, {1, 0, 0}, {0, -1, 0}, stroke::SurfaceMapping::wrap}};
 }
 
 Stroke band(const char* name, Vec2 from, Vec2 to, double width) {
@@ -118,7 +118,7 @@ std::vector<stroke::Trace> wet_bowl() {
     Writer w{{{radius * std::sin(turn) * kMillimetre, -radius * std::cos(turn) * kMillimetre, height * kMillimetre},
               {std::cos(turn), std::sin(turn), 0},
               {0, 0, -1},
-              stroke::Laying::wrap}};
+              stroke::SurfaceMapping::wrap}};
     w.add({"wet ground", {{-26, -8, 0}, {-22, -9, 8}, {0, -11, 13}, {22, -7, 8}, {26, -6, 0}}}, {.brush = "mixed-large", .ink = "water"});
     w.add({"wet ground", {{-27, 3, 0}, {-22, 2, 8}, {0, 0, 14}, {22, 3, 8}, {27, 4, 0}}}, {.brush = "mixed-large", .ink = "water"});
     w.add({"indigo", {{-20, -4, 0}, {-17, -5, 6}, {-8, -6, 12}, {2, -3, 10}, {8, -1, 0}}}, {.brush = "mixed-large", .ink = "indigo"});
@@ -138,12 +138,12 @@ std::vector<stroke::Trace> backrun() {
         w.add({"drop of water", {{x - 1, y, 0, 0.5}, {x, y, 5, 0.5}, {x + 1, y + 0.5, 6, 0.5}, {x + 2, y + 0.5, 0, 0.5}}},
               {.brush = "mixed-large", .ink = "water",
                .options = {.speed = 0.02},
-               .before = x < 0 ? std::vector<Care>{{.action = Action::dry, .seconds = 25}, {.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}} : std::vector<Care>{{.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}}});
+               .before = x < 0 ? std::vector<BrushAction>{{.action = Action::dry, .seconds = 25}, {.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}} : std::vector<BrushAction>{{.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}}});
     return std::move(w.out);
 }
 
 std::vector<stroke::Trace> wet_vase() {
-    Writer w{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::Laying::wrap}};
+    Writer w{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::wrap}};
     // Dripping wet: what the hair does not hold runs down the wall.
     w.add({"dripping stroke", {{-32, 2, 0, 0.6}, {-29, 1, 7, 0.5}, {-18, -3, 12, 0.6}, {-4, -1, 9, 1}, {10, 3, 11, 0.7}, {24, 0, 8, 1}, {36, -5, 0, 1}}},
           {.brush = "mixed-large", .ink = "indigo", .options = {.speed = 0.03}, .before = {{.action = Action::dip, .ink = "indigo", .extent = {.amount = 1.045}}}});

@@ -33,13 +33,13 @@ void take_picked(Session& s, const std::string& name) {
     say(s, name + ": " + parts);
 }
 
-std::unique_ptr<Painter> start_painter(Session& s, Painter::Work work) {
+std::unique_ptr<PaintThread> start_painter(Session& s, PaintThread::Work work) {
     const fs::path project = work.keeper.path();
     if (project.empty() || work.keeper.viewing()) s.note.clear();  // it is in memory only, or another program's
     else s.note.write(project, work.source);
     if (!project.empty() && !is_unnamed(project)) remember_project(project);
     work.spare = s.note.new_project(fs::path(work.source).stem().string());
-    return std::make_unique<Painter>(std::move(work));
+    return std::make_unique<PaintThread>(std::move(work));
 }
 
 // The work lies in this file now.
@@ -271,7 +271,7 @@ bool close_dialog(Session& s) {
     else if (s.key_asked) s.key_asked.reset();
     else if (s.show_keys) s.show_keys = false;
     else if (s.show_about) s.show_about = false;
-    else if (s.show_misfits) s.show_misfits = false;
+    else if (s.show_mismatches) s.show_mismatches = false;
     else if (s.journal.moves) s.journal.moves = false, s.journal.from.reset(), s.journal.to.reset();
     else if (s.show_settings) s.show_settings = false;
     else if (s.show_colours) s.show_colours = false;
@@ -319,9 +319,9 @@ void close_model(Session& s) {
     s.journal = {};
     s.references.images.clear();  // the textures are the context's until it goes
     s.snapshots = {.swipe = s.snapshots.swipe};
-    s.misfits.clear();
+    s.mismatches.clear();
     s.former.clear();
-    s.show_misfits = s.show_colours = false;
+    s.show_mismatches = s.show_colours = false;
     s.mask = s.veiled = s.masks_seen = 0;
     s.layers_seen = s.layer_gone = 0;
     s.layers_before.clear();
@@ -360,7 +360,7 @@ void poll_session(Session& s) {
     }
     const bool opened = result.work.has_value();
     if (result.work) {
-        std::vector<stroke::Misfit> misfits = std::move(result.work->misfits);
+        std::vector<stroke::StrokeMismatch> mismatches = std::move(result.work->mismatches);
         std::vector<std::string> fit = std::move(result.work->fit);
         const bool revised = !s.revises.empty();
         // Unnamed work that is left for other work is offered again at the next start.
@@ -379,9 +379,9 @@ void poll_session(Session& s) {
         s.symmetry.centre = s.painter->model().mesh->bounds.centre();
         say(s, revised ? "The strokes are painted on the revised model; the former project is as it was." : note);
         s.revises.clear();
-        s.misfits = std::move(misfits);
+        s.mismatches = std::move(mismatches);
         s.fit = std::move(fit);
-        s.show_misfits = !s.misfits.empty();
+        s.show_mismatches = !s.mismatches.empty();
     }
     poll_painter(s);
     if (opened) choose_brush(s);

@@ -11,14 +11,14 @@
 #include "app/document/help_state.h"
 #include "app/document/journal_state.h"
 #include "app/document/opening.h"
-#include "app/document/painter.h"
+#include "app/document/paint_thread.h"
 #include "app/document/pictures.h"
 #include "app/document/layer_list.h"
 #include "app/document/references.h"
 #include "app/document/snapshots.h"
 #include "app/document/state_folder.h"
 #include "app/document/writing.h"
-#include "app/input/hand.h"
+#include "app/input/pointer_input.h"
 #include "app/input/keys.h"
 #include "app/panels/file_dialog.h"
 #include "app/panels/ui.h"
@@ -107,14 +107,14 @@ struct Session {
     Keymap keymap = Keymap::blender;
 
     Opening opening;
-    std::unique_ptr<Painter> painter;
+    std::unique_ptr<PaintThread> painter;
     std::optional<Inspected> inspected;    ///< waits for the person's yes
     OpenOptions open_options;
     std::filesystem::path revises;         ///< project whose strokes what is being opened shall carry
     std::filesystem::path former;          ///< project that the revised model's strokes came from
-    std::vector<stroke::Misfit> misfits;   ///< strokes that do not fit a revised model any more
+    std::vector<stroke::StrokeMismatch> mismatches;   ///< strokes that do not fit a revised model any more
     std::vector<std::string> fit;          ///< how all strokes lie on it, a sentence each
-    bool show_misfits = false;
+    bool show_mismatches = false;
     bool is_sample = false;                ///< what is being opened; nothing is asked then
     bool model_is_new = false;             ///< the scene must take it over
     bool keeps_view = false;               ///< it is looked at as the one before
@@ -132,7 +132,7 @@ struct Session {
     Tool tool = Tool::brush;
     std::vector<std::string> brushes, inks, substrates;
     std::string brush = "wolf-medium", ink = "carbon";
-    HandSettings hand;
+    PointerSettings hand;
     stroke::Symmetry symmetry;
     CurveInWork curve;
     Writing writing;
@@ -153,7 +153,7 @@ struct Session {
     ColourChoice colour;                   ///< chosen on the wheel, and the mix found for it
     LayerList layer_list;                  ///< how the layers are listed
     std::string brush_remembered;          ///< for this model
-    Looks looks;
+    Appearance looks;
     bool show_colours = false;
     bool journal_fits = true, show_journal = false;  ///< beside the model; else in place of the tools, when asked for
     std::string recipe_of;                 ///< ink whose recipe is open there
@@ -248,7 +248,7 @@ void size_brush(Session& s, double factor);
 void select_entries(Session& s, std::set<std::uint64_t> ids);
 /// Keeps strokes to a mask and veils what it leaves out; 0: none.
 void choose_mask(Session& s, std::uint32_t id);
-/// Looks at a model that shall take the place of the one in work, with its strokes.
+/// Appearance at a model that shall take the place of the one in work, with its strokes.
 void revise_with(Session& s, const std::filesystem::path& path);
 /// Back to the project that was revised.
 void open_former(Session& s);

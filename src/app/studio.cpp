@@ -132,7 +132,7 @@ void Studio::layout(int width, int height) {
 
 bool Studio::dialog_open() const {
     const Session& s = session_;
-    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_about || s.help.manual || s.show_misfits || s.in_use || s.leaving ||
+    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_about || s.help.manual || s.show_mismatches || s.in_use || s.leaving ||
            s.files.shown();
 }
 
@@ -176,7 +176,7 @@ void Studio::panels() {
     manual_dialog(s);
     keys_dialog(s);
     about_dialog(s);
-    misfit_dialog(s);
+    mismatch_dialog(s);
     if (const auto path = s.files.draw(s.ui, s.pictures)) {
         if (s.files.purpose() == FileDialog::Purpose::open) open_path(s, *path);
         else if (s.files.purpose() == FileDialog::Purpose::save) save_as(s, *path);
@@ -262,7 +262,7 @@ void Studio::update_tuft(double now) {
         }
         Event at = cursor_;
         at.time = now;
-        const Hand hand(*s.painter->model().query, preview_->preset, s.hand);
+        const PointerInput hand(*s.painter->model().query, preview_->preset, s.hand);
         if (const auto pose = hand.hover(aim_of(at))) s.tuft = brush::step(*preview_, *pose, {}, 0.01);
     }
     if (s.tuft.branches.empty() || !s.pressed) return;

@@ -115,15 +115,15 @@ class Studio {
     std::unique_ptr<render::GlView> compare_view_;
     std::optional<stroke::Model> plate_;      ///< of the palette, once it was shown
     bool on_plate_ = false;                   ///< the hand is over it
-    std::optional<Hand> hand_;
+    std::optional<PointerInput> hand_;
     std::optional<Event> line_start_;         ///< where a new control point was set
     stroke::Placement ghost_placement_;
     double ghost_scale_ = 0;
     render::GlCamera ghost_camera_;
     Vec4f ghost_section_{0};
-    std::vector<stroke::Lead> lead_;
-    std::optional<stroke::LeanedLead> leaned_lead_;
-    std::string lead_brush_;
+    std::vector<stroke::TipLag> tip_lag_;
+    std::optional<stroke::TiltedTipLag> tilted_tip_lag_;
+    std::string tip_lag_brush_;
     Event cursor_;
     bool cursor_inside_ = false;
     Drag drag_ = Drag::none;

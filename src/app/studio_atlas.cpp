@@ -75,7 +75,7 @@ void Studio::look_at_uv(const Vec2& uv) {
     const std::uint32_t slot = m.texels.slot_of_tile[y / atlas::kTile * m.texels.tiles_per_side + x / atlas::kTile];
     if (slot == kNone) return;
     const auto t = static_cast<int>(y % atlas::kTile * atlas::kTile + x % atlas::kTile);
-    if (m.texels.tiles[slot].piece[static_cast<std::size_t>(t)] == atlas::kNoPiece) return;
+    if (m.texels.tiles[slot].cluster[static_cast<std::size_t>(t)] == atlas::kNoCluster) return;
     const auto on = m.query->closest_point(Vec3(m.texels.position(slot, t)));
     if (!on) return;
     s.view.orbit.target = on->position;

@@ -120,12 +120,12 @@ bool Studio::curve_key(const Event& e) {
 
 // Of the brush in hand; found anew where it is another one.
 TipLag Studio::tip_lag(const brush::Preset& preset) {
-    if (lead_brush_ != session_.brush) {
-        lead_ = stroke::drag_lead(preset);
-        leaned_lead_.emplace(preset);
-        lead_brush_ = session_.brush;
+    if (tip_lag_brush_ != session_.brush) {
+        tip_lag_ = stroke::measure_tip_lag(preset);
+        tilted_tip_lag_.emplace(preset);
+        tip_lag_brush_ = session_.brush;
     }
-    return {lead_, [this](double depth, const Vec2& lean) { return leaned_lead_->at(depth, lean); }};
+    return {tip_lag_, [this](double depth, const Vec2& lean) { return tilted_tip_lag_->at(depth, lean); }};
 }
 
 // Paints it, in the place of what was painted before when that is the last stroke.
@@ -136,9 +136,9 @@ void Studio::paint_curve() {
     const brush::Preset preset = brush::load_preset(s.brush);
     const TipLag lag = tip_lag(preset);
     const render::GlCamera c = camera();
-    CurveHand hand{.hold = stroke::hold_options(preset, s.painter->model().query->mesh()), .settings = s.curve_settings, .pressure = s.hand.pressure,
+    CurveHand hand{.hold = stroke::holder_options(preset, s.painter->model().query->mesh()), .settings = s.curve_settings, .pressure = s.hand.pressure,
                    .tilt = {s.hand.tilt.x, -s.hand.tilt.y}, .right = c.right, .down = -c.up};
-    hand.hold.lead = lag.upright;
+    hand.hold.tip_lag = lag.upright;
     hand.hold.leaned = lag.leaned;
     const auto strokes = curve_poses(*s.painter->model().query, curve.points, hand);
     if (strokes.empty()) return say(s, "The line does not lie on the model.");

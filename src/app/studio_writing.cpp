@@ -34,7 +34,7 @@ void Studio::watch_writing() {
     const stroke::Placement& old = ghost_placement_;
     const render::GlCamera seen_from = camera();
     const Vec4f section = section_plane(s);
-    const bool same = placement->origin == old.origin && placement->right == old.right && placement->down == old.down && placement->laying == old.laying &&
+    const bool same = placement->origin == old.origin && placement->right == old.right && placement->down == old.down && placement->mapping == old.mapping &&
                       ghost_scale_ == s.writing.scale;
     if (same && seen_from == ghost_camera_ && section == ghost_section_) return;
     ghost_placement_ = *placement;
@@ -59,7 +59,7 @@ void Studio::lay_writing() {
     const auto placement = writing_placement();
     if (!placement) return;
     // Pressures that are made up stay as they are while the slider is where it is at first.
-    const WritingHand hand{s.brush, s.ink, s.hand.pressure / HandSettings{}.pressure};
+    const WritingHand hand{s.brush, s.ink, s.hand.pressure / PointerSettings{}.pressure};
     say(s, s.ui.tr("Placed:") + (" " + place_words(s.writing, *placement)));
     s.painter->post(PaintDrawing{placed_writing(s.writing, *placement, hand), stroke::group_name(s.writing.file), s.symmetry, s.layer, s.mask, s.wet});
 }

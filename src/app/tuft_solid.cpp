@@ -6,7 +6,7 @@
 
 #include "app/panels/panels.h"
 #include "app/studio.h"
-#include "brush/skin.h"
+#include "brush/tuft_surface.h"
 #include "core/ease.h"
 #include "ink/colour/composite.h"
 
@@ -60,7 +60,7 @@ Vec3f hair_colour(double from_tip, unsigned ink) {
 render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink) {
     render::GlSolid solid;
     if (tuft.branches.empty()) return solid;
-    const brush::Skin skin = brush::make_skin(tuft);
+    const brush::TuftSurface skin = brush::make_tuft_surface(tuft);
     const std::vector<brush::Section>& spine = tuft.branches.front().sections;
     const double length = std::max(1e-6, glm::distance(spine.front().centre, spine.back().centre));
     for (std::size_t i = 0; i < skin.positions.size(); ++i) {

@@ -44,7 +44,7 @@ std::uint32_t udim_of(const Atlas& atlas, std::uint32_t page);
 enum class UvPolicy { automatic, keep, renew };
 
 /// Edges that no chart may cross, besides the borders of the mesh.
-struct AskedSeams {
+struct RequestedSeams {
     bool groups = false;     ///< between the face groups of the file
     double sharp_angle = 0;  ///< radians: edges bent by more; 0: none
 
@@ -65,7 +65,7 @@ struct UnwrapOptions {
     /// automatic: the file's UVs if they are valid and lie on one page; keep: or on several
     /// (UDIM), of `size` texels each
     UvPolicy uvs = UvPolicy::automatic;
-    AskedSeams seams;              ///< these, and pages, make new UVs unless `keep` is asked
+    RequestedSeams seams;              ///< these, and pages, make new UVs unless `keep` is asked
     std::uint32_t max_size = 16384;  ///< of all pages together
     Cutting cutting = Cutting::where_useful;
     ProgressFn progress;
@@ -106,7 +106,7 @@ struct UvCheck {
     std::string fault;  ///< why `UvPolicy::keep` would refuse them; empty when it would not
 };
 
-/// Looks at UVs without changing them, to be measured; `mesh` must have some. UVs on no page
+/// Appearance at UVs without changing them, to be measured; `mesh` must have some. UVs on no page
 /// stay where they are, on one page.
 UvCheck check_file_uvs(const mesh::TriangleMesh& mesh, std::uint32_t size);
 

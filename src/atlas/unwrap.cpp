@@ -10,7 +10,7 @@
 #include "atlas/charts/cut_to_pack.h"
 #include "atlas/charts/merge.h"
 #include "atlas/charts/move_seams.h"
-#include "atlas/charts/polish.h"
+#include "atlas/charts/refine_parameterisation.h"
 #include "atlas/charts/snap.h"
 #include "atlas/flatten/file_uvs.h"
 #include "atlas/pack/coverage.h"
@@ -178,7 +178,7 @@ void lay_out(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, const
              Layout& layout, Stopwatch& watch, AtlasReport& out) {
     CutMesh& cut = layout.cut;
     Atlas& atlas = layout.atlas;
-    polish_charts(cut, chart_options, options.progress);
+    refine_parameterisation(cut, chart_options, options.progress);
     watch.lap(out, "polish");
     atlas.gutter = options.gutter;
     atlas.corner_uvs.resize(3 * mesh.n_triangles());
@@ -235,7 +235,7 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     merge_charts(mesh, cut, chart_options, merge_options, options.progress);
     release_free_memory();
     watch.lap(out.report, "merge");
-    const bool dear = mesh.n_triangles() >= kDearMesh;
+    const bool dear = mesh.n_triangles() >= kBlockwiseThreshold;
     for (int round = 0; round < (dear ? 1 : kImprovements); ++round) {
         const bool moved = move_seams(mesh, cut, chart_options, options.progress);
         release_free_memory();

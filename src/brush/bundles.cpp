@@ -83,7 +83,7 @@ Bundles make_bundles(const Preset& p, std::uint64_t seed) {
         out.holds.push_back(0.75 + 0.5 * u);
         out.resists.push_back(0.8 + 0.5 * uniform(hash_bits(seed, 3), k));
     }
-    out.apart.assign(n, 0);
+    out.separation.assign(n, 0);
     const auto hairs = static_cast<std::size_t>(std::max(p.bristles, 1));
     for (std::size_t i = 0; i < hairs; ++i) {
         const Vec2 at = spiral(hash_bits(seed, 4), i, hairs, 0.9);
@@ -102,12 +102,12 @@ Bundles make_bundles(const Preset& p, std::uint64_t seed) {
     return out;
 }
 
-void part_bundles(Bundles& bundles, const Preset& p, double stress, std::span<const double> saturation,
+void split_bundles(Bundles& bundles, const Preset& p, double stress, std::span<const double> saturation,
                   double travel, double dt) {
     const double k = std::clamp(stress, 0.0, 1.0);
-    for (std::size_t i = 0; i < bundles.apart.size(); ++i) {
+    for (std::size_t i = 0; i < bundles.separation.size(); ++i) {
         const double s = i < saturation.size() ? std::clamp(saturation[i], 0.0, 1.0) : 1.0;
-        double& apart = bundles.apart[i];
+        double& apart = bundles.separation[i];
         const double lack = p.split_factor * (1 - s);
         if (k * lack > p.split_at * bundles.resists[i])
             apart = 1 - (1 - apart) * std::exp(-std::max(travel, 0.0) / kPartingLength);
@@ -116,11 +116,11 @@ void part_bundles(Bundles& bundles, const Preset& p, double stress, std::span<co
     }
 }
 
-void gather(Bundles& bundles) { std::fill(bundles.apart.begin(), bundles.apart.end(), 0.0); }
+void gather(Bundles& bundles) { std::fill(bundles.separation.begin(), bundles.separation.end(), 0.0); }
 
 Vec2 place_of(const Bundles& bundles, const Bristle& bristle) {
     const Vec2 at(bristle.place);
-    return at + kDrawn * bundles.apart[bristle.bundle] * (bundles.place[bristle.bundle] - at);
+    return at + kDrawn * bundles.separation[bristle.bundle] * (bundles.place[bristle.bundle] - at);
 }
 
 BranchPlace in_branch(const Vec2& place, int count) {

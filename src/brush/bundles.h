@@ -24,7 +24,7 @@ struct Bundles {
     std::vector<Vec2> place;     ///< [n] in the section, unit disc
     std::vector<double> holds;   ///< [n] seeded, about 1: film it brings to the surface, over the mean
     std::vector<double> resists; ///< [n] seeded, about 1: factor on the splitting threshold
-    std::vector<double> apart;   ///< [n] state: 0 with the others … 1 drawn together by itself
+    std::vector<double> separation;   ///< [n] state: 0 with the others … 1 drawn together by itself
     std::vector<Bristle> bristles;
 };
 
@@ -41,7 +41,7 @@ Bundles make_bundles(const Preset& preset, std::uint64_t seed);
 /// Between the two it stays as it is: hair that is parted comes together when wetted, or
 /// combed (`gather`). `stress` is k in [0, 1], `travel` metres, `dt` seconds; steps of any size
 /// give the same.
-void part_bundles(Bundles& bundles, const Preset& preset, double stress,
+void split_bundles(Bundles& bundles, const Preset& preset, double stress,
                   std::span<const double> saturation, double travel, double dt);
 
 /// Combs all bundles together.

@@ -94,7 +94,7 @@ LateralShift drag_lateral(const LateralRow& row, const LateralFriction& friction
 /// Half-width r (1 + v): v = u/r with the outward part bent over to stay below `most` - 1, the
 /// inward part to stay above -0.6: hair packs, and cannot pass through itself.
 double half_width(double r, double u, double most);
-/// The displacement u of a half-width: the inverse, as far as to 0.999 of the room that there is.
+/// The displacement u of a half-width: the inverse, as far as to 0.999 of the module that there is.
 double side_of_width(double r, double width, double most);
 
 }  // namespace tuft::brush

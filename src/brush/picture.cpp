@@ -170,7 +170,7 @@ void draw_tips(const Sheet& sheet, double top) {
         } else if (k == 3) {
             look.dry = true;
             hand.now.tuft.wetness = 0;
-            for (double& apart : hand.now.tuft.bundles.apart) apart = 1;
+            for (double& apart : hand.now.tuft.bundles.separation) apart = 1;
             name = "dry tip, in bundles";
         }
         hand.press((k == 0 ? 0.25 : k == 1 ? 0.25 : k == 2 ? 0.42 : 0.34) * length);

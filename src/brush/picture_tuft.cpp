@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-#include "brush/skin.h"
+#include "brush/tuft_surface.h"
 #include "core/ease.h"
 #include "core/random.h"
 

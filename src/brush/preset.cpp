@@ -49,7 +49,7 @@ constexpr std::array kFields = {
     Field{"contact", "transverse_stiffness_n_m2", &Preset::transverse_stiffness, 1, 10, 1e7},
     Field{"contact", "core_stiffness", &Preset::core_stiffness, 1, 0, 1000},
     Field{"contact", "core_start", &Preset::core_start, 1, 0, 1},
-    Field{"contact", "end_give_mm", &Preset::end_give, kMillimetre, 0, 20},
+    Field{"contact", "end_give_mm", &Preset::end_compliance, kMillimetre, 0, 20},
     Field{"contact", "adhesion_n_m", &Preset::adhesion, 1, 0, 10},
     Field{"contact", "adhesion_range_mm", &Preset::adhesion_range, kMillimetre, 0.01, 20},
     Field{"contact", "friction_wet", &Preset::friction_wet, 1, 0, 2},
@@ -225,7 +225,7 @@ std::vector<std::string> list_presets() {
 
 Preset scaled(const Preset& preset, double factor) {
     Preset p = preset;
-    for (double Preset::*length : {&Preset::length, &Preset::radius, &Preset::tip_radius, &Preset::end_give,
+    for (double Preset::*length : {&Preset::length, &Preset::radius, &Preset::tip_radius, &Preset::end_compliance,
                                    &Preset::adhesion_range, &Preset::adhesion})
         p.*length *= factor;
     p.stiffness *= std::pow(factor, 4);

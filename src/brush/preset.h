@@ -49,7 +49,7 @@ struct Preset {
     double transverse_stiffness = 1.2e4;  ///< k_c, N/m²: force per length per indentation of the tuft's side
     double core_stiffness = 150;  ///< times k_c once the hair is packed
     double core_start = 0.65;     ///< indentation over radius at which it is packed
-    double end_give = 5e-4;       ///< m, scatter of the hairs' ends: by so much the point gives before
+    double end_compliance = 5e-4;       ///< m, scatter of the hairs' ends: by so much the point gives before
                                   ///< the tuft, pressed end-on, buckles
     double adhesion = 0.5;        ///< N/m, pull of the wet film per length of hair; none when dry
     double adhesion_range = 1e-3; ///< m, gap at which the film breaks

@@ -94,9 +94,9 @@ struct Law {
                                 ///< rest comes with lying down, as sin² of its angle to the normal
     double recovery = 0;        ///< Δt/T of the set: stops that push the hair back towards straight
                                 ///< creep; see `recover_joint`
-    double end_give = 0;        ///< length by which the hair's ends give at the buckling load
+    double end_compliance = 0;        ///< length by which the hair's ends give at the buckling load
                                 ///< when they meet a surface end-on, less the more they lie;
-                                ///< 0: none. Fades to nothing 4 end_give behind the tip
+                                ///< 0: none. Fades to nothing 4 end_compliance behind the tip
     double damping = 0;         ///< viscous stiffness over elastic stiffness of the joints:
                                 ///< η/(k Δt) of backward Euler
     double edge = 0;            ///< over a crease, where a node has two planes or the planes of
@@ -171,7 +171,7 @@ struct Result {
 Memory make_memory(const Rod& rod, const Clamp& clamp);
 
 /// The rod as it would be if carried rigidly with the clamp to a new place.
-void carry(Memory& memory, const Clamp& clamp);
+void carry_with_clamp(Memory& memory, const Clamp& clamp);
 
 /// The rod turned about its clamp's axis by `angle`, with its sets and the places where it sticks;
 /// the clamp stays.

@@ -158,7 +158,7 @@ Standing stand_back(const Law& law, const Crease& crease, const Obstacle& o, con
     Standing low = at(0);
     if (piece.give <= 0 || low.push.force <= 0) return low;
     constexpr int kSteps = 12;
-    const double step = 3 * law.end_give / kSteps;
+    const double step = 3 * law.end_compliance / kSteps;
     Standing high = at(kSteps * step);
     if (high.miss <= 0) return high;
     for (int k = kSteps; k-- > 0;) {
@@ -224,7 +224,7 @@ constexpr int kPieces = 4;
 
 /// Calls f(piece, where it stands) for the pieces of contact point p.
 template <class F>
-void for_pieces(const Frozen& frozen, int p, const std::vector<Vec3>& node, const F& f) {
+void for_clusters(const Frozen& frozen, int p, const std::vector<Vec3>& node, const F& f) {
     const int per = frozen.law->points_per_segment, n = frozen.rod->segments();
     for (int k = 0; k < kPieces; ++k) {
         const double offset = (k + 0.5) / kPieces - 0.5;
@@ -260,7 +260,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     };
     if (over_edge(frozen, p)) {
         double energy = 0;
-        for_pieces(frozen, p, out.node, [&](const Piece& piece, const Standing& standing) {
+        for_clusters(frozen, p, out.node, [&](const Piece& piece, const Standing& standing) {
             energy += add_piece(p, piece, standing, out);
         });
         out.contact += energy;
@@ -311,7 +311,7 @@ Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node) {
     // The mean over its pieces, by their forces.
     double total = 0;
     Vec3 normal{0}, origin{0};
-    for_pieces(frozen, p, node, [&](const Piece&, const Standing& st) {
+    for_clusters(frozen, p, node, [&](const Piece&, const Standing& st) {
         total += st.push.force;
         normal += st.push.force * st.at_surface.slope;
         origin += st.push.force * (st.x - st.at_surface.z * st.at_surface.slope);

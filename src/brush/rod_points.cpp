@@ -172,11 +172,11 @@ struct Layer {
     /// so that a straight end takes the buckling load P at s_e.
     void lay_give() {
         frozen.give.assign(fine.size(), 0);
-        if (law.end_give <= 0 || law.hard || rod.buckling <= 0) return;
-        const double soft = law.end_give * law.end_give / (2 * rod.buckling);
+        if (law.end_compliance <= 0 || law.hard || rod.buckling <= 0) return;
+        const double soft = law.end_compliance * law.end_compliance / (2 * rod.buckling);
         double from_tip = 0;
         for (std::size_t p = fine.size(); p-- > 1;) {
-            const double window = 1 - from_tip / (4 * law.end_give);
+            const double window = 1 - from_tip / (4 * law.end_compliance);
             if (window <= 0) break;
             frozen.give[p] = soft * window * window / frozen.weight[p];
             from_tip += rod.length[frozen.place[p - 1].node] / law.points_per_segment;

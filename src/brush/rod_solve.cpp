@@ -384,7 +384,7 @@ Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
     thread_local Buffers buffers;
     buffers.before = memory.node;
     const double moved = clamp_distance(memory.clamp, clamp);
-    carry(memory, clamp);
+    carry_with_clamp(memory, clamp);
     Solver solver{rod, memory, obstacles, walls, law, buffers, moved};
     solver.begin(load, buffers.before);
     return solver.run();

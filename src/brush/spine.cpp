@@ -5,7 +5,7 @@
 
 #include "brush/flanks.h"
 #include "brush/rod_points.h"
-#include "brush/splay.h"
+#include "brush/upright_hair.h"
 #include "brush/tuft_sections.h"
 #include "brush/wedge.h"
 
@@ -35,7 +35,7 @@ rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     law.onset = kOnset / p.length;
     law.end_friction = kEndFriction;
     law.edge = kEdgeRounding / p.length;
-    law.end_give = p.end_give / p.length;
+    law.end_compliance = p.end_compliance / p.length;
     set_time(p, dt, law);
     law.adhesion = wetness * p.adhesion / (unit * p.length) / share;
     law.adhesion_range = p.adhesion_range / p.length;
@@ -205,7 +205,7 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
     Pose last = from;
     for (int k = 1; k < parts; ++k) {
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
-        turn_with_splay(p, spine, last, pose, planes);
+        turn_with_spread(p, spine, last, pose, planes);
         break_symmetry(p, spine, last, pose, planes);
         const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes), law,
                                          {}, flank_walls(p, spine, pose.rotation, walls, wetness));
@@ -215,7 +215,7 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
         for (std::size_t i = 0; i < r.slip.size(); ++i) passed.slip[i] += r.slip[i];
         last = pose;
     }
-    turn_with_splay(p, spine, last, to, planes);
+    turn_with_spread(p, spine, last, to, planes);
     break_symmetry(p, spine, last, to, planes);
     return passed;
 }
@@ -227,7 +227,7 @@ Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const
     rod::Memory& m = spine.memory;
     const Vec3 root_before = m.clamp.position;
     const Vec3 tip_before = rod::nodes(spine.rod, m).back();
-    rod::carry(m, clamp);
+    rod::carry_with_clamp(m, clamp);
     const std::size_t n = m.tangent.size();
     rod::Result r;
     r.converged = true;

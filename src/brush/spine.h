@@ -54,6 +54,6 @@ double split_measure(const Preset& preset, double ink_left, double root_moment);
 void split(Tuft& tuft, const Branch& whole);
 
 /// Solves the sub-spines on the bent trunk and puts them in place of the last third.
-void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt);
+void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt);
 
 }  // namespace tuft::brush

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "brush/skin.h"
+#include "brush/tuft_surface.h"
 #include "brush/tuft.h"
 #include "core/error.h"
 #include "core/files.h"

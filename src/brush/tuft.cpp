@@ -15,18 +15,18 @@ constexpr double kDryPlastic = 0.3;  ///< plastic share of dry hair over that of
 std::size_t expected_planes(const Tuft& tuft) {
     std::size_t count = tuft.spine.rest_radius.size();
     if (tuft.split) {
-        for (const Spine& twig : tuft.twigs) count += twig.rest_radius.size();
+        for (const Spine& sub_spine : tuft.sub_spines) count += sub_spine.rest_radius.size();
     }
     return count;
 }
 
 /// The force on its way through the wet hair, solved exactly for a force that stays over dt.
 void feel(Tuft& tuft, TuftState& state, double dt) {
-    const double w = 1 / kFeltTime, t = std::isfinite(dt) ? std::max(0.0, dt) : 0, fade = std::exp(-w * t);
-    const Vec3 miss = tuft.felt - state.force, slope = tuft.felt_rate + w * miss;
-    tuft.felt = state.force + fade * (miss + t * slope);
-    tuft.felt_rate = fade * (tuft.felt_rate - w * t * slope);
-    state.felt = tuft.felt;
+    const double w = 1 / kDeviceForceTime, t = std::isfinite(dt) ? std::max(0.0, dt) : 0, fade = std::exp(-w * t);
+    const Vec3 miss = tuft.device_force - state.force, slope = tuft.device_force_rate + w * miss;
+    tuft.device_force = state.force + fade * (miss + t * slope);
+    tuft.device_force_rate = fade * (tuft.device_force_rate - w * t * slope);
+    state.device_force = tuft.device_force;
 }
 
 constexpr double kCoheres = 0.25;  ///< of the capacity: ink from which water draws parted hair together
@@ -70,7 +70,7 @@ std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose) {
     };
     add(tuft.spine);
     if (tuft.split) {
-        for (const Spine& twig : tuft.twigs) add(twig);
+        for (const Spine& sub_spine : tuft.sub_spines) add(sub_spine);
     }
     return out;
 }
@@ -101,7 +101,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const rod::Clamp clamp = clamp_of(p, pose);
     if (!tuft.posed) {
         // The first pose is where the hand starts: the tuft comes with it, from above.
-        rod::carry(tuft.spine.memory, clamp);
+        rod::carry_with_clamp(tuft.spine.memory, clamp);
         tuft.pose = pose;
         tuft.posed = true;
     }
@@ -143,7 +143,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
         // Too dry for water to draw it together, it stays split until it is wetted or combed.
         if (measure < p.merge_at && tuft.ink_left > kCoheres) tuft.spread *= std::exp(-std::max(dt, 0.0) / kMergingTime);
         else tuft.spread = 1 - (1 - tuft.spread) * std::exp(-moved / kPartingLength);
-        solve_twigs(tuft, planes, state, dt);
+        solve_sub_spines(tuft, planes, state, dt);
         if (measure < p.merge_at && tuft.spread < kMerged) tuft.split = false;
     } else if (measure > p.split_at) {
         split(tuft, state.branches.front());
@@ -171,10 +171,10 @@ void reshape(Tuft& tuft) {
     gather(tuft.bundles);
 }
 
-Vec3 hand_force(const Preset& p, const TuftState& state) {
-    const double size = glm::length(state.felt);
+Vec3 device_force(const Preset& p, const TuftState& state) {
+    const double size = glm::length(state.device_force);
     if (size <= 0) return Vec3{0};
-    return state.felt * (std::min(p.force_gain * size, p.force_limit) / size);
+    return state.device_force * (std::min(p.force_gain * size, p.force_limit) / size);
 }
 
 }  // namespace tuft::brush

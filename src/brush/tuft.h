@@ -15,14 +15,14 @@
 /// of what snaps, to the set that recovers, and to what the ferrule feels: the force of the surface
 /// comes to it through the mass of the wet hair, as through an oscillator of critical damping,
 ///
-///   f'' = ω² (F - f) - 2 ω f',   1/ω = kFeltTime,
+///   f'' = ω² (F - f) - 2 ω f',   1/ω = kDeviceForceTime,
 ///
 /// so that a tip that slips off an edge (F falls in less than a millisecond) is felt as no more than
 /// a tenth of F in any one. Energy is accounted for with F. Everything is deterministic.
 namespace tuft::brush {
 
 /// 1/ω of the first bending of a wet tuft, L²/3.52 √(ρ π R²/B0): 2.5 ms for wolf-medium, 3.5 mixed, 5.2 goat.
-inline constexpr double kFeltTime = 4e-3;
+inline constexpr double kDeviceForceTime = 4e-3;
 
 /// One solved spine with what it remembers. Arrays go from root to tip.
 struct Spine {
@@ -51,10 +51,10 @@ struct Tuft {
     bool posed = false;             ///< false until the first step
     Spine spine;
     bool split = false;
-    std::vector<Spine> twigs;       ///< sub-spines of the last third, `split_into` of them while split
+    std::vector<Spine> sub_spines;       ///< sub-spines of the last third, `split_into` of them while split
     double spread = 0;              ///< how far they have parted: 0 still one point … 1 fully
     double branch_width = 0;        ///< m, semi-axis of the section that they leave from
-    Vec3 felt{0}, felt_rate{0};     ///< force that came through to the ferrule, N, and its rate, N/s
+    Vec3 device_force{0}, device_force_rate{0};     ///< force that came through to the ferrule, N, and its rate, N/s
     Bundles bundles;                ///< the hair within
     QueryTable table;               ///< for the table method only
 };
@@ -90,7 +90,7 @@ void reset(Tuft& tuft);
 void reshape(Tuft& tuft);
 
 /// What the hand feels, newtons, world: min(G |f|, limit) along the force f that has come through.
-Vec3 hand_force(const Preset& preset, const TuftState& state);
+Vec3 device_force(const Preset& preset, const TuftState& state);
 
 /// The preset's stiffness and yield along the hair.
 Profile profile_of(const Preset& preset);

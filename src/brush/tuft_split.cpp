@@ -36,7 +36,7 @@ double yaw_of(const Tuft& tuft, int k, int index) {
     return closed + tuft.spread * (parted - closed);
 }
 
-rod::Clamp twig_clamp(const Tuft& tuft, int k, int index) {
+rod::Clamp sub_spine_clamp(const Tuft& tuft, int k, int index) {
     const rod::Memory& m = tuft.spine.memory;
     const int inner = std::max(0, k - 1);
     const Vec3 t = m.tangent[inner];
@@ -72,43 +72,43 @@ void split(Tuft& tuft, const Branch& whole) {
     const int k = branch_node(tuft.spine.rod), count = tuft.preset.split_into;
     double xi = 0;
     for (int j = 0; j < k; ++j) xi += tuft.spine.rod.length[j];
-    tuft.twigs.resize(static_cast<std::size_t>(count));
+    tuft.sub_spines.resize(static_cast<std::size_t>(count));
     for (int index = 0; index < count; ++index) {
-        const rod::Clamp clamp = twig_clamp(tuft, k, index);
+        const rod::Clamp clamp = sub_spine_clamp(tuft, k, index);
         const rod::Rod part = rod::outer_part(tuft.spine.rod, k, count);
-        Spine twig = make_spine(tuft.preset, part, clamp, xi, count);
+        Spine sub_spine = make_spine(tuft.preset, part, clamp, xi, count);
         const double yaw = yaw_of(tuft, k, index);
         Vec3 up = glm::cross(tuft.pose.rotation * tuft.spine.wide, tuft.pose.axis());
         up = parallel_transport(up, tuft.pose.axis(), clamp.tangent);
         const Quat turn = glm::angleAxis(-yaw, glm::normalize(up));
         for (int j = 0; j < part.segments(); ++j) {
-            twig.memory.tangent[j] = glm::normalize(turn * tuft.spine.memory.tangent[k + j]);
-            twig.memory.joint[j] = tuft.spine.memory.joint[k + j];
+            sub_spine.memory.tangent[j] = glm::normalize(turn * tuft.spine.memory.tangent[k + j]);
+            sub_spine.memory.joint[j] = tuft.spine.memory.joint[k + j];
         }
-        twig.memory.node = rod::nodes(part, twig.memory);
-        tuft.twigs[index] = std::move(twig);
+        sub_spine.memory.node = rod::nodes(part, sub_spine.memory);
+        tuft.sub_spines[index] = std::move(sub_spine);
     }
     tuft.split = true;
 }
 
-void solve_twigs(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt) {
+void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt) {
     const Preset& p = tuft.preset;
-    const int k = branch_node(tuft.spine.rod), count_all = static_cast<int>(tuft.twigs.size());
+    const int k = branch_node(tuft.spine.rod), count_all = static_cast<int>(tuft.sub_spines.size());
     const std::vector<Section> whole = std::move(state.branches.front().sections);
     note_width(tuft, whole);
     state.branches.clear();
     std::size_t next = whole.size();
     for (int index = 0; index < count_all; ++index) {
-        Spine& twig = tuft.twigs[index];
-        const std::size_t count = twig.rest_radius.size();
+        Spine& sub_spine = tuft.sub_spines[index];
+        const std::size_t count = sub_spine.rest_radius.size();
         std::span<const ContactPlane> own = planes;
         if (planes.size() > 1) own = planes.subspan(next, count);
         next += count;
-        const rod::Clamp clamp = twig_clamp(tuft, k, index);
+        const rod::Clamp clamp = sub_spine_clamp(tuft, k, index);
         const Section& trunk = whole[whole.size() - 1 - static_cast<std::size_t>(k)];
         const double part = 1 / std::sqrt(static_cast<double>(count_all));
-        twig.root_width = part * trunk.a;
-        Solved solved = solve_spine(p, twig, clamp, tuft.pose.rotation, own, tuft.wetness, count_all, dt);
+        sub_spine.root_width = part * trunk.a;
+        Solved solved = solve_spine(p, sub_spine, clamp, tuft.pose.rotation, own, tuft.wetness, count_all, dt);
         state.iterations += solved.result.iterations;
         state.converged = state.converged && solved.result.converged;
         Branch branch = std::move(solved.branch);

@@ -53,7 +53,7 @@ struct TuftEnergy {
 struct TuftState {
     std::vector<Branch> branches;
     Vec3 force{0};           ///< of the surface on the tuft, newtons, world
-    Vec3 felt{0};            ///< what of that force has come through to the ferrule, newtons, world
+    Vec3 device_force{0};            ///< what of that force has come through to the ferrule, newtons, world
     Vec3 moment{0};          ///< of `force` about the root, N·m, world
     double root_moment = 0;  ///< bending moment at the ferrule, N·m
     double normal_force = 0; ///< newtons

@@ -262,7 +262,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
                   "width, from the right flank, negative from the left")
         ->check([](const std::string& text) -> std::string {
             try {
-                stroke::care_of_text(text);
+                stroke::action_of_text(text);
                 return {};
             } catch (const Error& e) {
                 return e.what();
@@ -316,7 +316,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
          "it stands upright for them, and --laying project goes straight away from them (default: "
          "before the surface)")
         ->type_name("DIRECTION");
-    p->add_option("--laying", paint.laying,
+    p->add_option("--laying", paint.mapping,
                   "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap (round its very "
                   "triangles, into each groove), project (straight, as seen from before the place); default: as their file says, "
                   "drape where it names no place")
@@ -455,7 +455,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_common(b, brush.common);
     fit->fallthrough();  // options of 'brush' also stand behind 'calibrate'
 
-    Habit habit;
+    BiasCorrection habit;
     auto* h = app.add_subcommand("habit", "learn how a writer's strokes differ from those that were meant");
     h->add_option("INTENDED", habit.intended, "strokes as they should be (.inkml)")->required();
     h->add_option("WRITTEN", habit.written, "the same strokes as the writer makes them (.inkml)")->required();

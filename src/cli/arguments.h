@@ -62,7 +62,7 @@ struct Paint {
     std::string film = "still";     ///< still | wet
     std::vector<double> down{0, 0, -1};  ///< towards the ground, for wet ink
     double dry = -1;                ///< seconds that the ink dries after each stroke file; 0: until dry; < 0: not at all
-    std::vector<std::string> prepare;  ///< what is done with a full brush first; see stroke::care_text
+    std::vector<std::string> prepare;  ///< what is done with a full brush first; see stroke::action_text
     std::string pressure = "none";  ///< none | speed | dwell | speed+dwell, for strokes without any
     double smooth = 0;              ///< strength of the hand's filter; 0: off
     double stabilise_mm = 0;        ///< length of the string; 0: off
@@ -71,7 +71,7 @@ struct Paint {
     std::string on;                 ///< side of the model (stroke::side_name) for flat strokes, or empty
     std::vector<double> read_from;  ///< direction of who reads the drawing, three numbers, or empty
     double place_width_mm = 0;      ///< of the whole drawing placed; 0: as written
-    std::string laying;             ///< drape, wrap, project; empty: see place_strokes
+    std::string mapping;            ///< drape, wrap, project; empty: see place_strokes
     double place_turn_deg = 0;      ///< anticlockwise, as seen by who stands before the surface
     bool place_mirror = false;      ///< flips the drawing from left to right
     bool fit_brush = false;         ///< `brush` in the sizes that the lines of a drawing need
@@ -170,7 +170,7 @@ struct Brush {
 };
 
 /// `tuft habit INTENDED.inkml WRITTEN.inkml -o HABIT.toml`
-struct Habit {
+struct BiasCorrection {
     std::filesystem::path intended, written, output;
     Common common;
 };
@@ -194,7 +194,7 @@ struct Bench {
     Common common;
 };
 
-using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, Habit, Bench, LayerWork, FillWork, MaskWork, InkWork>;
+using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench, LayerWork, FillWork, MaskWork, InkWork>;
 
 /// Reads the command line. Prints help or version and returns false with `status` set
 /// when there is nothing to run; a wrong command line gives one line on standard error

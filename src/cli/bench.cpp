@@ -172,7 +172,7 @@ double footprint_texels(int texels) { return pi / 4 * texels * texels; }
 
 // The whole path: a brush as thick as makes lines of about `texels` across, dragged along
 // the way; hand samples at 1 kHz and a stamp per texel.
-stroke::Stroke drag(const stroke::Model& model, stroke::Painting& painting, int texels) {
+stroke::Stroke drag(const stroke::Model& model, stroke::Document& painting, int texels) {
     brush::Preset preset = brush::load_preset("mixed-medium");
     const double scale = texels * model.atlas.texel_size / (2 * preset.radius);
     preset.name = "bench";
@@ -206,7 +206,7 @@ stroke::Stroke drag(const stroke::Model& model, stroke::Painting& painting, int 
 // With `wiped` of its ink gone the tuft no longer closes: every one of its bristles is drawn and
 // inked by itself.
 double stamps_per_second(const stroke::Model& model, int texels, double wiped = 0) {
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     stroke::Stroke s = drag(model, painting, texels);
     stroke::Stroke wipe{.action = stroke::Action::wipe, .extent = {.amount = wiped}};
     wipe.trace.flat = false;
@@ -228,7 +228,7 @@ double stamps_per_second(const stroke::Model& model, int texels, double wiped = 
 double first_ink_milliseconds(const stroke::Model& model, int texels) {
     std::vector<double> runs;
     for (int repeat = 0; repeat < 5; ++repeat) {
-        stroke::Painting painting(model);
+        stroke::Document painting(model);
         stroke::Stroke s = drag(model, painting, texels);
         const std::vector<brush::Pose> poses = stroke::spatial_poses(s.trace);
         s.trace.samples.clear();
@@ -259,7 +259,7 @@ double microseconds_per_square(int films, const char* substrate_name) {
             ink::TileFilm film;
             for (std::size_t p = 0; p < 4; ++p) film.pigments[p] = &planes[4 * tile + p];
             const std::vector<ink::TileFilm> stack(static_cast<std::size_t>(films), film);
-            sink += ink::look_of_films(stack, nullptr, pigments, substrate).colour[0][tile];
+            sink += ink::shade_films(stack, nullptr, pigments, substrate).colour[0][tile];
         }
         runs.push_back((cpu_seconds() - start) * 1e6);
     }
@@ -316,7 +316,7 @@ struct Case {
 ProgressFn timed(const ProgressFn& progress, double& map_seconds, double& graph_seconds) {
     return [&map_seconds, &graph_seconds, progress](std::string_view phase, double fraction) {
         double* const seconds = phase == "texel map"     ? &map_seconds
-                                : phase == "piece graph" ? &graph_seconds
+                                : phase == "cluster graph" ? &graph_seconds
                                                          : nullptr;
         if (seconds && fraction == 0) *seconds = -wall_seconds();
         if (seconds && fraction == 1) *seconds += wall_seconds();
@@ -393,12 +393,12 @@ int run(const Bench& a) {
         if (film.steps_per_second > 0) m["film_steps_per_second"] = film.steps_per_second;
         m["atlas_seconds"] = c.atlas_seconds;
         m["texel_map_seconds"] = c.map_seconds;
-        m["piece_graph_seconds"] = c.graph_seconds;
+        m["cluster_graph_seconds"] = c.graph_seconds;
         m["first_ink_ms"] = first_ink_milliseconds(c.model, 64);
         j["models"][c.name] = m;
         if (!j.contains("microseconds_per_stamp")) {
             for (const char* key : {"microseconds_per_stamp", "stamps_per_second", "bristle_stamps_per_second", "ns_per_texel", "atlas_seconds",
-                                    "texel_map_seconds", "piece_graph_seconds", "first_ink_ms"})
+                                    "texel_map_seconds", "cluster_graph_seconds", "first_ink_ms"})
                 j[key] = m[key];
             j["model"] = on;
         }
@@ -417,9 +417,9 @@ int run(const Bench& a) {
     fmt::print("colour of 64 x 64 texels, 4 pigments, {} bands: {:.0f} us with one film, {:.0f} us with three\n",
                ink::kBands, square, j["composite_microseconds"]["three_films"].get<double>());
     for (const auto& [name, m] : j["models"].items()) {
-        fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s, texel map {:.2f} s, piece graph {:.2f} s)\n",
+        fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s, texel map {:.2f} s, cluster graph {:.2f} s)\n",
                    name, m["triangles"].get<std::size_t>(), size, size, m["atlas_seconds"].get<double>(),
-                   m["texel_map_seconds"].get<double>(), m["piece_graph_seconds"].get<double>());
+                   m["texel_map_seconds"].get<double>(), m["cluster_graph_seconds"].get<double>());
         fmt::print("  first ink {:.1f} ms after the first touch; {:.1f} ns a texel with one ink, {:.1f} with three pigments\n",
                    m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
                    m["ns_per_texel"]["pigments"].get<double>());

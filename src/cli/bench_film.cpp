@@ -33,7 +33,7 @@ ink::Canvas wet_canvas(const stroke::Model& model, std::size_t tiles) {
     for (const char* name : kInks) canvas.add_pigment(ink::load_ink(name).parts[0].pigment);
     for (std::uint32_t slot = 0; slot < std::min(tiles, model.texels.n_slots()); ++slot)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
-            if (model.texels.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+            if (model.texels.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
             const Vec3f p = model.texels.position(slot, t) * 2000.0f;
             canvas.touch_liquid(slot, ink::Liquid::film)[t] = 2 + 0.5f * std::sin(p.x) * std::sin(p.y + p.z);
             for (std::size_t k = 0; k < kInks.size(); ++k)
@@ -80,12 +80,12 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
     ink::Mix mix{};
     for (std::size_t k = 0; k < kInks.size(); ++k) mix[k] = 0.25f;
     ink::dip(tuft, mix);
-    ink::Skin skin;
+    ink::SurfaceLiquid liquid;
     ink::NodeAreas areas;
     areas.fill(1e-5);
-    const ink::NodeTouch nodes = ink::node_touch(tuft, {}, {}, {});
-    refresh(skin, tuft, {}, nodes, areas, 0.1);
-    const ink::TransferParams p = transfer_params(skin, tuft, {}, areas, {}, 1e-4, 2e-3, 0.5);
+    const ink::NodeContact nodes = ink::node_contact(tuft, {}, {}, {});
+    refresh(liquid, tuft, {}, nodes, areas, 0.1);
+    const ink::TransferParams p = transfer_params(liquid, tuft, {}, areas, {}, 1e-4, 2e-3, 0.5);
     std::array<float, atlas::kTileTexels> coverage;
     coverage.fill(0.8f);
     // As under a patch of 64 × 64 texels, and mostly between two nodes.
@@ -94,13 +94,13 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
         places.along[t] = 1.2f + static_cast<float>(t / atlas::kTile) * (ink::kAlong - 1) / 64.0f;
         places.across[t] = 3.1f + static_cast<float>(t % atlas::kTile) * (ink::kAcross - 1) / 64.0f;
     }
-    ink::Tents tents;
+    ink::HatBasis tents;
     ink::NodeContents given{};
     std::vector<double> runs;
     for (int i = 0; i < 9; ++i) {
         const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
         for (std::uint32_t slot = 0; slot < tiles; ++slot) {
-            ink::tents_of(tents, places, coverage);
+            ink::hat_basis(tents, places, coverage);
             ink::transfer(canvas, slot, coverage, places, tents, model.texels.tiles[slot].area, 1e-4, p, given);
         }
         runs.push_back(seconds(CLOCK_THREAD_CPUTIME_ID) - start);

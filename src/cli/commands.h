@@ -13,7 +13,7 @@ int run(const Replay& arguments);
 int run(const Export& arguments);
 int run(const Render& arguments);
 int run(const Brush& arguments);
-int run(const Habit& arguments);
+int run(const BiasCorrection& arguments);
 int run(const Bench& arguments);
 int run(const LayerWork& arguments);
 int run(const FillWork& arguments);

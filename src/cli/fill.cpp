@@ -12,7 +12,7 @@ namespace {
 
 Vec3 metres(const std::vector<double>& mm) { return kMillimetre * Vec3(mm[0], mm[1], mm[2]); }
 
-stroke::Stroke entry_of(const FillWork& a, stroke::Painting& painting) {
+stroke::Stroke entry_of(const FillWork& a, stroke::Document& painting) {
     stroke::Stroke entry;
     entry.action = stroke::Action::fill;
     entry.trace.flat = false;
@@ -44,7 +44,7 @@ int run(const FillWork& a) {
     const auto project = open_project(a.project, io::Access::write, console);
     for (const std::vector<double>* point : {&a.part_mm, &a.chart_mm})
         if (!point->empty()) check_on_surface(project->model, metres(*point), point == &a.part_mm ? "--part" : "--chart");
-    stroke::Painting painting(project->model);
+    stroke::Document painting(project->model);
     restore(*project, painting, console);
     std::vector<stroke::Stroke> entries =
         stroke::onto_named_layers({entry_of(a, painting)}, painting.layers(), a.layer);

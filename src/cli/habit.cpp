@@ -8,24 +8,24 @@
 #include "core/counted.h"
 #include "core/files.h"
 #include "io/inkml.h"
-#include "stroke/hand/habit.h"
+#include "stroke/hand/bias_correction.h"
 
 namespace tuft::cli {
 
-int run(const Habit& a) {
+int run(const BiasCorrection& a) {
     check_extension(a.output, {".toml"});
     check_output(a.output);
     const std::vector<stroke::Trace> intended = io::read_inkml(a.intended), written = io::read_inkml(a.written);
-    stroke::Habit habit;
+    stroke::BiasCorrection habit;
     try {
-        habit = stroke::learn_habit(intended, written);
+        habit = stroke::learn_bias(intended, written);
     } catch (const Error& error) {
         throw Error(a.written.string(), error.what());
     }
-    const std::string toml = stroke::habit_toml(habit);
+    const std::string toml = stroke::bias_toml(habit);
     write_file(a.output, toml.data(), toml.size());
     double ratio = 0;
-    for (const stroke::HabitPiece& p : habit.pieces)
+    for (const stroke::BiasPiece& p : habit.pieces)
         for (const double r : p.pressure_ratio) ratio += r / (4.0 * static_cast<double>(habit.pieces.size()));
     const glm::dmat2& m = habit.linear;
     if (a.common.json)

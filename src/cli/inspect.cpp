@@ -28,7 +28,7 @@ int inspect_point(const Inspect& a) {
     check_output(a.save_ink);
     Console console(a.common.quiet);
     const auto project = open_project(a.file, io::Access::read, console);
-    stroke::Painting painting(project->model);
+    stroke::Document painting(project->model);
     restore(*project, painting, console);
     console.clear();
     const Vec3 at = kMillimetre * vector_of(a.at_mm);

@@ -43,7 +43,7 @@ std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
             csv += fmt::format("{},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", report.stroke_id,
                                p.time, p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x,
                                p.rotation.y, p.rotation.z);
-            for (const Vec3& v : {f.force, f.hand_force, f.torque})
+            for (const Vec3& v : {f.force, f.device_force, f.torque})
                 csv += fmt::format(",{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
             csv += fmt::format(",{:.6g}\n", f.moment);
         }
@@ -133,7 +133,7 @@ int run(const Paint& a) {
     const std::optional<PlacedDrawing> placed = place_strokes(strokes, model, a, console);
     if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
 
-    stroke::Painting painting(model, {.substrate = a.surface.substrate,
+    stroke::Document painting(model, {.substrate = a.surface.substrate,
                                       .record_forces = !a.forces.empty()});
     if (before) {
         restore(*before, painting, console);

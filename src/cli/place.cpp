@@ -91,8 +91,8 @@ std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, c
                                          stroke::WidthTables& widths, Console& console) {
     for (stroke::Stroke& s : strokes) {
         if (s.layer == stroke::kPaletteLayer) continue;  // in its own frame
-        if (!s.trace.placed) s.trace.placement.laying = stroke::Laying::drape;
-        if (const auto laying = stroke::laying_named(a.laying)) s.trace.placement.laying = *laying;
+        if (!s.trace.placed) s.trace.placement.mapping = stroke::SurfaceMapping::drape;
+        if (const auto mapping = stroke::surface_mapping_named(a.mapping)) s.trace.placement.mapping = *mapping;
     }
     const std::vector<stroke::Trace*> drawing = stroke::drawing_in(strokes, !a.place_mm.empty() || !a.on.empty());
     if (drawing.empty()) {
@@ -113,7 +113,7 @@ std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, c
     if (const double large = scale * std::max(area.size().x, area.size().y), whole = model.mesh->bounds.diagonal(); large > kTooLarge * whole)
         console.note(fmt::format("the drawing is {:.4g} mm large, the model {:.4g} mm: most of it meets no surface (see --place-width, --unit)",
                                  large / kMillimetre, whole / kMillimetre));
-    const bool project = drawing.front()->placement.laying == stroke::Laying::project;
+    const bool project = drawing.front()->placement.mapping == stroke::SurfaceMapping::project;
     stroke::place_drawing(drawing, {placement_at(spot, a, project), Vec2(area.centre()), scale, a.place_mirror});
     stroke::choose_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), fit, widths);
     return placed;

@@ -51,11 +51,11 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
 struct Fit {
     std::optional<stroke::ModelMotion> motion;
     std::vector<stroke::StrokeFit> fits;
-    std::vector<stroke::Misfit> misfits;
+    std::vector<stroke::StrokeMismatch> mismatches;
     stroke::FitTotal total;
 };
 
-Fit find_fit(const Replay& a, const OpenProject& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes,
+Fit find_fit(const Replay& a, const OpenProject& project, stroke::Document& painting, const std::vector<stroke::Stroke>& strokes,
              const std::vector<stroke::StrokeReport>& reports) {
     Fit fit;
     if (!a.model.empty()) {
@@ -64,16 +64,16 @@ Fit find_fit(const Replay& a, const OpenProject& project, stroke::Painting& pain
         fit.motion = stroke::find_motion(former, revised);
         fit.fits = stroke::compare_fit(strokes, length_of, former, revised, fit.motion);
     }
-    fit.misfits = stroke::find_misfits(reports, fit.fits);
-    fit.total = stroke::total_of(fit.fits, fit.misfits);
+    fit.mismatches = stroke::find_mismatches(reports, fit.fits);
+    fit.total = stroke::total_of(fit.fits, fit.mismatches);
     return fit;
 }
 
 void note_fit(const Fit& fit, Console& console) {
-    for (const stroke::Misfit& m : fit.misfits)
+    for (const stroke::StrokeMismatch& m : fit.mismatches)
         console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason));
     if (fit.motion) console.note("warning: the revised model is the former one " + stroke::describe(*fit.motion));
-    if (!fit.misfits.empty() && !fit.fits.empty()) console.note("warning: " + stroke::describe(fit.total));
+    if (!fit.mismatches.empty() && !fit.fits.empty()) console.note("warning: " + stroke::describe(fit.total));
 }
 
 nlohmann::json to_json(const stroke::StrokeFit& f) {
@@ -89,12 +89,12 @@ nlohmann::json to_json(const stroke::StrokeFit& f) {
     return j;
 }
 
-/// All of the fit; "misfits" is separate.
+/// All of the fit; "mismatch" is separate.
 nlohmann::json to_json(const Fit& fit) {
     nlohmann::json strokes = nlohmann::json::array();
     for (const stroke::StrokeFit& f : fit.fits) strokes.push_back(to_json(f));
     nlohmann::json j{{"strokes", std::move(strokes)},
-                     {"misfits", fit.total.misfits},
+                     {"misfits", fit.total.mismatches},
                      {"moved_mm", fit.total.moved / kMillimetre},
                      {"moved_most_mm", fit.total.moved_most / kMillimetre},
                      {"missing", fit.total.missing},
@@ -154,7 +154,7 @@ int run(const Replay& a) {
     std::vector<stroke::Stroke> strokes = project->file.strokes();
     const stroke::Model model = replay_model(a, *project, console);
 
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     painting.use_substrate(project->substrate);
     io::use_presets(project->file, painting);
     for (stroke::Stroke& s : strokes) {
@@ -180,7 +180,7 @@ int run(const Replay& a) {
     console.clear();
     if (a.common.json) {
         nlohmann::json list = nlohmann::json::array();
-        for (const stroke::Misfit& m : fit.misfits) list.push_back({{"stroke", m.stroke}, {"reason", m.reason}});
+        for (const stroke::StrokeMismatch& m : fit.mismatches) list.push_back({{"stroke", m.stroke}, {"reason", m.reason}});
         nlohmann::json j{{"project", a.project.string()},
                          {"strokes", reports.size()},
                          {"missed", missed},
@@ -205,7 +205,7 @@ int run(const Export& a) {
     Console console(a.common.quiet);
     if (a.output.extension() == ".inkml") return write_strokes(a, console);
     const auto project = open_project(a.project, io::Access::read, console);
-    stroke::Painting painting(project->model);
+    stroke::Document painting(project->model);
     restore(*project, painting, console);
     show_layers(painting, a.layers);
     show_looks(project->file, painting, a.look, console);
@@ -228,13 +228,13 @@ int run(const Render& a) {
     check_output(a.output);
     Console console(a.common.quiet);
     std::unique_ptr<OpenProject> project;
-    std::unique_ptr<stroke::Painting> painting;
+    std::unique_ptr<stroke::Document> painting;
     stroke::Model bare;
     const stroke::Model* model = &bare;
     if (is_project_file(a.file)) {
         project = open_project(a.file, io::Access::read, console);
         model = &project->model;
-        painting = std::make_unique<stroke::Painting>(*model);
+        painting = std::make_unique<stroke::Document>(*model);
         restore(*project, *painting, console);
         show_layers(*painting, a.view.layers);
         show_looks(project->file, *painting, a.look, console);

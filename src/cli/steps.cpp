@@ -15,12 +15,12 @@
 #include "ink/colour/recolour.h"
 #include "io/export.h"
 #include "io/image.h"
-#include "io/looks.h"
+#include "io/appearance.h"
 #include "io/read_model.h"
 #include "io/restore.h"
 #include "io/svg.h"
 #include "mesh/inspect.h"
-#include "stroke/hand/habit.h"
+#include "stroke/hand/bias_correction.h"
 #include "stroke/journal/entries.h"
 
 namespace fs = std::filesystem;
@@ -146,16 +146,16 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     settings.film = a.film;
     settings.down = {a.down[0], a.down[1], a.down[2]};
     stroke::EntryOptions options{.settings = settings, .brush = a.brush, .ink = a.ink, .pressure = a.pressure, .erases = a.erases};
-    for (const std::string& text : a.prepare) options.prepare.push_back(stroke::care_of_text(text));
-    std::optional<stroke::Habit> habit;
-    if (!a.habit.empty()) habit = stroke::load_habit(a.habit);
+    for (const std::string& text : a.prepare) options.prepare.push_back(stroke::action_of_text(text));
+    std::optional<stroke::BiasCorrection> habit;
+    if (!a.habit.empty()) habit = stroke::load_bias(a.habit);
 
     std::vector<stroke::Stroke> strokes;
     std::set<std::string> told;  // a file that is painted twice is told of once
     for (const fs::path& file : a.strokes) {
         const std::size_t first = strokes.size();
         std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) { if (told.insert(line).second) console.note(line); }});
-        if (habit) traces = stroke::undo_habit(*habit, std::move(traces));
+        if (habit) traces = stroke::correct_bias(*habit, std::move(traces));
         stroke::append_entries(strokes, std::move(traces), options);
         for (std::size_t i = first; i < strokes.size(); ++i)
             strokes[i].group = {static_cast<std::uint64_t>(1 + (&file - a.strokes.data())), stroke::group_name(file)};
@@ -171,7 +171,7 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     return strokes;
 }
 
-render::Image draw_picture(const stroke::Model& model, const stroke::Painting* painting,
+render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting,
                            const std::string& material, const View& v, int frame, int count,
                            Console& console) {
     render::Appearance look;
@@ -185,7 +185,7 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Painting* p
     if (material.empty()) bare.ground = &model.ground;
     const ink::Stack stack = painting ? painting->stack() : bare;
     look.vertex_colours = false;
-    if (!stack.layers.empty() || stack.has_ground()) {
+    if (!stack.layers.empty() || stack.has_base_colour()) {
         const ink::ComposeOptions compose = painting ? painting->compose_options() : ink::ComposeOptions{};
         colour = ink::compose_linear(stack, model.texels, substrate, compose);
         const auto* first = reinterpret_cast<const Vec3f*>(colour.texels.data());
@@ -224,7 +224,7 @@ void check_outputs(const Outputs& o) {
     for (const fs::path& path : {o.project, o.exported, o.preview}) check_output(path);
 }
 
-void write_outputs(const Outputs& o, const stroke::Painting& painting, Console& console) {
+void write_outputs(const Outputs& o, const stroke::Document& painting, Console& console) {
     const stroke::Model& model = painting.model();
     if (!o.exported.empty()) {
         const io::ModelMaps maps = io::make_maps(painting.stack(), model.texels, painting.substrate(),
@@ -245,7 +245,7 @@ void write_picture(const fs::path& path, const render::Image& image) {
 }
 
 io::Project start_project(const fs::path& path, const std::string& source, const FileFrame& frame,
-                          stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes) {
+                          stroke::Document& painting, const std::vector<stroke::Stroke>& strokes) {
     const stroke::Model& model = painting.model();
     io::Project project = io::Project::create(
         path, {.source = source,
@@ -258,7 +258,7 @@ io::Project start_project(const fs::path& path, const std::string& source, const
     return project;
 }
 
-void put_presets(io::Project& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes) {
+void put_presets(io::Project& project, stroke::Document& painting, const std::vector<stroke::Stroke>& strokes) {
     std::set<std::string> brushes, inks;
     for (const stroke::Stroke& s : strokes) {
         if (stroke::has_brush(s.action) && brushes.insert(s.trace.brush).second)
@@ -268,7 +268,7 @@ void put_presets(io::Project& project, stroke::Painting& painting, const std::ve
     }
 }
 
-void find_presets(stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes) {
+void find_presets(stroke::Document& painting, const std::vector<stroke::Stroke>& strokes) {
     for (const stroke::Stroke& s : strokes) {
         if (stroke::has_brush(s.action)) painting.brush(s.trace.brush);
         for (const std::string& ink : stroke::inks_of(s)) painting.ink(ink);
@@ -279,7 +279,7 @@ bool is_project_file(const fs::path& path) {
     return path.extension() == ".tuft" || io::is_project(path);
 }
 
-void show_layers(stroke::Painting& painting, const std::vector<std::string>& names) {
+void show_layers(stroke::Document& painting, const std::vector<std::string>& names) {
     std::vector<std::uint32_t> ids;
     std::vector<std::string> all;
     for (const stroke::Layer& layer : painting.layers().layers) all.push_back(layer.name);
@@ -312,7 +312,7 @@ std::unique_ptr<OpenProject> open_project(const fs::path& path, io::Access acces
     return opened;
 }
 
-void show_looks(const io::Project& project, stroke::Painting& painting, const Look& look, Console& console) {
+void show_looks(const io::Project& project, stroke::Document& painting, const Look& look, Console& console) {
     io::show_looks(project, painting);
     std::set<std::string> used;
     for (const stroke::Stroke& s : painting.journal().strokes())
@@ -329,10 +329,10 @@ void show_looks(const io::Project& project, stroke::Painting& painting, const Lo
             if (other != name && !ink::shared_pigments(painting.ink(name), painting.ink(other)).empty())
                 console.note(fmt::format("warning: ink {} shares pigments with {} and changes with it", other, name));
     }
-    if (!look.substrate.empty()) painting.show_on(ink::load_substrate(look.substrate));
+    if (!look.substrate.empty()) painting.preview_substrate(ink::load_substrate(look.substrate));
 }
 
-void restore(const OpenProject& project, stroke::Painting& painting, Console& console) {
+void restore(const OpenProject& project, stroke::Document& painting, Console& console) {
     painting.use_substrate(project.substrate);
     io::use_presets(project.file, painting);
     io::restore_strokes(project.file, painting, console.progress());

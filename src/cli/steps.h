@@ -46,7 +46,7 @@ void check_extension(const std::filesystem::path& path, const std::vector<std::s
 std::vector<stroke::Stroke> load_strokes(const Paint& arguments, Console& console);
 
 /// Has only the layers of these names seen; throws `UsageError` for a name that is not there.
-void show_layers(stroke::Painting& painting, const std::vector<std::string>& names);
+void show_layers(stroke::Document& painting, const std::vector<std::string>& names);
 
 /// What every painting command can leave behind; empty paths are skipped.
 struct Outputs {
@@ -56,10 +56,10 @@ struct Outputs {
 };
 void check_outputs(const Outputs& outputs);
 /// Exported model and preview; the project is written while painting.
-void write_outputs(const Outputs& outputs, const stroke::Painting& painting, Console& console);
+void write_outputs(const Outputs& outputs, const stroke::Document& painting, Console& console);
 
 /// Picture of a painted model, or of a bare one (canvas == nullptr).
-render::Image draw_picture(const stroke::Model& model, const stroke::Painting* painting,
+render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting,
                            const std::string& material, const View& view, int turntable_frame,
                            int turntable_count, Console& console);
 
@@ -68,11 +68,11 @@ void write_picture(const std::filesystem::path& path, const render::Image& image
 /// A new project with the model and the presets of these strokes; strokes are appended
 /// to it as they are finished.
 /// Throws `Error` for a brush or ink that there is none of, before any paint flows.
-void find_presets(stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes);
+void find_presets(stroke::Document& painting, const std::vector<stroke::Stroke>& strokes);
 /// Stores the presets that these entries use.
-void put_presets(io::Project& project, stroke::Painting& painting, const std::vector<stroke::Stroke>& strokes);
+void put_presets(io::Project& project, stroke::Document& painting, const std::vector<stroke::Stroke>& strokes);
 io::Project start_project(const std::filesystem::path& path, const std::string& source,
-                          const FileFrame& frame, stroke::Painting& painting,
+                          const FileFrame& frame, stroke::Document& painting,
                           const std::vector<stroke::Stroke>& strokes);
 
 /// A project with its model ready to be painted on.
@@ -92,9 +92,9 @@ std::optional<io::ProjectLock> reserve(const std::filesystem::path& path, Consol
 std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, io::Access access, Console& console);
 /// Shows the painting as the project and then the command line say; notes pigments that
 /// other inks share.
-void show_looks(const io::Project& project, stroke::Painting& painting, const Look& look, Console& console);
+void show_looks(const io::Project& project, stroke::Document& painting, const Look& look, Console& console);
 /// Brings the painting to where the project stands: substrate, presets, strokes.
-void restore(const OpenProject& project, stroke::Painting& painting, Console& console);
+void restore(const OpenProject& project, stroke::Document& painting, Console& console);
 
 /// Throws `Error` when `at` (metres) lies further beside the surface than a twentieth of the model: then it is another
 /// point that was meant. `option` gave it.

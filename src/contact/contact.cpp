@@ -65,10 +65,10 @@ std::vector<Stand> stand_nodes(const Work& w, std::span<const Vec3> nodes, std::
     std::vector<Stand> out =
         stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand, before);
     if (nodes.size() == trunk) return out;
-    const std::size_t twig = (nodes.size() - trunk) / 3;
-    for (std::size_t first = trunk; first < nodes.size(); first += twig) {
-        const auto points = nodes.subspan(first, twig);
-        const Stand& start = out[std::min(twig, trunk) - 1];  // the trunk's node they leave from
+    const std::size_t sub_spine = (nodes.size() - trunk) / 3;
+    for (std::size_t first = trunk; first < nodes.size(); first += sub_spine) {
+        const auto points = nodes.subspan(first, sub_spine);
+        const Stand& start = out[std::min(sub_spine, trunk) - 1];  // the trunk's node they leave from
         const std::vector<Stand> more = stand_along(w.surface, start, points, w.near, w.stand);
         out.insert(out.end(), more.begin(), more.end());
     }
@@ -213,7 +213,7 @@ std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft&
 }
 
 /// Metres between the surface and a tuft that hangs free, sections taken for balls.
-double skin_distance(const Work& w, const brush::TuftState& tuft) {
+double surface_distance(const Work& w, const brush::TuftState& tuft) {
     double best = std::numeric_limits<double>::infinity();
     for (const brush::Branch& branch : tuft.branches)
         for (const brush::Section& s : branch.sections) {
@@ -276,7 +276,7 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
     memory.centres = std::move(centres);
     if (!lowest) return;
     result.distance = result.tuft.touching ? 0 : std::max(0.0, gap);
-    if (gap > w.options.tolerance) result.distance = skin_distance(w, result.tuft);
+    if (gap > w.options.tolerance) result.distance = surface_distance(w, result.tuft);
     Stand at = *lowest;
     if (total > 0) {
         const Vec3 centre = followed_centre(w, memory, result.travel, sum / total);
@@ -289,8 +289,8 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
     memory.origin = result.frame.origin;
 }
 
-Vec3 hand_force(const brush::Preset& preset, const Result& result, const Options& options) {
-    Vec3 force = brush::hand_force(preset, result.tuft);
+Vec3 device_force(const brush::Preset& preset, const Result& result, const Options& options) {
+    Vec3 force = brush::device_force(preset, result.tuft);
     if (result.triangle != kNone && options.tolerance > 0) {
         const double ramp = std::clamp((1 - result.distance / options.tolerance) / 0.1, 0.0, 1.0);
         force += ramp * options.proximity_force * result.frame.n;
@@ -341,7 +341,7 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
         const auto far = surface.closest_point(nodes.front());
         result.distance = far ? far->distance : std::numeric_limits<double>::infinity();
         memory.touching = false;
-        result.hand_force = hand_force(preset, result, options);
+        result.device_force = device_force(preset, result, options);
         return result;
     }
 
@@ -363,7 +363,7 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
         result.frame = make_frame(result.frame.origin, result.patch.normal, memory.heading);
         memory.heading = result.frame.t;
     }
-    result.hand_force = hand_force(preset, result, options);
+    result.device_force = device_force(preset, result, options);
     memory.touching = result.tuft.touching;
     memory.root = asked.position;
     memory.outside = w.root.outside;

@@ -50,7 +50,7 @@ struct Result {
                           ///< frame's origin may go another way over a crease. 0 at first touch
     double distance = 0;  ///< metres from the tuft's skin to the surface; 0 when touching
     double inside = 0;    ///< metres that the pose would have the ferrule's mouth below the surface
-    Vec3 hand_force{0};   ///< N, to a haptic device: gain, clamp and proximity applied
+    Vec3 device_force{0};   ///< N, to a haptic device: gain, clamp and proximity applied
     Sphere sphere;        ///< Method::vertices: round the bent tuft
     EffectivePatch patch;  ///< Method::vertices: vertices the projection plane is made from
 };

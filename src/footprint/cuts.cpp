@@ -65,9 +65,9 @@ double hermite(double p0, double p1, double m0, double m1, double h, double f) {
 }
 
 /// The skin of a branch between its nodes: node parameter 0 (tip) … n − 1 (root).
-class Skin {
+class TuftSurface {
   public:
-    Skin(const brush::Branch& branch, const Frame& frame, const NodePlanes* planes, double film) {
+    TuftSurface(const brush::Branch& branch, const Frame& frame, const NodePlanes* planes, double film) {
         const auto& sections = branch.sections;
         const auto plane = [&](std::size_t i) {
             return planes && i < planes->size() ? &(*planes)[i] : nullptr;
@@ -189,7 +189,7 @@ struct Stretch {
 };
 
 /// Parameter between `out` (not touching) and `in` (touching) where the skin meets the surface.
-double meeting(const Skin& skin, double out, double in) {
+double meeting(const TuftSurface& skin, double out, double in) {
     for (int i = 0; i < 26; ++i) {
         const double middle = 0.5 * (out + in);
         (skin.at(middle).overlap() >= 0 ? in : out) = middle;
@@ -197,7 +197,7 @@ double meeting(const Skin& skin, double out, double in) {
     return in;
 }
 
-std::vector<Stretch> touching_stretches(const Skin& skin) {
+std::vector<Stretch> touching_stretches(const TuftSurface& skin) {
     std::vector<Stretch> found;
     const int n = static_cast<int>(skin.end()) * kSearchSteps;
     bool before = false;
@@ -222,7 +222,7 @@ std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame,
     for (std::size_t k = 0; k < count; ++k) {
         const auto& sections = tuft.branches[k].sections;
         if (sections.size() < 2) continue;
-        const Skin skin(tuft.branches[k], frame, k < planes.size() ? &planes[k] : nullptr,
+        const TuftSurface skin(tuft.branches[k], frame, k < planes.size() ? &planes[k] : nullptr,
                         std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
         const bool carries = count > 1 && k == count / 2;
@@ -316,7 +316,7 @@ void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
 
 }  // namespace
 
-void splay(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount) {
+void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount) {
     for (Trail& trail : trails) {
         const auto own = 2 * static_cast<std::size_t>(trail.branch);
         if (tracks.tracks.size() < own + 2) tracks.tracks.resize(own + 2);

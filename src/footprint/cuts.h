@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "brush/splay.h"
+#include "brush/upright_hair.h"
 #include "brush/tuft_state.h"
 #include "footprint/outline.h"
 
@@ -58,12 +58,12 @@ struct HairTracks {
 /// metres that hair went over the surface since the touch that `tracks` began with. A steady drag is as wide up to its
 /// tip; a tuft pressed straight down lies as it came; one that is lifted takes its stiff hair with it, which leaves it by
 /// a slope of 0.35 at most. `length` is the tuft's, metres.
-void splay(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount);
+void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount);
 
 /// Hair round the foot of the axis: goes on from the widest section by a straight taper to where the axis meets
 /// the surface, and ends round there, as far as `foot.share` goes. Without it the point, which touches first and
-/// then slides aside to where the tuft lies, would leave a spur. For a tuft in one piece.
-void cover_foot(std::vector<Trail>& trails, const brush::Foot& foot, const Frame& frame, double film);
+/// then slides aside to where the tuft lies, would leave a spur. For a tuft in one cluster.
+void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& foot, const Frame& frame, double film);
 
 /// The outline of a trail; without points when it is too small for one.
 Outline outline_of(const Trail& trail, int points);

@@ -187,7 +187,7 @@ Vec2 on_surface(const Cut& cut, double x) {
     return cut.at(x, need < -chord * std::abs(height) ? 0 : y);
 }
 
-/// Draws bands along the cuts [begin, end) of a trail. Its first and last piece go on a little:
+/// Draws bands along the cuts [begin, end) of a trail. Its first and last cluster go on a little:
 /// the outline bounds them.
 void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Strand> strands,
                   const Vec2& zero, double cell, Bands& bands) {
@@ -217,7 +217,7 @@ void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::s
         while (k + 1 < last && trail.along[at[k + 1]] > strand.end) ++k;
         Vec2 before{0}, step{0};
         double half_before = 0;
-        const auto part_of = [&](std::size_t i, double along) {  // of the piece from cut i on
+        const auto part_of = [&](std::size_t i, double along) {  // of the cluster from cut i on
             const double run = trail.along[at[i]] - trail.along[at[i + 1]];
             return run > 1e-12 ? std::clamp((trail.along[at[i]] - along) / run, 0.0, 1.0) : 0.0;
         };
@@ -276,7 +276,7 @@ double wetness_of_bundle(double saturation, double holds, double speed) {
     return saturation * holds / (kClosing * (1 + std::max(speed, 0.0) / kFastHair));
 }
 
-std::vector<float> touched_cells(std::span<const Trail> trails, const brush::Bundles& bundles,
+std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles,
                                  int branches, std::span<const double> ends) {
     const std::size_t n = bundles.place.size(), cells = ends.size();
     std::vector<double> sum(n * cells, 0);
@@ -301,8 +301,8 @@ std::vector<float> touched_cells(std::span<const Trail> trails, const brush::Bun
     return parts;
 }
 
-std::vector<HairTouch> hair_touches(std::span<const Trail> trails, const brush::Bundles& bundles, int branches) {
-    std::vector<HairTouch> found;
+std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles, int branches) {
+    std::vector<HairContactPoint> found;
     for (const Trail& trail : trails)
         each_touch(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
             found.push_back({static_cast<std::uint32_t>(k), on_surface(trail.cuts[i], place.x), trail.along[i], length});

@@ -16,19 +16,19 @@ namespace tuft::footprint {
 /// cell that lies on the surface. A bundle lies on it where it is in the lower half of its
 /// section and the section's underside at its place is at or below the surface. Where no bundle
 /// does, the foremost cells share. `ends` is that of brush::hair_cells.
-std::vector<float> touched_cells(std::span<const Trail> trails, const brush::Bundles& bundles,
+std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles,
                                  int branches, std::span<const double> ends);
 
-/// A piece of a bundle that lies on the surface.
-struct HairTouch {
+/// A cluster of a bundle that lies on the surface.
+struct HairContactPoint {
     std::uint32_t bundle = 0;
     Vec2 at{0};         ///< metres, in the stamp's (u, v)
     double along = 0;   ///< part of the tuft's length from the root
     double length = 0;  ///< of hair, part of the tuft's
 };
 
-/// The pieces that `touched_cells` counts, one by one. About 10 µs.
-std::vector<HairTouch> hair_touches(std::span<const Trail> trails, const brush::Bundles& bundles, int branches);
+/// The clusters that `contact_cells` counts, one by one. About 10 µs.
+std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles, int branches);
 
 /// How wet the hair is where it touches.
 struct HairInk {

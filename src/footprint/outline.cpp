@@ -206,17 +206,17 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
     if (branches.size() == 1 && planes.size() >= branches[0].sections.size())
         return {NodePlanes(planes.begin(), planes.begin() + branches[0].sections.size())};
     if (branches.size() < 2) return {};
-    // The middle branch ends in the whole spine's root; its outer nodes are the twig's.
+    // The middle branch ends in the whole spine's root; its outer nodes are the sub_spine's.
     const std::size_t trunk = branches[branches.size() / 2].sections.size();
-    const std::size_t twig = branches[0].sections.size();
-    if (trunk < twig || planes.size() != trunk + branches.size() * twig) return {};
+    const std::size_t sub_spine = branches[0].sections.size();
+    if (trunk < sub_spine || planes.size() != trunk + branches.size() * sub_spine) return {};
     std::vector<NodePlanes> dealt;
     for (std::size_t k = 0; k < branches.size(); ++k) {
-        const auto own = planes.subspan(trunk + k * twig, twig);
+        const auto own = planes.subspan(trunk + k * sub_spine, sub_spine);
         dealt.emplace_back(own.begin(), own.end());
         if (k != branches.size() / 2) continue;
         dealt.back().pop_back();
-        dealt.back().insert(dealt.back().end(), planes.begin() + twig - 1, planes.begin() + trunk);
+        dealt.back().insert(dealt.back().end(), planes.begin() + sub_spine - 1, planes.begin() + trunk);
     }
     return dealt;
 }

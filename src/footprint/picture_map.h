@@ -16,7 +16,7 @@ struct MappedTexel {
 /// (px, py, pz) with unit normal (mx, my, mz). Where `cos` is kLogMapMinCos or less the place means
 /// nothing. Inlined into code for any instruction set, the same bits in all.
 template <bool plane>
-[[gnu::always_inline]] inline MappedTexel map_texel(const PieceFrame& f, float px, float py, float pz, float mx,
+[[gnu::always_inline]] inline MappedTexel map_texel(const ClusterFrame& f, float px, float py, float pz, float mx,
                                                     float my, float mz) {
     constexpr auto& q = atlas::kLogMapSeries;
     constexpr float q0 = float(0.5 * q[0]), q1 = float(0.5 * q[1]), q2 = float(0.5 * q[2]);

@@ -41,7 +41,7 @@ const Trail* same_hair(const Trail& trail, std::span<const Trail> before) {
 
 }  // namespace
 
-void carry(std::vector<Trail>& trails, const Frame& from, const Frame& to) {
+void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to) {
     const auto turned = [&](const Vec3& v) {
         const Vec3 world = v.x * from.t + v.y * from.b + v.z * from.n;
         return Vec3{glm::dot(world, to.t), glm::dot(world, to.b), glm::dot(world, to.n)};

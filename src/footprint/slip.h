@@ -9,12 +9,12 @@
 namespace tuft::footprint {
 
 /// Trails in another frame near their own, as if they lay on one plane.
-void carry(std::vector<Trail>& trails, const Frame& from, const Frame& to);
+void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to);
 
 /// What lies down of the hair of a trail's cuts, seen across its own motion: ∫ |sin ψ| ds in
 /// metres, ψ the angle between the hair and the way that it went, by its place in the section.
 ///
-/// Each piece of hair goes its own way: that of the trail's middle, and of the section that widens,
+/// Each cluster of hair goes its own way: that of the trail's middle, and of the section that widens,
 /// narrows or turns under it. Sub-spines that part, hair that a press spreads and a tuft that rolls
 /// over draw hair sideways, whatever the hand does. Hair that stays where it was has no way and
 /// measures nothing.

@@ -5,22 +5,22 @@
 #include <cmath>
 
 #include "atlas/texels/log_map.h"
-#include "footprint/folds.h"
+#include "footprint/occluded.h"
 #include "footprint/picture.h"
-#include "footprint/quarters.h"
+#include "footprint/quadrants.h"
 #include "footprint/sweep.h"
 #include "footprint/walk.h"
 
 namespace tuft::footprint {
 namespace {
 
-constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // pieces that surely face the stamp
-constexpr double kShadow = 0.1;  // of its distance: what a piece behind an opening may be off by
+constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // clusters that surely face the stamp
+constexpr double kShadow = 0.1;  // of its distance: what a cluster behind an opening may be off by
 
 /// Frame of texels whose log map in `frame` lands at `place` + turn · (u, v) in the stamp.
-PieceFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn,
+ClusterFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn,
                          const Footprint& footprint) {
-    PieceFrame f;
+    ClusterFrame f;
     const double scale = 1 / footprint.cell;
     f.origin = Vec3f(frame.origin);
     f.normal = Vec3f(frame.n);
@@ -73,21 +73,21 @@ Reach reach_of(const Footprint& footprint, const Motion& motion) {
     return reach;
 }
 
-/// Distance between where one stamp frame and the walk put a piece's centre, metres.
-double disagreement(const Frame& frame, const atlas::Piece& piece, const PlanScratch::Node& n) {
-    if (glm::dot(Vec3(piece.normal), frame.n) <= atlas::kLogMapMinCos)
+/// Distance between where one stamp frame and the walk put a cluster's centre, metres.
+double disagreement(const Frame& frame, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) {
+    if (glm::dot(Vec3(cluster.normal), frame.n) <= atlas::kLogMapMinCos)
         return std::numeric_limits<double>::infinity();
-    return glm::length(atlas::log_map(frame, Vec3(piece.centre), Vec3(piece.normal)) -
+    return glm::length(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)) -
                        Vec2(n.u, n.v));
 }
 
-bool surely_faces(const atlas::Piece& piece, const Vec3f& normal) {
-    return piece.cone_cos > kSureCos && glm::dot(piece.normal, normal) > kSureNormal;
+bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal) {
+    return cluster.cone_cos > kSureCos && glm::dot(cluster.normal, normal) > kSureNormal;
 }
 
-/// Where the texels of the reached pieces may lie in either mode and in whatever pose, and the next
+/// Where the texels of the reached clusters may lie in either mode and in whatever pose, and the next
 /// cell; with the disagreement of the modes.
-void cover_of_pieces(const atlas::PieceGraph& graph, const Footprint& footprint, const Motion& motion,
+void cover_of_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion,
                      Isa isa, PlanScratch& scratch) {
     const auto cell = static_cast<float>(footprint.cell);
     const Vec2f zero = Vec2f(footprint.lo / footprint.cell + 0.5);
@@ -96,49 +96,49 @@ void cover_of_pieces(const atlas::PieceGraph& graph, const Footprint& footprint,
     scratch.apart.clear();
     scratch.discs.clear();
     for (const std::uint32_t i : scratch.reached) {
-        const atlas::Piece& piece = graph.pieces[i];
+        const atlas::TexelCluster& cluster = graph.clusters[i];
         const PlanScratch::Node& at = scratch.nodes[i];
-        scratch.apart.push_back(disagreement(footprint.frame, piece, at));
+        scratch.apart.push_back(disagreement(footprint.frame, cluster, at));
         const Vec2f place = Vec2f{at.u, at.v} + half_way;
-        const float r = kPieceSlack * piece.radius, swing = turn * (glm::length(place) + way + r);
+        const float r = kPieceSlack * cluster.radius, swing = turn * (glm::length(place) + way + r);
         const float reach = r + static_cast<float>(scratch.apart.back()) + way + swing;
         scratch.discs.add(place / cell - zero, reach / cell + 1.5f);
     }
     scratch.tally.look(scratch.discs, isa);
 }
 
-/// Lists the reached pieces that the picture may cover, with what is known of its coverage
+/// Lists the reached clusters that the picture may cover, with what is known of its coverage
 /// there, and takes the greatest disagreement; scratch.reached is left with those listed.
-void list_pieces(const atlas::PieceGraph& graph, const Footprint& footprint, const Motion& motion,
+void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion,
                  PlanScratch& scratch, StampJobs& jobs) {
     scratch.tally.count(footprint);
-    cover_of_pieces(graph, footprint, motion, jobs.isa, scratch);
+    cover_of_clusters(graph, footprint, motion, jobs.isa, scratch);
     const Vec3f normal(footprint.frame.n);
     std::size_t n = 0;
     jobs.frames.reserve(scratch.reached.size());
     for (std::size_t k = 0; k < scratch.reached.size(); ++k) {
         const std::uint32_t i = scratch.reached[k];
-        const atlas::Piece& piece = graph.pieces[i];
+        const atlas::TexelCluster& cluster = graph.clusters[i];
         const PlanScratch::Node& at = scratch.nodes[i];
-        PieceFrame f;
+        ClusterFrame f;
         const double apart = scratch.apart[k];
         if (jobs.mapping == Mapping::log) {
             const Cover cover = scratch.discs.cover(k);
             if (cover == Cover::empty) continue;
-            if (cover == Cover::full && surely_faces(piece, normal)) {
-                f.full = kAllQuarters;
-                f.part = 0;
+            if (cover == Cover::full && surely_faces(cluster, normal)) {
+                f.full_quadrants = kAllQuadrants;
+                f.partial_quadrants = 0;
             }
         }
         // Behind an opening the walk itself is in doubt: it went round.
         if (at.lit || apart > kShadow * static_cast<double>(glm::length(Vec2f{at.u, at.v})))
             jobs.discrepancy = std::max(jobs.discrepancy, apart);
-        if (jobs.tiles.empty() || jobs.tiles.back().slot != piece.slot)
-            jobs.tiles.push_back({piece.slot, static_cast<std::uint32_t>(jobs.frames.size()), 0});
+        if (jobs.tiles.empty() || jobs.tiles.back().slot != cluster.slot)
+            jobs.tiles.push_back({cluster.slot, static_cast<std::uint32_t>(jobs.frames.size()), 0});
         ++jobs.tiles.back().count;
-        f.piece = piece.index;
-        f.first_row = piece.first_row;
-        f.last_row = piece.last_row;
+        f.cluster = cluster.index;
+        f.first_row = cluster.first_row;
+        f.last_row = cluster.last_row;
         jobs.frames.push_back(f);
         scratch.reached[n++] = i;
     }
@@ -147,7 +147,7 @@ void list_pieces(const atlas::PieceGraph& graph, const Footprint& footprint, con
 }
 
 /// Stretches the picture's axes across the radial direction.
-void stretch_frame(PieceFrame& f, const PlanScratch::Node& at) {
+void stretch_frame(ClusterFrame& f, const PlanScratch::Node& at) {
     const float d2 = at.u * at.u + at.v * at.v;
     if (!(d2 > 0)) return;
     const float more = at.stretch - 1;
@@ -159,27 +159,27 @@ void stretch_frame(PieceFrame& f, const PlanScratch::Node& at) {
     }
 }
 
-/// Gives each piece the frame it needs when they have their own.
-void place_pieces(const atlas::PieceGraph& graph, const Footprint& footprint,
+/// Gives each cluster the frame it needs when they have their own.
+void place_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint,
                   const PlanScratch& scratch, StampJobs& jobs) {
     for (std::size_t k = 0; k < jobs.frames.size(); ++k) {
         const PlanScratch::Node& at = scratch.nodes[scratch.reached[k]];
-        const PieceFrame& old = jobs.frames[k];
-        PieceFrame f = picture_frame(frame_of(graph.pieces[scratch.reached[k]]), Vec2(at.u, at.v),
+        const ClusterFrame& old = jobs.frames[k];
+        ClusterFrame f = picture_frame(frame_of(graph.clusters[scratch.reached[k]]), Vec2(at.u, at.v),
                                      Vec2(at.c, at.s), footprint);
         if (at.stretch != 1) stretch_frame(f, at);
-        f.piece = old.piece;
+        f.cluster = old.cluster;
         f.first_row = old.first_row;
         f.last_row = old.last_row;
-        f.full = old.full;
-        f.part = old.part;
+        f.full_quadrants = old.full_quadrants;
+        f.partial_quadrants = old.partial_quadrants;
         jobs.frames[k] = f;
     }
 }
 
-/// Looks closer at pieces of whole tiles that the picture covers in part. Between the two thresholds
-/// of discrepancy a piece may be mapped by either frame.
-void sort_pieces(const Surface& surface, const Footprint& footprint, const Motion& motion, const StampOptions& options,
+/// Appearance closer at clusters of whole tiles that the picture covers in part. Between the two thresholds
+/// of discrepancy a cluster may be mapped by either frame.
+void sort_clusters(const Surface& surface, const Footprint& footprint, const Motion& motion, const StampOptions& options,
                  PlanScratch& scratch, StampJobs& jobs) {
     if (jobs.mapping != Mapping::log) return;
     const auto [low, high] = std::minmax(options.enter, options.leave);
@@ -187,24 +187,24 @@ void sort_pieces(const Surface& surface, const Footprint& footprint, const Motio
     const bool own = jobs.discrepancy > high;
     const auto cell = static_cast<float>(footprint.cell);
     const Vec3f normal(footprint.frame.n);
-    Drift drift{Vec2f(footprint.lo / footprint.cell + 0.5), Vec2f(0.5 * motion.shift) / cell,
+    SweptDisplacement drift{Vec2f(footprint.lo / footprint.cell + 0.5), Vec2f(0.5 * motion.shift) / cell,
                 static_cast<float>(std::abs(motion.turn))};
     if (either) drift.extra = 1 + static_cast<float>(jobs.discrepancy * footprint.radius) / cell;
     scratch.asked.clear();
     scratch.discs.clear();
     for (const TileJob& job : jobs.tiles) {
         for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
-            const PieceFrame& f = jobs.frames[k];
+            const ClusterFrame& f = jobs.frames[k];
             const std::uint32_t i = scratch.reached[k];
-            if (f.part == 0 || f.first_row > 0 || f.last_row + 1 < atlas::kTile) continue;
-            if (!surely_faces(surface.pieces.pieces[i], normal) || (either && !scratch.nodes[i].lit)) continue;
-            if (add_quarters(own ? f : jobs.stamp_frame, f.piece, surface.texels, job.slot, drift, scratch.discs))
+            if (f.partial_quadrants == 0 || f.first_row > 0 || f.last_row + 1 < atlas::kTile) continue;
+            if (!surely_faces(surface.clusters.clusters[i], normal) || (either && !scratch.nodes[i].lit)) continue;
+            if (add_quadrants(own ? f : jobs.stamp_frame, f.cluster, surface.texels, job.slot, drift, scratch.discs))
                 scratch.asked.push_back(k);
         }
     }
     scratch.tally.look(scratch.discs, jobs.isa);
     for (std::size_t n = 0; n < scratch.asked.size(); ++n)
-        sort_quarters(scratch.discs, kQuarters * n, jobs.frames[scratch.asked[n]]);
+        sort_quadrants(scratch.discs, kQuadrants * n, jobs.frames[scratch.asked[n]]);
 }
 
 }  // namespace
@@ -225,9 +225,9 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
                                                     footprint.triangle, footprint.frame.origin);
     if (!contact.valid()) return jobs;
 
-    const std::uint32_t first = surface.texels.piece_start[contact.slot] +
-                                surface.texels.tiles[contact.slot].piece[contact.texel];
-    const atlas::Piece& first_piece = surface.pieces.pieces[first];
+    const std::uint32_t first = surface.texels.cluster_start[contact.slot] +
+                                surface.texels.tiles[contact.slot].cluster[contact.texel];
+    const atlas::TexelCluster& first_cluster = surface.clusters.clusters[first];
     const Reach reach = reach_of(footprint, motion);
 
     // The walk starts in the tangent plane of the surface itself: the stamp's normal may be
@@ -236,12 +236,12 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     start.n = glm::normalize(Vec3(surface.texels.normal(contact.slot, contact.texel)));
     start.t = parallel_transport(footprint.frame.t, footprint.frame.n, start.n);
     start.b = glm::cross(start.n, start.t);
-    const Vec2 place = atlas::log_map(start, Vec3(first_piece.centre), Vec3(first_piece.normal));
+    const Vec2 place = atlas::log_map(start, Vec3(first_cluster.centre), Vec3(first_cluster.normal));
     const Vec2 turn =
-        atlas::carried_direction(start, Vec3(first_piece.tangent), Vec3(first_piece.normal));
+        atlas::carried_direction(start, Vec3(first_cluster.tangent), Vec3(first_cluster.normal));
     const Start at{first, Vec2f(place), Vec2f(turn)};
-    const std::size_t folded = walk_pieces(surface.pieces, reach, at, scratch);
-    place_folds(surface, footprint.triangle, start, reach, at, folded, scratch);
+    const std::size_t occluded = walk_clusters(surface.clusters, reach, at, scratch);
+    resolve_occluded(surface, footprint.triangle, start, reach, at, occluded, scratch);
     if (scratch.reached.empty()) return jobs;
 
     jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
@@ -250,10 +250,10 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     const bool passes_over = options.passes_over > 0 && wanted > 0;
     const bool swept = passes_over || (options.prefix_sums > 0 && wanted >= options.prefix_sums);
     if (!swept) jobs.sub_poses = spread_poses(footprint, motion, texel_size, options);
-    list_pieces(surface.pieces, footprint, motion, scratch, jobs);
+    list_clusters(surface.clusters, footprint, motion, scratch, jobs);
     if (jobs.discrepancy > std::min(options.enter, options.leave))
-        place_pieces(surface.pieces, footprint, scratch, jobs);
-    sort_pieces(surface, footprint, motion, options, scratch, jobs);
+        place_clusters(surface.clusters, footprint, scratch, jobs);
+    sort_clusters(surface, footprint, motion, options, scratch, jobs);
     const Vec2f to_cells = Vec2f(footprint.lo / footprint.cell + 0.5);
     jobs.reach_lo = reach.lo / float(footprint.cell) - to_cells - 2.0f;
     jobs.reach_hi = reach.hi / float(footprint.cell) - to_cells + 2.0f;

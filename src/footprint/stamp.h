@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "atlas/texels/piece_graph.h"
+#include "atlas/texels/cluster_graph.h"
 #include "core/sparse_numbering.h"
 #include "footprint/footprint.h"
 #include "footprint/picture.h"
-#include "mesh/shortest_ways.h"
+#include "mesh/exact_geodesics.h"
 
 /// From a footprint to the texels it exposes. A caller plans a batch of stamps (each on
 /// its own, in any thread), picks the mode of each in stroke order, sorts the tile jobs
@@ -27,7 +27,7 @@ struct Surface {
     const mesh::TriangleMesh& mesh;
     const atlas::Atlas& atlas;
     const atlas::TexelMap& texels;
-    const atlas::PieceGraph& pieces;
+    const atlas::ClusterGraph& clusters;
 };
 
 /// How the footprint came to its present place since the stamp before, in its frame:
@@ -39,7 +39,7 @@ struct Motion {
 
 struct StampOptions {
     Mapping mapping = Mapping::log;
-    double enter = 0.015;   ///< discrepancy over radius above which pieces get own frames
+    double enter = 0.015;   ///< discrepancy over radius above which clusters get own frames
     double leave = 0.010;   ///< and below which one frame serves all again
     double sub_pose = 1.0;  ///< longest way of any point between sub-poses, texels
     int max_sub_poses = 64;
@@ -50,17 +50,17 @@ struct StampOptions {
 };
 
 /// Quarters of a tile, a bit each: rows 0–7 with columns 0–7, then 8–15; rows 8–15 likewise.
-inline constexpr std::uint8_t kAllQuarters = 0xf;
+inline constexpr std::uint8_t kAllQuadrants = 0xf;
 
-/// Where the log map puts the texels of one piece in the footprint's picture:
+/// Where the log map puts the texels of one cluster in the footprint's picture:
 /// d = p − origin, (fu, fv) = (u0, v0) + (tu, tv)·d + ½ (a − g) (tu, tv)·m, in cells.
-struct PieceFrame {
+struct ClusterFrame {
     Vec3f origin{0}, normal{0}, tu{0}, tv{0};
     float u0 = 0, v0 = 0;
-    std::int32_t piece = 0;            ///< as in `TexelTile::piece`
+    std::int32_t cluster = 0;            ///< as in `TexelTile::cluster`
     std::uint8_t first_row = 0, last_row = 0;
-    std::uint8_t full = 0;             ///< quarters in which the picture covers all of the piece in all poses
-    std::uint8_t part = kAllQuarters;  ///< other quarters in which it may cover some of it
+    std::uint8_t full_quadrants = 0;             ///< quadrants in which the picture covers all of the cluster in all poses
+    std::uint8_t partial_quadrants = kAllQuadrants;  ///< other quadrants in which it may cover some of it
 };
 
 struct TileJob {
@@ -81,8 +81,8 @@ struct StampJobs {
     float gain = 1;                               ///< what full cells of it stand for
     std::vector<SubPose> sub_poses;               ///< evenly spread over the motion
     Vec2f reach_lo{0}, reach_hi{0};               ///< cells: the picture in all its sub-poses
-    PieceFrame stamp_frame;                       ///< serves all pieces when not piecewise
-    std::vector<PieceFrame> frames;               ///< one for each piece reached, by slot; without
+    ClusterFrame stamp_frame;                       ///< serves all clusters when not piecewise
+    std::vector<ClusterFrame> frames;               ///< one for each cluster reached, by slot; without
                                                   ///< a place where discrepancy is below `leave`
     std::vector<TileJob> tiles;                   ///< by slot
     double discrepancy = 0;  ///< between the two ways of mapping, over the radius
@@ -96,39 +96,39 @@ struct StampJobs {
 /// Memory of `sweep`.
 struct SweepScratch {
     /// Lines of the picture, by where they begin, between which and over which the motion leads to a place.
-    struct Passage {
+    struct SweptLines {
         std::size_t back = 0, on = 0, first = 0, last = 0;
         float after_back = 0, after_on = 0;
     };
-    std::vector<Passage> passages;
+    std::vector<SweptLines> swept_lines;
     std::vector<const std::uint8_t*> rows;
     std::vector<std::uint8_t> turned, strip;
     std::vector<float> parts, lines, sums, passed;
     Footprint swept;
 };
 
-/// The triangles in which centres of pieces lie, of those looked at since the last clearing.
-class Seats {
+/// The triangles in which centres of clusters lie, of those looked at since the last clearing.
+class TriangleCache {
   public:
     void clear();
     /// kNone: in none that was looked at.
-    std::uint32_t of(std::uint32_t piece) const {
-        const std::uint32_t seat = numbers_.find(piece);
-        return seat == kNone ? kNone : seats_[seat].triangle;
+    std::uint32_t of(std::uint32_t cluster) const {
+        const std::uint32_t entry = numbers_.find(cluster);
+        return entry == kNone ? kNone : entries_[entry].triangle;
     }
-    /// The centre of `piece` lies in `triangle`, or nearly: so far off, squared. The nearest one counts.
-    void sit(std::uint32_t piece, std::uint32_t triangle, double off2);
+    /// The centre of `cluster` lies in `triangle`, or nearly: so far off, squared. The nearest one counts.
+    void insert(std::uint32_t cluster, std::uint32_t triangle, double off2);
 
   private:
-    struct Seat {
+    struct Entry {
         std::uint32_t triangle;
         double off2;  ///< m²
     };
     SparseNumbering numbers_;
-    std::vector<Seat> seats_;
+    std::vector<Entry> entries_;
 };
 
-/// Memory of the walk over the pieces; one per thread, any stamp after any other.
+/// Memory of the walk over the clusters; one per thread, any stamp after any other.
 struct PlanScratch {
     struct Node {
         std::uint32_t epoch = 0;
@@ -143,11 +143,11 @@ struct PlanScratch {
     std::vector<std::uint32_t> reached;
     BlockTally tally;
     Discs discs;
-    std::vector<double> apart;  ///< metres, by reached piece
-    std::vector<std::uint32_t> asked;  ///< frames whose quarters are looked at
+    std::vector<double> apart;  ///< metres, by reached cluster
+    std::vector<std::uint32_t> asked;  ///< frames whose quadrants are looked at
     SweepScratch sweep;
-    mesh::ShortestWays ways;
-    Seats seats;
+    mesh::ExactGeodesics ways;
+    TriangleCache triangle_cache;
 };
 
 /// Room to unpack a tile into; one per thread.
@@ -156,14 +156,14 @@ struct Unpacked {
     atlas::TexelShape shape;
 };
 
-/// Finds the pieces that hang together with the contact point within the footprint and
+/// Finds the clusters that hang together with the contact point within the footprint and
 /// do not face away from it, and their places in its picture. Cost grows with the
 /// footprint's area in texels, not with the mesh. `recycled` lends the memory of an earlier
 /// stamp; its contents do not matter.
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
                      const StampOptions& options, PlanScratch& scratch, StampJobs recycled = {});
 
-/// One frame for all pieces or one for each, with hysteresis: `piecewise_before` is the
+/// One frame for all clusters or one for each, with hysteresis: `piecewise_before` is the
 /// mode of the stamp before in the stroke (false for the first). Returns the mode.
 bool choose_mode(StampJobs& jobs, bool piecewise_before, const StampOptions& options);
 

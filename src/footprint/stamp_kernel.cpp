@@ -20,27 +20,27 @@ constexpr float kOutside = -1e9f;  // cells; in no picture
 constexpr int kUnit = 8, kUnits = kTileTexels / kUnit;
 using Units = std::uint32_t;
 
-/// The units of a piece's rows that lie in some quarters of the tile.
-[[gnu::always_inline]] inline Units units_of(const PieceFrame& f, unsigned quarters) {
+/// The units of a cluster's rows that lie in some quadrants of the tile.
+[[gnu::always_inline]] inline Units units_of(const ClusterFrame& f, unsigned quadrants) {
     constexpr Units kLeft = 0x5555, kRight = 0xaaaa;
-    const Units upper = ((quarters & 1) ? kLeft : 0) | ((quarters & 2) ? kRight : 0);
-    const Units lower = ((quarters & 4) ? kLeft : 0) | ((quarters & 8) ? kRight : 0);
+    const Units upper = ((quadrants & 1) ? kLeft : 0) | ((quadrants & 2) ? kRight : 0);
+    const Units lower = ((quadrants & 4) ? kLeft : 0) | ((quadrants & 8) ? kRight : 0);
     const Units rows = (~Units{0} >> (kUnits - 2 * (f.last_row + 1))) & (~Units{0} << (2 * f.first_row));
     return (upper | lower << (kUnits / 2)) & rows;
 }
 
-/// The units of a piece to be evaluated, and those known to be full. Next to a quarter that is evaluated
+/// The units of a cluster to be evaluated, and those known to be full. Next to a quadrant that is evaluated
 /// in runs of both, a full one is evaluated as well.
 template <int lanes>
-[[gnu::always_inline]] inline Units part_units(const PieceFrame& f) {
-    const unsigned rows = lanes == 2 * kUnit ? ((f.part | f.part >> 1) & 5u) * 3u : 0u;
-    return units_of(f, f.part | (f.full & rows));
+[[gnu::always_inline]] inline Units part_units(const ClusterFrame& f) {
+    const unsigned rows = lanes == 2 * kUnit ? ((f.partial_quadrants | f.partial_quadrants >> 1) & 5u) * 3u : 0u;
+    return units_of(f, f.partial_quadrants | (f.full_quadrants & rows));
 }
 
 template <int lanes>
-[[gnu::always_inline]] inline Units full_units(const PieceFrame& f) {
-    const unsigned rows = lanes == 2 * kUnit ? ((f.part | f.part >> 1) & 5u) * 3u : 0u;
-    return units_of(f, f.full & ~rows);
+[[gnu::always_inline]] inline Units full_units(const ClusterFrame& f) {
+    const unsigned rows = lanes == 2 * kUnit ? ((f.partial_quadrants | f.partial_quadrants >> 1) & 5u) * 3u : 0u;
+    return units_of(f, f.full_quadrants & ~rows);
 }
 
 /// Where runs of `lanes` texels begin that hold given units.
@@ -67,11 +67,11 @@ template <int lanes>
 /// inlined into code for another instruction set.
 struct Task {
     const StampJobs& jobs;
-    const PieceFrame* frames;
+    const ClusterFrame* frames;
     const SubPose* poses;
     const std::uint16_t* pairs;
     std::uint32_t n_frames, n_poses;
-    const std::uint8_t* piece;                 ///< of the tile, as the rest
+    const std::uint8_t* cluster;                 ///< of the tile, as the rest
     const float *px, *py, *pz, *nx, *ny, *nz;
     Vec2f reach_lo, reach_hi;
 };
@@ -79,7 +79,7 @@ struct Task {
 /// Texel → picture, in cells, for the texels that are `mine`, or all when `whole`; see `atlas::log_map`
 /// for the formula. The others stay as they are, or lie outside when this is the `only` frame.
 template <int lanes, bool plane, bool only, bool whole>
-[[gnu::always_inline]] inline void map_texels(const Task& task, const PieceFrame& f,
+[[gnu::always_inline]] inline void map_texels(const Task& task, const ClusterFrame& f,
                                               const Runs& runs, const std::int32_t* __restrict mine,
                                               float* __restrict fu, float* __restrict fv) {
     constexpr float least_cos = float(atlas::kLogMapMinCos);
@@ -104,24 +104,24 @@ template <int lanes, bool plane, bool only, bool whole>
     }
 }
 
-/// Whether all texels of a tile belong to one piece.
-[[gnu::always_inline]] inline bool is_alone(const std::uint8_t* __restrict id, std::int32_t piece) {
-    const auto wanted = static_cast<std::uint8_t>(piece);
+/// Whether all texels of a tile belong to one cluster.
+[[gnu::always_inline]] inline bool is_alone(const std::uint8_t* __restrict id, std::int32_t cluster) {
+    const auto wanted = static_cast<std::uint8_t>(cluster);
     std::uint8_t others = 0;
 #pragma omp simd reduction(| : others)
     for (int t = 0; t < kTileTexels; ++t) others |= id[t] ^ wanted;
     return others == 0;
 }
 
-/// Adds `value` at the texels of a piece in some units. Numbers are compared as wide as values: compared as bytes,
+/// Adds `value` at the texels of a cluster in some units. Numbers are compared as wide as values: compared as bytes,
 /// they would be widened after it, in four times as many steps.
 template <class T>
-[[gnu::always_inline]] inline void mark(const std::uint8_t* __restrict id, std::int32_t piece, Units units,
+[[gnu::always_inline]] inline void mark(const std::uint8_t* __restrict id, std::int32_t cluster, Units units,
                                         T value, T* __restrict out) {
     for (; units != 0; units &= units - 1) {
         const int begin = kUnit * __builtin_ctz(units);
 #pragma omp simd
-        for (int t = begin; t < begin + kUnit; ++t) out[t] += static_cast<std::int32_t>(id[t]) == piece ? value : T{0};
+        for (int t = begin; t < begin + kUnit; ++t) out[t] += static_cast<std::int32_t>(id[t]) == cluster ? value : T{0};
     }
 }
 
@@ -224,14 +224,14 @@ template <int lanes>
     }
 }
 
-/// Texel → picture for all runs, by the frame of the stamp or those of the pieces.
+/// Texel → picture for all runs, by the frame of the stamp or those of the clusters.
 template <int lanes, bool plane>
 [[gnu::always_inline]] inline void map_tile(const Task& task, const Runs& runs, float* __restrict fu,
                                             float* __restrict fv) {
     const StampJobs& jobs = task.jobs;
-    const std::uint8_t* id = task.piece;
+    const std::uint8_t* id = task.cluster;
     alignas(64) std::int32_t mine[kTileTexels];
-    if (task.n_frames == 1 && is_alone(id, task.frames[0].piece)) {
+    if (task.n_frames == 1 && is_alone(id, task.frames[0].cluster)) {
         map_texels<lanes, plane, true, true>(task, jobs.piecewise ? task.frames[0] : jobs.stamp_frame, runs, mine,
                                              fu, fv);
         return;
@@ -239,37 +239,37 @@ template <int lanes, bool plane>
     if (!jobs.piecewise) {
         for (int t = 0; t < kTileTexels; ++t) mine[t] = 0;
         for (std::uint32_t k = 0; k < task.n_frames; ++k)
-            mark(id, task.frames[k].piece, part_units<lanes>(task.frames[k]), 1, mine);
+            mark(id, task.frames[k].cluster, part_units<lanes>(task.frames[k]), 1, mine);
         map_texels<lanes, plane, true, false>(task, jobs.stamp_frame, runs, mine, fu, fv);
         return;
     }
     for (int t = 0; t < kTileTexels; ++t) fu[t] = fv[t] = kOutside;
     for (std::uint32_t k = 0; k < task.n_frames; ++k) {
-        const PieceFrame& own = task.frames[k];
+        const ClusterFrame& own = task.frames[k];
         const Units units = part_units<lanes>(own);
         for (int t = 0; t < kTileTexels; ++t) mine[t] = 0;
-        mark(id, own.piece, units, 1, mine);
+        mark(id, own.cluster, units, 1, mine);
         map_texels<lanes, plane, false, false>(task, own, runs_of(joined<lanes>(units)), mine, fu, fv);
     }
 }
 
 template <int lanes, bool plane>
 [[gnu::always_inline]] inline bool evaluate(const Task& task, float* __restrict exposure) {
-    const std::uint8_t* id = task.piece;
+    const std::uint8_t* id = task.cluster;
     const float whole = 255.0f * static_cast<float>(task.n_poses);
     Units part = 0, full = 0;
     for (std::uint32_t k = 0; k < task.n_frames; ++k) {
         part |= part_units<lanes>(task.frames[k]);
         full |= full_units<lanes>(task.frames[k]);
     }
-    if (part == 0 && task.n_frames == 1 && full == ~Units{0} && is_alone(id, task.frames[0].piece)) {
+    if (part == 0 && task.n_frames == 1 && full == ~Units{0} && is_alone(id, task.frames[0].cluster)) {
         const float scaled = whole * (task.jobs.gain / whole), all = scaled < 1.0f ? scaled : 1.0f;
         for (int t = 0; t < kTileTexels; ++t) exposure[t] = all;
         return all > 0.0f;
     }
     for (int t = 0; t < kTileTexels; ++t) exposure[t] = 0;
     for (std::uint32_t k = 0; full != 0 && k < task.n_frames; ++k)
-        mark(id, task.frames[k].piece, full_units<lanes>(task.frames[k]), whole, exposure);
+        mark(id, task.frames[k].cluster, full_units<lanes>(task.frames[k]), whole, exposure);
     alignas(64) Finish<lanes> finish{task.jobs.gain / whole, {}};
     Units known = joined<lanes>(full);
     if (part != 0) {
@@ -343,7 +343,7 @@ bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const T
     }
     const atlas::TexelShape* shape = texels.packed.empty() ? &texels.shapes[job.slot] : &unpacked.shape;
     const auto frames = std::span(jobs.frames).subspan(job.first, job.count);
-    const bool known = std::all_of(frames.begin(), frames.end(), [](const PieceFrame& f) { return f.part == 0; });
+    const bool known = std::all_of(frames.begin(), frames.end(), [](const ClusterFrame& f) { return f.partial_quadrants == 0; });
     if (!texels.packed.empty() && !known && unpacked.slot != job.slot) {
         atlas::shape_of(texels, job.slot, unpacked.shape);
         unpacked.slot = job.slot;
@@ -354,7 +354,7 @@ bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const T
                     jobs.pairs.data(),
                     job.count,
                     static_cast<std::uint32_t>(jobs.sub_poses.size()),
-                    texels.tiles[job.slot].piece.data(),
+                    texels.tiles[job.slot].cluster.data(),
                     shape->px.data(),
                     shape->py.data(),
                     shape->pz.data(),

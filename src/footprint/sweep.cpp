@@ -68,9 +68,9 @@ TUFT_CLONES void larger(const float* in, std::size_t ahead, float* out, std::siz
 /// out = the largest of `most` at two lines and of the values between two pairs of lines, line for
 /// line.
 TUFT_CLONES void largest(const float* __restrict lines, const float* __restrict most,
-                         const SweepScratch::Passage* passages, int n, float* __restrict out) {
+                         const SweepScratch::SweptLines* swept_lines, int n, float* __restrict out) {
     for (int k = 0; k < n; ++k, out += kStrip) {
-        const SweepScratch::Passage& p = passages[k];
+        const SweepScratch::SweptLines& p = swept_lines[k];
         const float s = p.after_back, t = p.after_on;
         const float *pa = lines + p.back, *pb = pa + kStrip, *qa = lines + p.on, *qb = qa + kStrip;
         const float *c = most + p.first, *d = most + p.last;
@@ -230,7 +230,7 @@ void most_over(const Sheared& sheared, SweepScratch& scratch) {
     while (2 * wide <= count) wide *= 2;
     Footprint& swept = sheared.lay_out(scratch);
     scratch.passed.resize(static_cast<std::size_t>(swept.height) * kStrip + 2);
-    scratch.passages.resize(static_cast<std::size_t>(swept.height));
+    scratch.swept_lines.resize(static_cast<std::size_t>(swept.height));
     for (int k = 0; k < swept.height; ++k) {
         const int x = sheared.start() + k + room;
         const auto between = [&](double y, std::size_t& line, float& after) {
@@ -238,7 +238,7 @@ void most_over(const Sheared& sheared, SweepScratch& scratch) {
             line = std::size_t(i) * kStrip;
             after = static_cast<float>(std::clamp(y - i, 0.0, 1.0));
         };
-        SweepScratch::Passage& p = scratch.passages[k];
+        SweepScratch::SweptLines& p = scratch.swept_lines[k];
         between(x + back, p.back, p.after_back);
         between(x + on, p.on, p.after_on);
         p.first = std::size_t(std::clamp(x + begin, 0, total - 1)) * kStrip;
@@ -250,7 +250,7 @@ void most_over(const Sheared& sheared, SweepScratch& scratch) {
         for (int w = 1; w < wide; w *= 2)
             larger(w == 1 ? lines.data() : most.data(), std::size_t(w) * kStrip, most.data(),
                    std::size_t(total - w) * kStrip);
-        largest(lines.data(), most.data(), scratch.passages.data(), swept.height,
+        largest(lines.data(), most.data(), scratch.swept_lines.data(), swept.height,
                 scratch.passed.data());
         std::uint8_t* out = swept.coverage.data() + from;
         if (from + kStrip <= sheared.across) {  // the next strip goes over the last two

@@ -17,18 +17,18 @@ constexpr float kUpwind = 0.2f;       // cosine to the source of neighbours that
 constexpr float kNearSource = 0.5f;   // squared distance over hop below which hops are added up
 constexpr float kLeastStretch = 0.6f; // and its inverse: beyond, the ways to both differ
 constexpr float kOverBorder = 0.3f;  // cosine of an open border's outward direction to the source
-constexpr float kDetour = 2;  // piece radii round the picture in which ways to it are looked for
+constexpr float kDetour = 2;  // cluster radii round the picture in which ways to it are looked for
 constexpr float kFold =
-    0.99f;  // of the straight line in space: places nearer than that are folded over themselves
-constexpr float kLater = 1.05f;  // of the squared distance expected: the piece's turn comes later
+    0.99f;  // of the straight line in space: places nearer than that are occluded over themselves
+constexpr float kLater = 1.05f;  // of the squared distance expected: the cluster's turn comes later
 // Ways that bend round a corner (see bent_way).
 constexpr float kShortest = 0.95f;  // of the straight line in space: a shorter way is none
 constexpr float kBackward = 0.03f, kRound = 0.1f;  // of a hop: ends nearer than it began by so much
 constexpr float kCorner = 0.8f;   // of a hop, what it adds to a way that bends
-constexpr float kBeside = 1.6f;   // piece radii: the source may lie beside the piece itself
+constexpr float kBeside = 1.6f;   // cluster radii: the source may lie beside the cluster itself
 constexpr float kBetween = 0.8f;  // of the distance it began at: may lead between two neighbours
 
-constexpr std::uint32_t kMostEdges = 64;  // of a piece that are looked at
+constexpr std::uint32_t kMostEdges = 64;  // of a cluster that are looked at
 
 /// Signed angle from p to q, |p||q| = `lengths`, within 5e-5 of itself below 62°; beyond, not a
 /// number. By the tangent of its half and a Padé approximant: the same bits in every library.
@@ -39,35 +39,35 @@ float angle(const Vec2f& p, const Vec2f& q, float lengths) {
 }
 
 struct Walk {
-    const atlas::PieceGraph& graph;
+    const atlas::ClusterGraph& graph;
     PlanScratch& scratch;
     const Reach& reach;
-    std::uint32_t start;  ///< the piece touched
-    std::size_t folded = 0;  ///< pieces that no straight way leads to
+    std::uint32_t start;  ///< the cluster touched
+    std::size_t occluded = 0;  ///< clusters that no straight way leads to
 
-    PlanScratch::Node& node(std::uint32_t piece) { return node_of(scratch, piece); }
+    PlanScratch::Node& node(std::uint32_t cluster) { return node_of(scratch, cluster); }
 
     /// `key`: squared distance from the stamp's origin.
-    void push(PlanScratch::Node& n, std::uint32_t piece, float key) {
+    void push(PlanScratch::Node& n, std::uint32_t cluster, float key) {
         n.key = key;
-        scratch.heap.emplace_back(key, piece);
+        scratch.heap.emplace_back(key, cluster);
         std::push_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
     }
 
-    /// What one settled neighbour says of a piece's place.
+    /// What one settled neighbour says of a cluster's place.
     struct Hint {
         float weight, hop2, u, v, c, s;
         float bent;  ///< length of the way where it is not straight, else 0
-        const atlas::PieceEdge* edge;
+        const atlas::ClusterEdge* edge;
     };
 
-    /// Place of a piece: mean of what its settled neighbours say, those in radial direction and
+    /// Place of a cluster: mean of what its settled neighbours say, those in radial direction and
     /// near by first. Behind an obstacle the ways round it on both sides lead to different
     /// places; there the neighbour with most weight and those who agree with it decide. Ways that
     /// bend round a corner count where no straight one leads. No place is nearer than the straight
     /// line in space.
-    void place(const atlas::Piece& piece, std::uint32_t index, PlanScratch::Node& n) {
-        const float least = least_place2(piece);
+    void place(const atlas::TexelCluster& cluster, std::uint32_t index, PlanScratch::Node& n) {
+        const float least = least_place2(cluster);
         std::array<Hint, 24> hints;
         std::size_t count = 0, best = 0, n_straight = 0, n_settled = 0;
         const std::uint32_t first = graph.edge_start[index];
@@ -80,13 +80,13 @@ struct Walk {
             n_settled += (from.epoch == scratch.epoch) & (from.state == kFinal);
         }
         for (std::size_t i = 0; i < n_settled && count < hints.size(); ++i) {
-            const atlas::PieceEdge& e = graph.edges[settled[i]];
+            const atlas::ClusterEdge& e = graph.edges[settled[i]];
             const PlanScratch::Node& from = scratch.nodes[e.to];
             const float ci = from.c * e.c + from.s * e.s, si = from.s * e.c - from.c * e.s;
             const float hu = ci * e.hop_u - si * e.hop_v, hv = si * e.hop_u + ci * e.hop_v;
             const float pu = from.u - hu, pv = from.v - hv;
             const float hh = hu * hu + hv * hv, pp = pu * pu + pv * pv, hp = hu * pu + hv * pv;
-            const float way = bent_way(e.to, piece, pp, hh, least);
+            const float way = bent_way(e.to, cluster, pp, hh, least);
             if (way > 0 && n_straight > 0) continue;
             if (way == 0 && n_straight++ == 0) count = best = 0;
             const float cos2 = hh * pp > 0 ? hp * hp / (hh * pp) : 1.0f;
@@ -110,22 +110,22 @@ struct Walk {
             s += h.weight * h.s;
         }
         const float turn = std::sqrt(c * c + s * s), away = std::sqrt(u * u + v * v);
-        const float straight = total * std::max(glm::length(piece.centre - reach.origin), bent);
+        const float straight = total * std::max(glm::length(cluster.centre - reach.origin), bent);
         const float longer = away > 0 && away < 0.999f * straight ? straight / away : 1.0f;
-        folded += bent > 0 || away < kFold * straight;
+        occluded += bent > 0 || away < kFold * straight;
         n.u = longer * u / total;
         n.v = longer * v / total;
         if (!(turn > 0)) return;
         n.c = c / turn;
         n.s = s / turn;
-        if (longer == 1) swing_in(std::span(hints.data(), count), piece, n);
-        n.lit = is_lit(std::span(hints.data(), count), piece, n);
+        if (longer == 1) swing_in(std::span(hints.data(), count), cluster, n);
+        n.lit = is_lit(std::span(hints.data(), count), cluster, n);
     }
 
     /// Squared distance below which a place is no way over the surface but a fold laid over itself:
     /// no way is shorter than the straight line in space.
-    float least_place2(const atlas::Piece& piece) const {
-        const Vec3f d = piece.centre - reach.origin;
+    float least_place2(const atlas::TexelCluster& cluster) const {
+        const Vec3f d = cluster.centre - reach.origin;
         return kShortest * kShortest * glm::dot(d, d);
     }
 
@@ -151,34 +151,34 @@ struct Walk {
         return h.u * from.v - h.v * from.u;
     }
 
-    /// A straight way from the source over a settled piece to the next ends further away than the piece
+    /// A straight way from the source over a settled cluster to the next ends further away than the cluster
     /// lies, and no nearer than the straight line in space. Where folds unrolled over each other say
-    /// otherwise, the true way bends round a corner; its length is taken to be the piece's distance and
+    /// otherwise, the true way bends round a corner; its length is taken to be the cluster's distance and
     /// `kCorner` of the hop. 0: the way is straight.
-    float bent_way(std::uint32_t last, const atlas::Piece& next, float place2, float hop2, float least2) const {
+    float bent_way(std::uint32_t last, const atlas::TexelCluster& next, float place2, float hop2, float least2) const {
         const PlanScratch::Node& from = scratch.nodes[last];
         const float from2 = from.u * from.u + from.v * from.v;
         if (place2 >= from2 && place2 >= least2) return 0;
         // Over an opening the surface goes on as if there were none.
         if (last == start || !from.lit || next.outward != Vec3f{0}) return 0;
-        const float beside = kBeside * graph.pieces[last].radius;
+        const float beside = kBeside * graph.clusters[last].radius;
         if (from2 < beside * beside) return 0;
         const float place = std::sqrt(place2), far = std::sqrt(from2), hop = std::sqrt(hop2);
         const float back = place2 < least2 ? 1.0f : std::min((far - place) / hop - kBackward, kRound) / kRound;
         return back > 0 ? place + back * (far + kCorner * hop - place) : 0;
     }
 
-    /// Whether straight ways lead from the source to the piece, and no opening of the mesh lies
+    /// Whether straight ways lead from the source to the cluster, and no opening of the mesh lies
     /// between: its own open border does not face the source, and the neighbour next to the way is lit.
-    bool is_lit(std::span<const Hint> hints, const atlas::Piece& piece, const PlanScratch::Node& n) const {
+    bool is_lit(std::span<const Hint> hints, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) const {
         bool lit = true;
         for (const Hint& h : hints) lit = lit && scratch.nodes[h.edge->to].lit;
-        if (lit && piece.outward == Vec3f{0}) return true;
+        if (lit && cluster.outward == Vec3f{0}) return true;
         const float d = std::sqrt(n.u * n.u + n.v * n.v);
         const float sx = -(n.c * n.u + n.s * n.v), sy = -(n.c * n.v - n.s * n.u);
-        const Vec3f b = glm::cross(piece.normal, piece.tangent);
-        const Vec3f to_source = sx * piece.tangent + sy * b;
-        if (glm::dot(piece.outward, to_source) > kOverBorder * d * glm::length(piece.outward)) return false;
+        const Vec3f b = glm::cross(cluster.normal, cluster.tangent);
+        const Vec3f to_source = sx * cluster.tangent + sy * b;
+        if (glm::dot(cluster.outward, to_source) > kOverBorder * d * glm::length(cluster.outward)) return false;
         const Hint* nearest = nullptr;
         float most = -2;
         for (const Hint& h : hints) {
@@ -193,11 +193,11 @@ struct Walk {
     /// Carries distance and angle on from two settled neighbours with the source between them
     /// (geodesic polar coordinates, Melvær and Reimers 2012): the circles of their distances meet
     /// in the unfolded source, and angles at it are in proportion to angles at the origin. Where the
-    /// surface curves, adding up hops would turn the piece by the curvature that they enclose.
-    void swing_in(std::span<const Hint> hints, const atlas::Piece& piece, PlanScratch::Node& n) {
+    /// surface curves, adding up hops would turn the cluster by the curvature that they enclose.
+    void swing_in(std::span<const Hint> hints, const atlas::TexelCluster& cluster, PlanScratch::Node& n) {
         const float d = std::sqrt(n.u * n.u + n.v * n.v);
         if (!(d > 0)) return;
-        // Towards the source, in the piece's frame.
+        // Towards the source, in the cluster's frame.
         const float sx = -(n.c * n.u + n.s * n.v) / d, sy = -(n.c * n.v - n.s * n.u) / d;
         const Hint *left = nullptr, *right = nullptr;
         float left_cos = kUpwind, right_cos = kUpwind;
@@ -237,7 +237,7 @@ struct Walk {
         const float sin = turned * (1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42)));
         const float cos = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56)));
         const float eu = (cos * a.u - sin * a.v) / da, ev = (sin * a.u + cos * a.v) / da;
-        if (far < 0.999f * glm::length(piece.centre - reach.origin)) return;
+        if (far < 0.999f * glm::length(cluster.centre - reach.origin)) return;
         n.u = far * eu;
         n.v = far * ev;
         const float ex = -source.x / far, ey = -source.y / far;
@@ -248,15 +248,15 @@ struct Walk {
 
     /// Worth a visit where one neighbour sees it: in the picture or on a way into it. Its final
     /// place may be a little nearer.
-    bool near_picture(const atlas::Piece& piece, float u, float v) const {
-        const float r = kDetour * piece.radius;
+    bool near_picture(const atlas::TexelCluster& cluster, float u, float v) const {
+        const float r = kDetour * cluster.radius;
         const float du = std::max({std::min(reach.lo.x, 0.0f) - u, u - std::max(reach.hi.x, 0.0f), 0.0f});
         const float dv = std::max({std::min(reach.lo.y, 0.0f) - v, v - std::max(reach.hi.y, 0.0f), 0.0f});
-        const float far = reach.radius + (kPieceSlack + kAgree) * piece.radius;
+        const float far = reach.radius + (kPieceSlack + kAgree) * cluster.radius;
         return du * du + dv * dv <= r * r && u * u + v * v <= far * far;
     }
 
-    /// Dijkstra over the pieces by distance from the stamp's origin; leaves those that the
+    /// Dijkstra over the clusters by distance from the stamp's origin; leaves those that the
     /// picture reaches in scratch.reached, in order of their numbers.
     void run() {
         scratch.reached.clear();
@@ -266,28 +266,28 @@ struct Walk {
             scratch.heap.pop_back();
             PlanScratch::Node& n = scratch.nodes[i];
             if (n.state != kOpen || key > n.key) continue;
-            const atlas::Piece& piece = graph.pieces[i];
-            if (i != start) place(piece, i, n);
+            const atlas::TexelCluster& cluster = graph.clusters[i];
+            if (i != start) place(cluster, i, n);
             const float distance = std::sqrt(n.u * n.u + n.v * n.v);
             // Its turn comes later where the neighbours see it further away than the first of them did.
             if (distance * distance > kLater * key && i != start) {
-                if (distance - kPieceSlack * piece.radius > reach.radius) n.state = kOutside;
+                if (distance - kPieceSlack * cluster.radius > reach.radius) n.state = kOutside;
                 else push(n, i, distance * distance);
                 continue;
             }
             n.state = kOutside;
-            if (distance - kPieceSlack * piece.radius > reach.radius || faces_away(reach, piece))
+            if (distance - kPieceSlack * cluster.radius > reach.radius || faces_away(reach, cluster))
                 continue;
             n.state = kFinal;
-            if (in_picture(reach, piece, n)) scratch.reached.push_back(i);
+            if (in_picture(reach, cluster, n)) scratch.reached.push_back(i);
             for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
-                const atlas::PieceEdge& e = graph.edges[k];
+                const atlas::ClusterEdge& e = graph.edges[k];
                 PlanScratch::Node& other = node(e.to);
                 if (other.state != kOpen) continue;
                 const float u = n.u + n.c * e.hop_u - n.s * e.hop_v;
                 const float v = n.v + n.s * e.hop_u + n.c * e.hop_v;
                 const float distance2 = u * u + v * v;
-                const atlas::Piece& next = graph.pieces[e.to];
+                const atlas::TexelCluster& next = graph.clusters[e.to];
                 const float hop2 = e.hop_u * e.hop_u + e.hop_v * e.hop_v;
                 const float bent = bent_way(i, next, distance2, hop2, least_place2(next));
                 const float key2 = bent > 0 ? bent * bent : distance2;
@@ -300,8 +300,8 @@ struct Walk {
 
 }  // namespace
 
-PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t piece) {
-    PlanScratch::Node& n = scratch.nodes[piece];
+PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t cluster) {
+    PlanScratch::Node& n = scratch.nodes[cluster];
     if (n.epoch != scratch.epoch) {
         n = {};
         n.epoch = scratch.epoch;
@@ -310,32 +310,32 @@ PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t piece) {
     return n;
 }
 
-bool faces_away(const Reach& reach, const atlas::Piece& piece) {
-    const float c = glm::dot(piece.normal, reach.normal);
+bool faces_away(const Reach& reach, const atlas::TexelCluster& cluster) {
+    const float c = glm::dot(cluster.normal, reach.normal);
     if (c > kFacingAway) return false;
-    return std::acos(std::max(c, -1.0f)) - std::acos(std::min(piece.cone_cos, 1.0f)) >
+    return std::acos(std::max(c, -1.0f)) - std::acos(std::min(cluster.cone_cos, 1.0f)) >
            std::acos(static_cast<float>(kFacingAway));
 }
 
-bool in_picture(const Reach& reach, const atlas::Piece& piece, const PlanScratch::Node& n) {
-    const float r = kPieceSlack * piece.radius;
+bool in_picture(const Reach& reach, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) {
+    const float r = kPieceSlack * cluster.radius;
     const float du = std::max({reach.lo.x - n.u, n.u - reach.hi.x, 0.0f});
     const float dv = std::max({reach.lo.y - n.v, n.v - reach.hi.y, 0.0f});
     return du * du + dv * dv <= r * r;
 }
 
-void begin_walk(PlanScratch& scratch, std::size_t n_pieces) {
+void begin_walk(PlanScratch& scratch, std::size_t n_clusters) {
     if (scratch.epoch == kNone) {
         scratch.nodes.clear();
         scratch.epoch = 0;
     }
-    if (scratch.nodes.size() < n_pieces) scratch.nodes.resize(n_pieces);
+    if (scratch.nodes.size() < n_clusters) scratch.nodes.resize(n_clusters);
     ++scratch.epoch;
     scratch.heap.clear();
 }
 
 PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start) {
-    PlanScratch::Node& n = node_of(scratch, start.piece);
+    PlanScratch::Node& n = node_of(scratch, start.cluster);
     n.u = start.place.x;
     n.v = start.place.y;
     n.c = start.turn.x;
@@ -343,13 +343,13 @@ PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start) {
     return n;
 }
 
-std::size_t walk_pieces(const atlas::PieceGraph& graph, const Reach& reach, const Start& start,
+std::size_t walk_clusters(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start,
                         PlanScratch& scratch) {
-    begin_walk(scratch, graph.n_pieces());
-    Walk walk{graph, scratch, reach, start.piece};
-    walk.push(place_start(scratch, start), start.piece, 0);
+    begin_walk(scratch, graph.n_clusters());
+    Walk walk{graph, scratch, reach, start.cluster};
+    walk.push(place_start(scratch, start), start.cluster, 0);
     walk.run();
-    return walk.folded;
+    return walk.occluded;
 }
 
 }  // namespace tuft::footprint

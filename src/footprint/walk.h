@@ -1,13 +1,13 @@
 #pragma once
 
-#include "atlas/texels/piece_graph.h"
+#include "atlas/texels/cluster_graph.h"
 #include "footprint/stamp.h"
 
-/// The walk over the pieces of the surface from the point that a stamp touches: which of them
+/// The walk over the clusters of the surface from the point that a stamp touches: which of them
 /// hang together with it within the footprint, and where they lie in its tangent plane.
 namespace tuft::footprint {
 
-/// Of a piece's radius: the log map stretches it a little.
+/// Of a cluster's radius: the log map stretches it a little.
 inline constexpr float kPieceSlack = 1.1f;
 
 /// What the walk needs to know of a stamp.
@@ -19,28 +19,28 @@ struct Reach {
 
 /// Where the walk starts.
 struct Start {
-    std::uint32_t piece = kNone;
+    std::uint32_t cluster = kNone;
     Vec2f place{0};    ///< metres, of its centre in the stamp's plane
     Vec2f turn{1, 0};  ///< cosine and sine of the angle by which its frame stands turned there
 };
 
-/// Dijkstra over the pieces by the length of the straightest ways from the stamp's origin. Leaves
+/// Dijkstra over the clusters by the length of the straightest ways from the stamp's origin. Leaves
 /// those that the picture reaches in scratch.reached, in order of their numbers, and the places of
 /// all visited in scratch.nodes. Returns to how many of them no straight way over their neighbours leads: where the
-/// surface folds. Cost: 0.2 µs a piece.
-std::size_t walk_pieces(const atlas::PieceGraph& graph, const Reach& reach, const Start& start,
+/// surface folds. Cost: 0.2 µs a cluster.
+std::size_t walk_clusters(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start,
                         PlanScratch& scratch);
 
-/// What the walk over pieces and that over folds (folds.h) have in common: states of a piece,
+/// What the walk over clusters and that over folds (folds.h) have in common: states of a cluster,
 enum : std::uint8_t { kOpen, kFinal, kOutside };
-/// all nodes open again, those of no piece visited yet,
-void begin_walk(PlanScratch& scratch, std::size_t n_pieces);
-/// a piece's node,
-PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t piece);
+/// all nodes open again, those of no cluster visited yet,
+void begin_walk(PlanScratch& scratch, std::size_t n_clusters);
+/// a cluster's node,
+PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t cluster);
 PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start);
-/// and what is never inked, or lies beside the picture: the piece's disc has no point in common
+/// and what is never inked, or lies beside the picture: the cluster's disc has no point in common
 /// with it.
-bool faces_away(const Reach& reach, const atlas::Piece& piece);
-bool in_picture(const Reach& reach, const atlas::Piece& piece, const PlanScratch::Node& n);
+bool faces_away(const Reach& reach, const atlas::TexelCluster& cluster);
+bool in_picture(const Reach& reach, const atlas::TexelCluster& cluster, const PlanScratch::Node& n);
 
 }  // namespace tuft::footprint

@@ -24,7 +24,7 @@ constexpr double kChord = 0.1;     // of edges, and between points
 constexpr double kSlack = 0.02;    // that the outline which lines follow leaves the true one
 constexpr double kBare = 1;        // from the outline to the next line, where it counts as bare
 constexpr double kPoint = 0.4;     // within which a line turns at a point
-constexpr double kPast = 0.5;      // that it goes on past the corner, on the tape
+constexpr double kPast = 0.5;      // that it goes on past the corner, on the stencil edge
 constexpr double kBetween = 1.75;  // and between others, where it begins thin
 constexpr double kSmall = 8;  // shorter loops get a dab in their middle, than half of it are one
 constexpr double kShort = 0.5, kFine = 4;  // shorter pieces are none; of finer lines
@@ -81,31 +81,31 @@ std::vector<std::vector<Edge>> border_of(const Shape& shape, double chord) {
     return border;
 }
 
-constexpr double kTaped = 3;  // widths from a line within which the outline is taped
+constexpr double kStencilReach = 3;  // widths from a line within which the outline is masked
 
-std::vector<stroke::TapeEdge> tape_of(const Shape& shape) {
-    std::vector<stroke::TapeEdge> tape;
+std::vector<stroke::StencilEdge> stencil_of(const Shape& shape) {
+    std::vector<stroke::StencilEdge> stencil;
     for (const Ring& ring : shape.rings())
         for (std::size_t i = 0; i < ring.size(); ++i)
-            tape.push_back({ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]});
-    return tape;
+            stencil.push_back({ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]});
+    return stencil;
 }
 
-/// Gives each line the tape beside it.
-void stick(const std::vector<stroke::TapeEdge>& tape, std::vector<AreaLine>& lines) {
+/// Gives each line the stencil edge beside it.
+void attach_stencils(const std::vector<stroke::StencilEdge>& stencil, std::vector<AreaLine>& lines) {
     for (AreaLine& line : lines) {
         Vec2 low = line.line.front(), high = low;
         for (const Vec2& p : line.line) low = glm::min(low, p), high = glm::max(high, p);
-        const double reach = kTaped * line.width;
+        const double reach = kStencilReach * line.width;
         low -= reach, high += reach;
-        for (const stroke::TapeEdge& e : tape) {
+        for (const stroke::StencilEdge& e : stencil) {
             if (std::max(e.from.x, e.to.x) < low.x || std::max(e.from.y, e.to.y) < low.y ||
                 std::min(e.from.x, e.to.x) > high.x || std::min(e.from.y, e.to.y) > high.y)
                 continue;
             if (std::any_of(line.line.begin(), line.line.end(), [&](const Vec2& p) {
                     return segment_distance(e.from, e.to, p) < reach;
                 }))
-                line.tape.push_back(e);
+                line.stencil.push_back(e);
         }
     }
 }
@@ -268,7 +268,7 @@ std::vector<Part> parted(const Line& line, double reach) {
 /// From the end of a line at `d` from the outline, where it came to a point, into the corner of the
 /// area: to where the outline along it and the one on the point's other side meet, which is
 /// straight ahead on their bisector; a line `inside` others, or one that ends between others, 7/4
-/// of a width; past the corner on tape. The length of a way into a corner, else 0.
+/// of a width; past the corner on stencil edge. The length of a way into a corner, else 0.
 double run_out(Line& line, const Line& other, double d, double width, bool inside,
                const Shape& shape) {
     const double reach = kPoint * width;
@@ -405,7 +405,7 @@ std::vector<AreaLine> area_lines(std::span<const Ring> rings, FillRule rule) {
         for (auto shell = shells.rbegin(); shell != shells.rend(); ++shell)
             for (AreaLine& line : *shell) lines.push_back(std::move(line));
     }
-    stick(tape_of(shape), lines);
+    attach_stencils(stencil_of(shape), lines);
     return lines;
 }
 

@@ -29,7 +29,7 @@ nlohmann::json snapshot_json(const stroke::Stroke& s) {
     const stroke::Trace& t = s.trace;
     const stroke::Placement& p = t.placement;
     return {{"id", s.id}, {"brush", t.brush}, {"ink", t.ink}, {"seed", t.seed}, {"label", t.label}, {"hidden", s.hidden}, {"flat", t.flat},
-            {"laying", std::string(stroke::laying_name(p.laying))},
+            {"laying", std::string(stroke::surface_mapping_name(p.mapping))},
             {"placement", {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z}},
             {"samples", t.samples.size()}, {"entry", stroke::entry_json(s)}};
 }
@@ -42,10 +42,10 @@ stroke::Stroke entry_of(const nlohmann::json& j) {
     s.trace.seed = j.at("seed").get<std::uint64_t>();
     s.trace.label = j.at("label").get<std::string>();
     s.trace.flat = j.at("flat").get<bool>();
-    const auto laying = stroke::laying_named(j.at("laying").get<std::string>());
+    const auto laying = stroke::surface_mapping_named(j.at("laying").get<std::string>());
     const auto p = j.at("placement").get<std::array<double, 9>>();
     if (!laying || !std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); })) throw Error("its place on the model cannot be read");
-    s.trace.placement = {.origin = {p[0], p[1], p[2]}, .right = {p[3], p[4], p[5]}, .down = {p[6], p[7], p[8]}, .laying = *laying};
+    s.trace.placement = {.origin = {p[0], p[1], p[2]}, .right = {p[3], p[4], p[5]}, .down = {p[6], p[7], p[8]}, .mapping = *laying};
     stroke::read_entry_json(j.at("entry").get<std::string>(), s);
     s.hidden = j.at("hidden").get<bool>();
     return s;

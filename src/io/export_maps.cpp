@@ -24,7 +24,7 @@ const std::vector<std::string>& map_names() {
     return names;
 }
 
-void write_map(const fs::path& path, const std::string& name, const stroke::Painting& painting, const ink::ComposeOptions& compose, int bits) {
+void write_map(const fs::path& path, const std::string& name, const stroke::Document& painting, const ink::ComposeOptions& compose, int bits) {
     const ink::Stack stack = painting.stack();
     const stroke::Model& model = painting.model();
     const bool png = path.extension() == ".png";

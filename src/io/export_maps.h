@@ -28,7 +28,7 @@ const std::vector<std::string>& map_names();
 /// | palette | sRGB 8 | none |
 ///
 /// Throws `Error` for a map that this format does not hold, and where there is nothing to write.
-void write_map(const std::filesystem::path& path, const std::string& name, const stroke::Painting& painting,
+void write_map(const std::filesystem::path& path, const std::string& name, const stroke::Document& painting,
                const ink::ComposeOptions& compose, int bits = 8);
 
 }  // namespace tuft::io

@@ -267,7 +267,7 @@ class Reader : InkmlText {
         const long line = line_at((first ? first : node).offset_debug());
         const InkmlRows rows = decode_inkml(text_of(node), state.format,
                                             options_.max_samples - n_samples_, path, line);
-        std::vector<stroke::Care> before = care_of(*this, node);
+        std::vector<stroke::BrushAction> before = actions_of(*this, node);
         if (rows.n_rows() == 0 && (before.empty() || !options_.actions)) return;
         n_samples_ += rows.n_rows();
 
@@ -314,7 +314,7 @@ class Reader : InkmlText {
         d.trace.ink = state.marks.ink;
         d.trace.layer = state.marks.layer;
         d.trace.mask = state.marks.mask;
-        d.trace.tape = state.marks.tape;
+        d.trace.stencil = state.marks.stencil;
         d.trace.erases = state.marks.erases;
         d.trace.on_palette = state.marks.on_palette;
         d.trace.seed = state.marks.seed;

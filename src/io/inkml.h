@@ -47,7 +47,7 @@ struct InkmlOptions {
 ///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
 ///     tuft:label    any text             tuft:laying  wrap | project
 ///     tuft:mask     name of a mask that the project has
-///     tuft:tape     edges that no ink of a trace gets over: X Y X Y each, metres, what may be painted to the right of
+///     tuft:stencil edge     edges that no ink of a trace gets over: X Y X Y each, metres, what may be painted to the right of
 ///                   their way where Y points down
 ///     tuft:layer    name of a layer      tuft:tool    brush | eraser
 ///     tuft:on       model | palette      tuft:settings  stroke::to_json of a journal's settings

@@ -138,21 +138,21 @@ stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::Ac
 }
 
 /// Four numbers an edge, metres.
-std::vector<stroke::TapeEdge> tape_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+std::vector<stroke::StencilEdge> stencil_of(const InkmlText& file, const xml_node& node, std::string_view text) {
     std::vector<double> numbers;
     while (!text.empty()) {
         const std::size_t begin = text.find_first_not_of(", \t\r\n"), end = std::min(text.find_first_of(", \t\r\n", begin), text.size());
         if (begin == std::string_view::npos) break;
         const auto x = to_number(text.substr(begin, end - begin));
-        if (!x || numbers.size() >= 4 * stroke::kMostTape) file.fail(node, "tuft:tape is not a list of edges, four numbers each");
-        if (!(std::abs(*x) <= kFarthest)) file.fail(node, "an edge of tuft:tape lies more than 10 km away");
+        if (!x || numbers.size() >= 4 * stroke::kMaxStencilEdges) file.fail(node, "tuft:stencil is not a list of edges, four numbers each");
+        if (!(std::abs(*x) <= kFarthest)) file.fail(node, "an edge of tuft:stencil lies more than 10 km away");
         numbers.push_back(*x);
         text.remove_prefix(end);
     }
-    if (numbers.size() % 4 != 0) file.fail(node, "tuft:tape has an edge without four numbers");
-    std::vector<stroke::TapeEdge> tape;
-    for (std::size_t i = 0; i < numbers.size(); i += 4) tape.push_back({{numbers[i], numbers[i + 1]}, {numbers[i + 2], numbers[i + 3]}});
-    return tape;
+    if (numbers.size() % 4 != 0) file.fail(node, "tuft:stencil has an edge without four numbers");
+    std::vector<stroke::StencilEdge> stencil;
+    for (std::size_t i = 0; i < numbers.size(); i += 4) stencil.push_back({{numbers[i], numbers[i + 1]}, {numbers[i + 2], numbers[i + 3]}});
+    return stencil;
 }
 
 }  // namespace
@@ -237,8 +237,8 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
             marks.settings = settings_of(file, node, text);
         else if (type == "mask")
             marks.mask = name_of(file, node, text, "mask");
-        else if (type == "tape")
-            marks.tape = tape_of(file, node, text);
+        else if (type == "stencil" || type == "tape")  // its name before
+            marks.stencil = stencil_of(file, node, text);
         else if (type == "layer")
             marks.layer = name_of(file, node, text, "layer");
         else if (type == "origin") {
@@ -249,9 +249,9 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
         else if (type == "down")
             marks.placement.down = direction_of(file, node, text);
         else if (type == "laying") {
-            const auto laying = stroke::laying_named(text);
+            const auto laying = stroke::surface_mapping_named(text);
             if (!laying) file.fail(node, "tuft:laying is neither wrap, drape nor project");
-            marks.placement.laying = *laying;
+            marks.placement.mapping = *laying;
         } else if (type == "seed") {
             const auto [end, error] =
                 std::from_chars(text.data(), text.data() + text.size(), marks.seed);
@@ -261,8 +261,8 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
     }
 }
 
-std::vector<stroke::Care> care_of(const InkmlText& file, const xml_node& trace) {
-    std::vector<stroke::Care> care;
+std::vector<stroke::BrushAction> actions_of(const InkmlText& file, const xml_node& trace) {
+    std::vector<stroke::BrushAction> care;
     for (const xml_node& node : trace.children()) {
         if (local_name(node) != "annotation") continue;
         std::string_view type = node.attribute("type").value();
@@ -270,7 +270,7 @@ std::vector<stroke::Care> care_of(const InkmlText& file, const xml_node& trace) 
         type.remove_prefix(5);
         const std::string text = text_of(node);
         const stroke::Action action = stroke::action_of(std::string(type));
-        stroke::Care& one = care.emplace_back();
+        stroke::BrushAction& one = care.emplace_back();
         one.action = action;
         if (action == stroke::Action::dip || action == stroke::Action::fill)
             one.ink = trimmed(text);

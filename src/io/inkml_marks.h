@@ -45,7 +45,7 @@ struct InkmlMarks {
     stroke::Placement placement;
     bool placed = false;
     std::string brush, ink, label, layer, mask;
-    std::vector<stroke::TapeEdge> tape;
+    std::vector<stroke::StencilEdge> stencil;
     std::uint64_t seed = 0;
     std::string settings;
     bool erases = false, on_palette = false, keeps_clock = false;
@@ -55,6 +55,6 @@ struct InkmlMarks {
 void apply_marks(const InkmlText& file, InkmlMarks& marks, const pugi::xml_node& parent);
 
 /// What is to be done with the brush before this trace, in the order written.
-std::vector<stroke::Care> care_of(const InkmlText& file, const pugi::xml_node& trace);
+std::vector<stroke::BrushAction> actions_of(const InkmlText& file, const pugi::xml_node& trace);
 
 }  // namespace tuft::io

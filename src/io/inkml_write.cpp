@@ -112,7 +112,7 @@ std::string fill_attributes(const stroke::Fill& fill, const Style& style) {
 bool same_place(const Trace& a, const Trace& b) {
     return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer && a.mask == b.mask && a.erases == b.erases && a.on_palette == b.on_palette && a.settings == b.settings &&
            a.placement.origin == b.placement.origin && a.placement.right == b.placement.right &&
-           a.placement.down == b.placement.down && a.placement.laying == b.placement.laying;
+           a.placement.down == b.placement.down && a.placement.mapping == b.placement.mapping;
 }
 
 void add_format(std::string& out, Kind kind, const Style& style) {
@@ -156,7 +156,7 @@ void add_sample(std::string& out, const stroke::TraceSample& s, Kind kind, const
 void add_trace(std::string& out, const Trace& trace, Kind kind, const Style& style) {
     out += fmt::format("    <trace contextRef=\"#{}\">\n", name_of(kind));
     add_annotation(out, "      ", "label", trace.label);
-    for (const stroke::Care& care : trace.before) {
+    for (const stroke::BrushAction& care : trace.before) {
         const auto part = [](const char* name, double value, double usual = 1) {
             return value == usual ? std::string() : fmt::format(" {}=\"{}\"", name, value);
         };
@@ -165,11 +165,11 @@ void add_trace(std::string& out, const Trace& trace, Kind kind, const Style& sty
                            part("depth", care.extent.depth), part("amount", care.extent.amount), part("side", care.extent.side, 0),
                            care.seconds > 0 ? fmt::format("{}", care.seconds) : escaped(care.ink));
     }
-    if (!trace.tape.empty()) {
-        std::string tape;
-        for (const stroke::TapeEdge& e : trace.tape)
-            tape += fmt::format("{}{} {} {} {}", tape.empty() ? "" : ", ", e.from.x, e.from.y, e.to.x, e.to.y);
-        add_annotation(out, "      ", "tape", tape);
+    if (!trace.stencil.empty()) {
+        std::string stencil;
+        for (const stroke::StencilEdge& e : trace.stencil)
+            stencil += fmt::format("{}{} {} {} {}", stencil.empty() ? "" : ", ", e.from.x, e.from.y, e.to.x, e.to.y);
+        add_annotation(out, "      ", "stencil", stencil);
     }
     if (trace.seed) add_annotation(out, "      ", "seed", std::to_string(trace.seed));
     const double start = trace.samples.empty() ? 0 : trace.samples.front().time;
@@ -193,7 +193,7 @@ void add_group_marks(std::string& out, const Trace& first, const Style& style) {
     add_annotation(out, "    ", "origin", point_text(first.placement.origin, style));
     add_annotation(out, "    ", "right", vector_text(first.placement.right, style, 10));
     add_annotation(out, "    ", "down", vector_text(first.placement.down, style, 10));
-    add_annotation(out, "    ", "laying", std::string(stroke::laying_name(first.placement.laying)));
+    add_annotation(out, "    ", "laying", std::string(stroke::surface_mapping_name(first.placement.mapping)));
 }
 
 }  // namespace

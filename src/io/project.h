@@ -25,7 +25,7 @@
 namespace tuft::io {
 
 inline constexpr int kProjectFormat = 7;  ///< highest format version this program reads
-inline constexpr int kTapedFormat = 7;    ///< of projects with strokes that keep to tape
+inline constexpr int kTapedFormat = 7;    ///< of projects with strokes that keep to stencil edge
 inline constexpr int kColoursFormat = 6;  ///< of projects with colours of the model
 inline constexpr int kDrapedFormat = 5;   ///< of projects with draped strokes
 inline constexpr int kPaletteFormat = 4;  ///< of projects with a palette
@@ -109,7 +109,7 @@ class Project {
     /// Who is asked from now on whether to go on; nobody: empty.
     void listen(ProgressFn progress);
     /// Whether another program changed the file since it was opened, or another file is in its place.
-    /// Looks at the file's time first: about a microsecond while nothing changes.
+    /// Appearance at the file's time first: about a microsecond while nothing changes.
     bool changed_outside() const;
     /// Runs `read` on one state of the file, whoever writes meanwhile.
     void read_together(const std::function<void()>& read) const;

@@ -73,7 +73,7 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         insert.bind(6, stroke::entry_json(stroke));
         insert.bind(7, stroke.hidden ? 1 : 0);
         insert.bind(8, t.flat ? 1 : 0);
-        insert.bind(9, std::string(stroke::laying_name(t.placement.laying)));
+        insert.bind(9, std::string(stroke::surface_mapping_name(t.placement.mapping)));
         insert.bind(10, placement.data(), static_cast<int>(sizeof placement));
         insert.bind(11, static_cast<std::int64_t>(t.samples.size()));
         insert.bind(12, blob.data(), static_cast<int>(blob.size()));
@@ -83,8 +83,8 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
             stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
             raise_format(db, kLayersFormat);
         if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash) raise_format(db, kPaletteFormat);
-        if (t.flat && t.placement.laying == stroke::Laying::drape) raise_format(db, kDrapedFormat);
-        if (!t.tape.empty()) raise_format(db, kTapedFormat);
+        if (t.flat && t.placement.mapping == stroke::SurfaceMapping::drape) raise_format(db, kDrapedFormat);
+        if (!t.stencil.empty()) raise_format(db, kTapedFormat);
     }
 }
 
@@ -116,9 +116,9 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         stroke::read_entry_json(text(5, kMostSettings, "the settings of a stroke"), stroke);
         stroke.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
-        const auto laying = stroke::laying_named(text(8, kMostWord, "how a stroke is laid"));
+        const auto laying = stroke::surface_mapping_named(text(8, kMostWord, "how a stroke is laid"));
         if (!laying) throw Error(what + " is laid onto the model in a way that is not known");
-        t.placement.laying = *laying;
+        t.placement.mapping = *laying;
         const SQLite::Column placement = select.getColumn(9);
         std::array<double, 9> p{};
         if (placement.getBytes() != static_cast<int>(sizeof p))

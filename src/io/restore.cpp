@@ -2,7 +2,7 @@
 
 namespace tuft::io {
 
-void use_presets(const Project& project, stroke::Painting& painting) {
+void use_presets(const Project& project, stroke::Document& painting) {
     const std::string file = project.path().string();
     for (const auto& [name, toml] : project.brushes()) {
         brush::Preset preset = brush::parse_preset(toml, file + ": brush " + name);
@@ -16,7 +16,7 @@ void use_presets(const Project& project, stroke::Painting& painting) {
     }
 }
 
-void restore_strokes(const Project& project, stroke::Painting& painting,
+void restore_strokes(const Project& project, stroke::Document& painting,
                      const ProgressFn& progress) {
     std::vector<stroke::Stroke> strokes;
     std::optional<SavedCanvases> saved;

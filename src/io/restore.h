@@ -8,11 +8,11 @@
 namespace tuft::io {
 
 /// Lets the painting use the presets stored in the project.
-void use_presets(const Project& project, stroke::Painting& painting);
+void use_presets(const Project& project, stroke::Document& painting);
 
 /// Brings the painting to the project's last stroke: by its saved texels where they fit its
 /// journal, else by replay.
-void restore_strokes(const Project& project, stroke::Painting& painting,
+void restore_strokes(const Project& project, stroke::Document& painting,
                      const ProgressFn& progress);
 
 }  // namespace tuft::io

@@ -33,7 +33,7 @@ struct Drawn {
     Line line;
     double width = 0;           // of its stroke; 0: it has none
     double head = 0, tail = 0;  // lengths over which it runs out into a point
-    std::vector<stroke::TapeEdge> tape = {};
+    std::vector<stroke::StencilEdge> stencil = {};
 };
 
 // Reads numbers, flags and words from an attribute.
@@ -136,8 +136,8 @@ class Drawing {
         for (std::size_t i = before; i < lines_.size(); ++i) rings.push_back(lines_[i].line);
         std::vector<Drawn> area;
         for (AreaLine& line : area_lines(rings, style.rule)) {
-            n_points_ += line.line.size() + line.tape.size();
-            area.push_back({std::move(line.line), line.width, line.head, line.tail, std::move(line.tape)});
+            n_points_ += line.line.size() + line.stencil.size();
+            area.push_back({std::move(line.line), line.width, line.head, line.tail, std::move(line.stencil)});
         }
         if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
         if (area.empty()) return;
@@ -512,7 +512,7 @@ class Drawing {
     SvgIds by_id_;
 };
 
-constexpr double kFuller = 1.3;  // than a corner is wide: a tuft that runs into one, on tape
+constexpr double kFuller = 1.3;  // than a corner is wide: a tuft that runs into one, on stencil edge
 
 // Where a line has a width, pressures say which part of it is drawn.
 void give_width(stroke::Trace& trace, const Drawn& drawn, double full) {
@@ -556,7 +556,7 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     std::vector<stroke::Trace> traces = parse_inkml(ink.str(), source, options.ink);
     for (std::size_t i = 0; i < traces.size(); ++i) {
         give_width(traces[i], drawing.lines().at(i), options.ink.flat_pressure);
-        traces[i].tape = drawing.lines().at(i).tape;
+        traces[i].stencil = drawing.lines().at(i).stencil;
     }
     return traces;
 }

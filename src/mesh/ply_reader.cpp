@@ -173,9 +173,9 @@ class PlyReader {
             n_points_ = e.count;
         }
         for (const PlyElement& e : header_.elements) read_element(e);
-        if (texcoord_misfits_.count)
+        if (texcoord_mismatches_.count)
             builder_.soup.warnings.push_back(
-                texcoord_misfits_.text("faces have a texcoord list that does not fit their corners",
+                texcoord_mismatches_.text("faces have a texcoord list that does not fit their corners",
                                        body_.is_text() ? "line" : "row"));
         PolygonSoup soup = builder_.finish();
         if (header_.textures.size() == 1 && soup.polygon_groups.empty() && soup.materials.empty())
@@ -200,7 +200,7 @@ class PlyReader {
     std::uint64_t n_points_ = 0;
     std::vector<Vec2f> point_uvs_;
     std::vector<Vec2f> face_uvs_;
-    Tally texcoord_misfits_;
+    Tally texcoord_mismatches_;
 };
 
 void PlyReader::read_element(const PlyElement& element) {
@@ -301,7 +301,7 @@ void PlyReader::add_face(std::span<const std::uint32_t> corners, std::span<const
         for (std::size_t i = 0; i < corners.size(); ++i)
             face_uvs_.emplace_back(texcoords[2 * i], texcoords[2 * i + 1]);
     } else {
-        if (!texcoords.empty()) texcoord_misfits_.add(body_.place());
+        if (!texcoords.empty()) texcoord_mismatches_.add(body_.place());
         if (!point_uvs_.empty())
             for (const std::uint32_t c : corners)
                 face_uvs_.push_back(c < point_uvs_.size() ? point_uvs_[c] : Vec2f(0));

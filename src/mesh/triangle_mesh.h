@@ -10,7 +10,7 @@
 #include "mesh/material.h"
 #include "mesh/source_scene.h"
 
-/// The mesh as every room above sees it: plain arrays, metres, model frame,
+/// The mesh as every module above sees it: plain arrays, metres, model frame,
 /// faces counter-clockwise from outside. Made by `mesh::build_surface` (repair.h),
 /// so it is clean: manifold, consistently oriented within a component, no
 /// degenerate or duplicate triangles, every index in range, every number finite.

@@ -25,7 +25,7 @@ class MaterialReader {
     Material read(std::uint32_t triangle, float b1, float b2) const;
     /// Part of the light from a small lamp in direction `to_light` (unit, `normal` the surface's)
     /// that the relief lets through: 0 in the shadow of higher ink beside it, soft over the lamp's
-    /// radius `blur` (radians). Looks as far as 3 mm, within the chart.
+    /// radius `blur` (radians). Appearance as far as 3 mm, within the chart.
     float unshaded(std::uint32_t triangle, float b1, float b2, const Vec3f& normal, const Vec3f& to_light,
                    float blur) const;
     bool coated() const { return appearance_.finish == Finish::porcelain; }

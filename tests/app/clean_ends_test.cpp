@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <functional>
 
-#include "app/input/hand.h"
+#include "app/input/pointer_input.h"
 #include "models.h"
 #include "paths.h"
-#include "stroke/hand/laying.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/surface_mapping.h"
+#include "stroke/hand/tip_lag.h"
 
 namespace tuft::app {
 namespace {
@@ -47,10 +47,10 @@ std::vector<Aim> drawn(const View& view, const std::vector<Vec2>& corners, doubl
     return aims;
 }
 
-stroke::Painting painted(const stroke::Model& model, const std::string& brush, const std::vector<Aim>& aims, HandSettings settings = {}) {
+stroke::Document painted(const stroke::Model& model, const std::string& brush, const std::vector<Aim>& aims, PointerSettings settings = {}) {
     const brush::Preset preset = brush::load_preset(brush);
-    Hand hand(*model.query, preset, settings, {stroke::drag_lead(preset)});
-    stroke::Painting painting(model);
+    PointerInput hand(*model.query, preset, settings, {stroke::measure_tip_lag(preset)});
+    stroke::Document painting(model);
     const auto take = [&](const std::vector<HandStep>& steps) {
         for (const HandStep& step : steps) {
             if (step.kind == HandStep::Kind::begin) {
@@ -75,7 +75,7 @@ stroke::Painting painted(const stroke::Model& model, const std::string& brush, c
 }
 
 /// Places of the view with ink, pixels.
-std::vector<Vec2> inked(stroke::Painting& painting, const View& view) {
+std::vector<Vec2> inked(stroke::Document& painting, const View& view) {
     std::vector<Vec2> places;
     const stroke::Model& model = painting.model();
     const ink::Canvas& canvas = painting.canvas();
@@ -85,7 +85,7 @@ std::vector<Vec2> inked(stroke::Painting& painting, const View& view) {
             for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
                 if (const ink::Plane* w = canvas.plane(slot, p)) film += static_cast<double>((*w)[t]);
             // A tenth of a full film of carbon is a dark grey.
-            if (film > 0.18 && model.texels.tiles[slot].piece[t] != atlas::kNoPiece) places.push_back(view.pixel(Vec3(model.texels.position(slot, t))));
+            if (film > 0.18 && model.texels.tiles[slot].cluster[t] != atlas::kNoCluster) places.push_back(view.pixel(Vec3(model.texels.position(slot, t))));
         }
     return places;
 }
@@ -133,7 +133,7 @@ TEST(CleanEnds, InkBeginsAtThePressAndEndsAtTheRelease) {
         for (const auto& [pace, eased] : kPaces)
             for (const double angle : {0.0, 2.6}) {
                 const Vec2 d{std::cos(angle), std::sin(angle)}, a = glm::round(-90.0 * d), b = glm::round(90.0 * d);
-                stroke::Painting painting = painted(sheet(), brush, drawn(view, {a, b}, pace, eased));
+                stroke::Document painting = painted(sheet(), brush, drawn(view, {a, b}, pace, eased));
                 expect_clean(measure(inked(painting, view), a, b), glm::distance(a, b),
                              std::string(brush) + " at " + std::to_string(pace) + (eased ? " eased" : "") + ", direction " + std::to_string(angle));
             }
@@ -143,12 +143,12 @@ TEST(CleanEnds, InkBeginsAtThePressAndEndsAtTheRelease) {
 TEST(CleanEnds, WithoutThemStrokesBeginWithAClawAndEndShort) {
     const View view{.middle = sheet().mesh->bounds.centre()};
     const Vec2 d{std::cos(1.0), std::sin(1.0)}, a = glm::round(-90.0 * d), b = glm::round(90.0 * d);
-    HandSettings plain;
+    PointerSettings plain;
     plain.clean_ends = false;
-    stroke::Painting slow = painted(sheet(), "wolf-medium", drawn(view, {a, b}, 100, true), plain);
+    stroke::Document slow = painted(sheet(), "wolf-medium", drawn(view, {a, b}, 100, true), plain);
     const Line claw = measure(inked(slow, view), a, b);
     EXPECT_GT(claw.aside, 3 * claw.half);
-    stroke::Painting fast = painted(sheet(), "wolf-medium", drawn(view, {a, b}, 1500, false), plain);
+    stroke::Document fast = painted(sheet(), "wolf-medium", drawn(view, {a, b}, 1500, false), plain);
     EXPECT_LT(measure(inked(fast, view), a, b).end, glm::distance(a, b) - 15);
 }
 
@@ -156,7 +156,7 @@ TEST(CleanEnds, AClickIsADotWhereItWas) {
     const View view{.middle = sheet().mesh->bounds.centre()};
     for (const char* brush : {"wolf-small", "goat-large"}) {
         const Vec2 at{12, -7};
-        stroke::Painting painting = painted(sheet(), brush, {view.aim(at, 0), view.aim(at, 0.08)});
+        stroke::Document painting = painted(sheet(), brush, {view.aim(at, 0), view.aim(at, 0.08)});
         const std::vector<Vec2> ink = inked(painting, view);
         ASSERT_GT(ink.size(), 20u) << brush;
         double furthest = 0, nearest = 1e9;
@@ -172,7 +172,7 @@ TEST(CleanEnds, AZigzagBeginsAndEndsWhereTheHandDid) {
     const View view{.middle = sheet().mesh->bounds.centre()};
     for (const double pace : {200.0, 800.0}) {
         const std::vector<Vec2> corners{{-80, -30}, {-40, 30}, {0, -30}, {40, 30}, {80, -30}};
-        stroke::Painting painting = painted(sheet(), "wolf-small", drawn(view, corners, pace, false));
+        stroke::Document painting = painted(sheet(), "wolf-small", drawn(view, corners, pace, false));
         const std::vector<Vec2> ink = inked(painting, view);
         for (const Vec2& end : {corners.front(), corners.back()}) {
             double nearest = 1e9, beyond = 0;
@@ -203,7 +203,7 @@ TEST(CleanEnds, HoldOnBowlsAndCars) {
         for (const auto& [pace, eased] : {std::pair{150.0, true}, {800.0, false}})
             for (const double angle : {0.0, 2.8}) {
                 const Vec2 d{std::cos(angle), std::sin(angle)}, a = glm::round(-45.0 * d), b = glm::round(45.0 * d);
-                stroke::Painting painting = painted(model, brush, drawn(view, {a, b}, pace, eased));
+                stroke::Document painting = painted(model, brush, drawn(view, {a, b}, pace, eased));
                 const Line line = measure(inked(painting, view), a, b);
                 expect_clean(line, glm::distance(a, b), std::string(brush) + " at " + std::to_string(pace) + ", direction " + std::to_string(angle));
             }
@@ -211,8 +211,8 @@ TEST(CleanEnds, HoldOnBowlsAndCars) {
 
 TEST(CleanEnds, StrokesReplayToTheBit) {
     const View view{.middle = sheet().mesh->bounds.centre()};
-    const stroke::Painting painting = painted(sheet(), "wolf-medium", drawn(view, {{-60, 0}, {20, 30}, {60, -20}}, 500, false));
-    stroke::Painting again(sheet());
+    const stroke::Document painting = painted(sheet(), "wolf-medium", drawn(view, {{-60, 0}, {20, 30}, {60, -20}}, 500, false));
+    stroke::Document again(sheet());
     again.replay(painting.journal().strokes());
     EXPECT_EQ(again.hash(), painting.hash());
 }

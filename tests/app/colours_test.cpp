@@ -122,7 +122,7 @@ TEST(FirstBrush, OfASampleInBrushSizeIsNotScaled) {
 
 TEST(Thumbnails, ShowEachLayerAlone) {
     const stroke::Model model = test::shipped_model("sheet.ply", 256);
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     stroke::Stroke add;
     add.action = stroke::Action::layer;
     add.trace.flat = false;

@@ -8,7 +8,7 @@
 
 #include "app/view/texture.h"
 #include "models.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/tip_lag.h"
 #include "paths.h"
 
 namespace tuft::app {
@@ -61,7 +61,7 @@ TEST(Curve, BreaksWhereThereIsNoModel) {
         points.push_back({.position = hit->position});
     }
     const brush::Preset preset = brush::load_preset("wolf-small");
-    EXPECT_EQ(curve_poses(query, points, {.hold = stroke::hold_options(preset, query.mesh())}).size(), 2u);  // over the hole
+    EXPECT_EQ(curve_poses(query, points, {.hold = stroke::holder_options(preset, query.mesh())}).size(), 2u);  // over the hole
 }
 
 /// Under a holder that leans by so many radians to the right and down.
@@ -77,11 +77,11 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
         const double a = std::numbers::pi * i / 8;
         points.push_back({.position = c + radius * Vec3(std::cos(a), std::sin(a), 0)});
     }
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     const brush::Preset preset = painting.brush("wolf-medium");
-    CurveHand hand{.hold = stroke::hold_options(preset, *model.mesh), .pressure = 0.4, .tilt = {GetParam().first, GetParam().second}};
-    hand.hold.lead = stroke::drag_lead(preset);
-    stroke::LeanedLead leaned(preset);
+    CurveHand hand{.hold = stroke::holder_options(preset, *model.mesh), .pressure = 0.4, .tilt = {GetParam().first, GetParam().second}};
+    hand.hold.tip_lag = stroke::measure_tip_lag(preset);
+    stroke::TiltedTipLag leaned(preset);
     hand.hold.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
     const auto strokes = curve_poses(*model.query, points, hand);
     ASSERT_EQ(strokes.size(), 1u);
@@ -97,7 +97,7 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const std::uint32_t tile = model.texels.tile_of_slot[slot];
-            if (model.texels.tiles[slot].piece[static_cast<std::size_t>(t)] == atlas::kNoPiece) continue;
+            if (model.texels.tiles[slot].cluster[static_cast<std::size_t>(t)] == atlas::kNoCluster) continue;
             const std::size_t x = tile % model.texels.tiles_per_side * atlas::kTile + static_cast<std::size_t>(t) % atlas::kTile,
                               y = tile / model.texels.tiles_per_side * atlas::kTile + static_cast<std::size_t>(t) / atlas::kTile;
             const double ink = map.levels[0][y * map.size + x][3];

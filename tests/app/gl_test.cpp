@@ -91,7 +91,7 @@ class Painted : public Gl {
     }
 };
 
-// Looks somewhere at the model, near or far, cut open or not, in a view that shows ink.
+// Appearance somewhere at the model, near or far, cut open or not, in a view that shows ink.
 render::GlView::Frame any_frame(const stroke::Model& model, Random& random) {
     const Box& b = model.mesh->bounds;
     Orbit orbit;
@@ -116,7 +116,7 @@ render::GlView::Frame any_frame(const stroke::Model& model, Random& random) {
 // Strokes that reach over the model, drawn while it is looked at from everywhere: each picture that was changed
 // piece by piece is the one that is drawn at once.
 void Painted::compare(const stroke::Model& model, std::uint64_t seed) {
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     Texture texture(painting);
     render::GlScene scene;
     scene.set_mesh(*model.mesh, model.atlas.corner_uvs);

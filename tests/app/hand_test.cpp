@@ -1,4 +1,4 @@
-#include "app/input/hand.h"
+#include "app/input/pointer_input.h"
 
 #include <gtest/gtest.h>
 
@@ -28,8 +28,8 @@ class HandOnSheet : public testing::Test {
         return {.ray = {c + Vec3(x, y, 0.5), {0, 0, -1}}, .view_up = {0, 1, 0}, .metres_per_pixel = 1e-4, .time = time, .pressure = pressure};
     }
     // Depth of the unbent tip at the last pose of a stroke along x at a steady speed (m/s).
-    static double depth_at(double speed, HandSettings settings, double pressure = -1, double seconds = 0.6) {
-        Hand hand(*query_, preset_, settings);
+    static double depth_at(double speed, PointerSettings settings, double pressure = -1, double seconds = 0.6) {
+        PointerInput hand(*query_, preset_, settings);
         brush::Pose last;
         for (int i = 0; i * 0.004 < seconds; ++i)
             for (const HandStep& step : hand.move(above(-0.05 + speed * 0.004 * i, 0, 0.004 * i, pressure)))
@@ -42,7 +42,7 @@ class HandOnSheet : public testing::Test {
 };
 
 TEST_F(HandOnSheet, AFastMousePressesLessThanASlowOne) {
-    HandSettings s;
+    PointerSettings s;
     s.dwell_effect = 0;
     const double slow = depth_at(0.005, s), fast = depth_at(0.15, s);
     EXPECT_GT(slow, fast * 1.2);
@@ -55,12 +55,12 @@ TEST_F(HandOnSheet, AFastMousePressesLessThanASlowOne) {
 }
 
 TEST_F(HandOnSheet, ARestingMouseSinksIn) {
-    HandSettings s;
+    PointerSettings s;
     EXPECT_GT(depth_at(0, s, -1, 1.5), depth_at(0, s, -1, 0.3) + 1e-4);
 }
 
 TEST_F(HandOnSheet, APensPressureIsTheDepthWhateverItsSpeed) {
-    HandSettings s;
+    PointerSettings s;
     for (const double p : {0.2, 0.7})
         for (const double v : {0.005, 0.15}) EXPECT_NEAR(depth_at(v, s, p), p * stroke::working_depth(preset_), 1e-9);
     s.pen_gamma = 2;
@@ -69,7 +69,7 @@ TEST_F(HandOnSheet, APensPressureIsTheDepthWhateverItsSpeed) {
 
 // Drivers leave reports out in which nothing changed.
 TEST_F(HandOnSheet, APenHeldStillWithoutReportsKeepsItsPressureUntilItsNextOne) {
-    Hand hand(*query_, preset_, {});
+    PointerInput hand(*query_, preset_, {});
     std::vector<brush::Pose> poses;
     const auto move = [&](double t, double pressure) {
         for (const HandStep& step : hand.move(above(0, 0, t, pressure))) poses.insert(poses.end(), step.poses.begin(), step.poses.end());
@@ -91,11 +91,11 @@ TEST_F(HandOnSheet, APenHeldStillWithoutReportsKeepsItsPressureUntilItsNextOne) 
 TEST_F(HandOnSheet, TheSamePathGivesTheSameStrokeForAnyRateOfSamples) {
     // The low-pass steps at 4 ms whatever the rate, so a path sampled at 4 ms and at 20 ms
     // ends within what the smoothing lags behind in one sample.
-    HandSettings s;
+    PointerSettings s;
     s.speed_effect = s.dwell_effect = 0;
     Vec3 end[2];
     for (int k = 0; k < 2; ++k) {
-        Hand hand(*query_, preset_, s);
+        PointerInput hand(*query_, preset_, s);
         const int n = k ? 30 : 150;
         for (int i = 0; i <= n; ++i) {
             const double t = 0.6 * i / n;
@@ -107,10 +107,10 @@ TEST_F(HandOnSheet, TheSamePathGivesTheSameStrokeForAnyRateOfSamples) {
 }
 
 TEST_F(HandOnSheet, OnAStringTheBrushStaysBehindByItsLength) {
-    HandSettings s;
+    PointerSettings s;
     s.string = 0.010;
     s.smoothing = 1e-4;
-    Hand hand(*query_, preset_, s);
+    PointerInput hand(*query_, preset_, s);
     Vec3 last(0);
     for (int i = 0; i <= 200; ++i)
         for (const HandStep& step : hand.move(above(-0.04 + 0.0004 * i, 0, 0.004 * i)))
@@ -119,8 +119,8 @@ TEST_F(HandOnSheet, OnAStringTheBrushStaysBehindByItsLength) {
 }
 
 TEST_F(HandOnSheet, LeavingTheModelLiftsAndComingBackBegins) {
-    HandSettings s;
-    Hand hand(*query_, preset_, s);
+    PointerSettings s;
+    PointerInput hand(*query_, preset_, s);
     int begins = 0, ends = 0;
     double t = 0;
     for (const double x : {0.0, 0.001, 10.0, 11.0, 0.002, 0.003})
@@ -167,9 +167,9 @@ struct Crossing {
     double step = 0;                  ///< metres, longest between poses of one stroke
 };
 Crossing cross(const Slabs& slabs, const brush::Preset& preset, double slant) {
-    HandSettings s;
+    PointerSettings s;
     s.speed_effect = s.dwell_effect = 0;
-    Hand hand(slabs.query, preset, s);
+    PointerInput hand(slabs.query, preset, s);
     Crossing out;
     const Vec3 down = glm::normalize(Vec3(0, std::sin(slant), -std::cos(slant))), up = glm::normalize(Vec3(0, std::cos(slant), std::sin(slant)));
     std::vector<brush::Pose> poses;
@@ -220,7 +220,7 @@ TEST(HandOverAGap, AGapWiderThanTheTuftEndsTheStroke) {
 // A rim with something far behind it is none.
 TEST(HandOverAGap, AnEdgeIsNoGap) {
     const Slabs slabs(0.03, 0.013);
-    const Hand hand(slabs.query, brush::load_preset("goat-large"), {});
+    const PointerInput hand(slabs.query, brush::load_preset("goat-large"), {});
     for (const double x : {-0.0155, -0.0145, -0.012, 0.0}) {
         const Aim aim{.ray = {{x, 0, 0.5}, {0, 0, -1}}, .view_up = {0, 1, 0}};
         const auto ground = hand.ground(aim);
@@ -232,9 +232,9 @@ TEST(HandOverAGap, AnEdgeIsNoGap) {
 }
 
 TEST_F(HandOnSheet, LeanTurnsTheHolderAboutTheTip) {
-    HandSettings s;
+    PointerSettings s;
     s.tilt = {0.4, 0};
-    const Hand hand(*query_, preset_, s);
+    const PointerInput hand(*query_, preset_, s);
     const auto pose = hand.hover(above(0, 0, 0));
     ASSERT_TRUE(pose);
     const Vec3 up = -pose->axis();
@@ -243,7 +243,7 @@ TEST_F(HandOnSheet, LeanTurnsTheHolderAboutTheTip) {
 }
 
 TEST_F(HandOnSheet, ATurnOfThePenTurnsTheTuftAboutItsHolder) {
-    const Hand hand(*query_, preset_, {});
+    const PointerInput hand(*query_, preset_, {});
     Aim aim = above(0, 0, 0, 0.5);
     aim.tilt = Vec2(0.3, 0.1);
     const auto before = hand.hover(aim);

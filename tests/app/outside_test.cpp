@@ -11,7 +11,7 @@
 #include <sstream>
 #include <thread>
 
-#include "app/document/painter.h"
+#include "app/document/paint_thread.h"
 #include "io/project.h"
 #include "io/restore.h"
 #include "models.h"
@@ -31,13 +31,13 @@ class OutsideTest : public testing::Test {
         folder_ = fs::path(testing::TempDir()) / ("tuft_outside_" + std::to_string(getpid()));
         fs::create_directories(folder_ / "place");
         path_ = folder_ / "place" / "work.tuft";
-        Painter::Work work;
+        PaintThread::Work work;
         work.model = std::make_unique<stroke::Model>(test::shipped_model("sheet.ply", 256));
-        work.painting = std::make_unique<stroke::Painting>(*work.model);
+        work.painting = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
         work.spare = folder_ / "spare.tuft";
         ASSERT_EQ(work.keeper.start(path_, "sheet.ply", {}, *work.painting), "");
-        painter_ = std::make_unique<Painter>(std::move(work));
+        painter_ = std::make_unique<PaintThread>(std::move(work));
     }
     void TearDown() override {
         painter_.reset();
@@ -75,15 +75,15 @@ class OutsideTest : public testing::Test {
         const io::Project project = io::Project::open(file, {.access = io::Access::read});
         ASSERT_EQ(project.n_strokes(), strokes);
         const stroke::Model model = test::shipped_model("sheet.ply", 256);
-        stroke::Painting opened(model), replayed(model);
-        for (stroke::Painting* p : {&opened, &replayed}) io::use_presets(project, *p);
+        stroke::Document opened(model), replayed(model);
+        for (stroke::Document* p : {&opened, &replayed}) io::use_presets(project, *p);
         io::restore_strokes(project, opened, {});
         replayed.replay(project.strokes());
         EXPECT_EQ(opened.hash(), replayed.hash());
     }
 
     fs::path folder_, path_;
-    std::unique_ptr<Painter> painter_;
+    std::unique_ptr<PaintThread> painter_;
     std::vector<StrokeLine> lines_;
     std::string messages_;
     Update last_;
@@ -148,8 +148,8 @@ TEST_F(OutsideTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
     stroke(0);
     {
         const stroke::Model other = test::shipped_model("sphere.ply", 256);
-        stroke::Painting painting(other);
-        Keeper keeper;
+        stroke::Document painting(other);
+        Autosave keeper;
         ASSERT_EQ(keeper.start(folder_ / "other.tuft", "sphere.ply", {}, painting), "");
     }
     const auto size = fs::file_size(folder_ / "other.tuft");

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
-#include "app/input/hand.h"
+#include "app/input/pointer_input.h"
 #include "app/input/imgui_feed.h"
 #include "core/units.h"
 #include "models.h"
@@ -139,7 +139,7 @@ TEST(PenSamples, OfAThousandReportsASecondNoneIsLostOnItsWayToTheBrush) {
     const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh;
     const mesh::SurfaceQuery query(mesh);
     const brush::Preset preset = brush::load_preset("wolf-small");
-    Hand hand(query, preset, {});
+    PointerInput hand(query, preset, {});
     PenSamples pen;
     pen.set_devices(tablet());
     ImGui::CreateContext();

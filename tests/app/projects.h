@@ -28,7 +28,7 @@ inline nlohmann::json tuft(const std::string& arguments, const std::string& out)
     return nlohmann::json::parse(in);
 }
 
-/// Hash of the texels of all layers as the studio left them in a project, as stroke::Painting::hash makes it; "" where
+/// Hash of the texels of all layers as the studio left them in a project, as stroke::Document::hash makes it; "" where
 /// none are stored.
 inline std::string stored_hash(const std::string& project) {
     const io::Project p = io::Project::open(project);

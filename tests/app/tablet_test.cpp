@@ -133,7 +133,7 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
 
     const brush::Preset brush = brush::load_preset(strokes[0].trace.brush);  // the one in the size of the model
     const double working = stroke::working_depth(brush);
-    struct Held {
+    struct HolderPose {
         double pressure;
         Vec2 lean;    // tangents, to the right and away from the hand
         Vec3 foot;    // of the holder's axis on the sheet, metres
@@ -141,7 +141,7 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
     const auto held = [&](const stroke::TraceSample& s) {
         const Vec3 up = s.rotation * Vec3(0, 0, 1);
         const double height = s.position.z / up.z;
-        return Held{(brush.length - height) / working, {up.x / up.z, up.y / up.z}, s.position - height * up};
+        return HolderPose{(brush.length - height) / working, {up.x / up.z, up.y / up.z}, s.position - height * up};
     };
     for (int k : {0, 1}) {
         const auto& samples = strokes[static_cast<std::size_t>(k)].trace.samples;
@@ -157,7 +157,7 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
         if (hurried > samples.size() / 8 || late > 0) GTEST_SKIP() << "the machine is too busy for a tablet: reports are read many at once";
         std::size_t light = 0, firm = 0;
         for (const stroke::TraceSample& s : samples) {
-            const Held h = held(s);
+            const HolderPose h = held(s);
             // The device has 2047 steps of pressure and whole degrees; on the steps between two of the driver's
             // averages (4 reports) and of the hand (4 ms) there is neither.
             light += std::abs(h.pressure - 0.3) < 1e-3 && glm::distance(h.lean, Vec2(std::tan(30 * kDegree), 0)) < 1e-6;

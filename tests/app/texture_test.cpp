@@ -12,7 +12,7 @@ namespace {
 TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
     // 520 is no multiple of the tile: the last row and column are padded.
     const stroke::Model model = test::shipped_model("bowl.ply", 520);
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     Texture texture(painting);
     render::MapPixels map = texture.pixels();
     const std::size_t per_side = map.size / 16;

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "app/document/painter.h"
+#include "app/document/paint_thread.h"
 #include "io/inkml.h"
 #include "models.h"
 #include "paths.h"
@@ -58,9 +58,9 @@ class WritingOnModel : public ::testing::Test {
     Painted by_studio(const std::string& name, const Writing& w, const Vec3& from, const Vec3& along, const Vec3& right, const WritingHand& hand) {
         const std::string project = folder_ + "/studio.tuft";
         std::filesystem::remove(project);
-        Painter::Work work;
+        PaintThread::Work work;
         work.model = std::make_unique<stroke::Model>(test::shipped_model(name, kTexels));
-        work.painting = std::make_unique<stroke::Painting>(*work.model);
+        work.painting = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
         work.source = source_folder() + "/models/" + name;
         EXPECT_EQ(work.keeper.start(project, work.source, {}, *work.painting), "");
@@ -69,7 +69,7 @@ class WritingOnModel : public ::testing::Test {
         EXPECT_TRUE(at);
         const stroke::Placement placement = place_writing(w, query, at->position, -along, right, -along);
         {
-            Painter painter(std::move(work));
+            PaintThread painter(std::move(work));
             painter.post(PaintDrawing{placed_writing(w, placement, hand), stroke::group_name(w.file)});
             painter.wait_idle(600);
         }
@@ -143,7 +143,7 @@ TEST_F(WritingOnModel, HandwritingWithBrushesAndPlacesOfItsOwnIsTheSame) {
 
 TEST_F(WritingOnModel, StraightThroughThePictureItIsTheSame) {
     Writing w = roundel(0.05);
-    w.laying = stroke::Laying::project;
+    w.mapping = stroke::SurfaceMapping::project;
     w.turn = -0.2;
     // The eye is above the rim and to the left; its picture leans a little.
     const Vec3 along = glm::normalize(Vec3(0.3, 1, -0.2)), right = glm::normalize(Vec3(1, -0.3, 0.05));

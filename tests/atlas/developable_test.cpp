@@ -19,7 +19,7 @@ int euler(const Patch& patch) {
 
 TEST(SmallCharts, AreDisksOfFewTrianglesAndTheSameForAnyNumberOfThreads) {
     const mesh::TriangleMesh mesh = test::torus(720, 360);
-    ASSERT_GE(mesh.n_triangles(), kDearMesh);
+    ASSERT_GE(mesh.n_triangles(), kBlockwiseThreshold);
     const std::vector<std::uint32_t> twin = twin_half_edges(mesh);
     GluingLimits limits;
     std::vector<std::uint8_t> first;

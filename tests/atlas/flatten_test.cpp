@@ -105,7 +105,7 @@ TEST(CarryUvs, IsExactBetweenChartsOfADevelopableSurface) {
     for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT(glm::length(uv[v] - truth.uv[v]), 1e-12);
 }
 
-// Laying a part anew leaves all corners outside it where they are to the bit, and pulls those inside back
+// SurfaceMapping a part anew leaves all corners outside it where they are to the bit, and pulls those inside back
 // to where a developable surface has no stretch: the energy's only minimum there, so that what is left
 // is where the iteration stops. 1e-5 of a facet's size 0.033, from 0.3 of it.
 TEST(Arap, LaysAPartAnew) {

@@ -23,7 +23,7 @@ std::vector<float> picture(const TexelMap& map, Field&& field) {
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
         const std::uint32_t tile = map.tile_of_slot[slot];
         for (int t = 0; t < kTileTexels; ++t) {
-            if (map.tiles[slot].piece[t] == kNoPiece) continue;
+            if (map.tiles[slot].cluster[t] == kNoCluster) continue;
             const std::size_t x = std::size_t{tile % map.tiles_per_side} * kTile + t % kTile;
             const std::size_t y = std::size_t{tile / map.tiles_per_side} * kTile + t / kTile;
             image[y * map.size + x] = static_cast<float>(field(Vec3(map.position(slot, t))));

@@ -14,7 +14,7 @@
 #include "analytic_surfaces.h"
 #include "atlas/texels/border_cells.h"
 #include "atlas/texels/log_map.h"
-#include "atlas/texels/piece_graph.h"
+#include "atlas/texels/cluster_graph.h"
 #include "atlas/texels/seam_links.h"
 #include "core/error.h"
 #include "core/hash.h"
@@ -31,14 +31,14 @@ std::uint64_t hash_of(const TexelMap& m) {
     std::uint64_t h = hash_bytes(m.tiles.data(), m.tiles.size() * sizeof(TexelTile));
     h = hash_bytes(m.shapes.data(), m.shapes.size() * sizeof(TexelShape), h);
     h = hash_bytes(m.packed.data(), m.packed.size() * sizeof(PackedShape), h);
-    h = hash_span(std::span<const std::uint32_t>(m.piece_chart), h);
+    h = hash_span(std::span<const std::uint32_t>(m.cluster_chart), h);
     return hash_span(std::span<const float>(m.reach), h);
 }
 
 std::size_t covered(const TexelMap& m) {
     std::size_t n = 0;
     for (const TexelTile& tile : m.tiles) {
-        for (const std::uint8_t p : tile.piece) n += p != kNoPiece;
+        for (const std::uint8_t p : tile.cluster) n += p != kNoCluster;
     }
     return n;
 }
@@ -69,7 +69,7 @@ TEST(TexelMap, PositionsAndAreasAreThoseOfTheSheet) {
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
         const TexelTile& tile = map.tiles[slot];
         for (int t = 0; t < kTileTexels; ++t) {
-            if (tile.piece[t] == kNoPiece) {
+            if (tile.cluster[t] == kNoCluster) {
                 EXPECT_EQ(tile.area[t], 0);
                 continue;
             }
@@ -94,7 +94,7 @@ TEST(TexelMap, AreasAddUpToTheSphere) {
     EXPECT_NEAR(total_area(map) / mesh::surface_area(u.mesh), 1, 3e-3);
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
         for (int t = 0; t < kTileTexels; ++t) {
-            if (map.tiles[slot].piece[t] == kNoPiece) continue;
+            if (map.tiles[slot].cluster[t] == kNoCluster) continue;
             const Vec3 p(map.position(slot, t)), n(map.normal(slot, t));
             // Facets 1/48 of 90° wide, √2 as long across: sag r (√2 π/192)²/2 = 2.7e-4 r, and up
             // to 1.2 times that where the faces of the cube are stretched.
@@ -111,9 +111,9 @@ TEST(TexelMap, SameBitsForAnyNumberOfThreads) {
         set_thread_count(n);
         const TexelMap map = build_texel_map(u.mesh, u.atlas);
         packed.insert(hash_of(build_texel_map(u.mesh, u.atlas, {}, TexelStore::packed)));
-        const PieceGraph graph = build_piece_graph(u.mesh, u.atlas, map);
+        const ClusterGraph graph = build_cluster_graph(u.mesh, u.atlas, map);
         maps.insert(hash_of(map));
-        graphs.insert(hash_span(std::span<const PieceEdge>(graph.edges)));
+        graphs.insert(hash_span(std::span<const ClusterEdge>(graph.edges)));
         const SeamLinks seam = build_seam_links(u.mesh, u.atlas, map);
         std::uint64_t h = 0;
         for (const SeamLink& l : seam.links) {
@@ -130,21 +130,21 @@ TEST(TexelMap, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(TexelMap, SixteenBitsKeepPlacesAndNormals) {
-    // Charts so small that most tiles hold pieces of several, far apart in space.
+    // Charts so small that most tiles hold clusters of several, far apart in space.
     for (const double texels : {9.0, 160.0}) {
         const Unwrapped u = testing::sphere(0.02, texels);
         const TexelMap exact = build_texel_map(u.mesh, u.atlas, {}, TexelStore::floats);
         const TexelMap small = build_texel_map(u.mesh, u.atlas, {}, TexelStore::packed);
         ASSERT_EQ(exact.n_slots(), small.n_slots());
-        EXPECT_EQ(exact.piece_start, small.piece_start);
+        EXPECT_EQ(exact.cluster_start, small.cluster_start);
         EXPECT_TRUE(small.shapes.empty());
         double worst_place = 0, worst_normal = 0;
         TexelShape room;
         for (std::uint32_t slot = 0; slot < exact.n_slots(); ++slot) {
-            EXPECT_EQ(exact.tiles[slot].piece, small.tiles[slot].piece);
+            EXPECT_EQ(exact.tiles[slot].cluster, small.tiles[slot].cluster);
             const TexelShape& shape = shape_of(small, slot, room);
             for (int t = 0; t < kTileTexels; ++t) {
-                if (exact.tiles[slot].piece[t] == kNoPiece) continue;
+                if (exact.tiles[slot].cluster[t] == kNoCluster) continue;
                 // Beside seams they come from the places, which are off by 4e-4 of a texel.
                 ASSERT_NEAR(exact.tiles[slot].area[t] / small.tiles[slot].area[t], 1, 4e-3);
                 const Vec3f p = small.position(slot, t), n = small.normal(slot, t);
@@ -174,7 +174,7 @@ TEST(TexelMap, RefusesAnAtlasOfAnotherMeshAndSurvivesBadCoordinates) {
     u.atlas.corner_uvs[7] = {-INFINITY, 0.5f};
     const TexelMap map = build_texel_map(u.mesh, u.atlas);
     EXPECT_GT(covered(map), 1000u);
-    build_piece_graph(u.mesh, u.atlas, map);
+    build_cluster_graph(u.mesh, u.atlas, map);
     build_seam_links(u.mesh, u.atlas, map);
 }
 
@@ -227,19 +227,19 @@ TEST(LogMap, MatchesTheReferenceTable) {
     EXPECT_LT(worst_torus, 5e-3);  // third order: measured .0021 oblique at r/R = .5
 }
 
-TEST(PieceGraph, EdgesComeInInversePairsAndPiecesCoverEveryTexelOnce) {
+TEST(ClusterGraph, EdgesComeInInversePairsAndPiecesCoverEveryTexelOnce) {
     const Unwrapped u = testing::sphere(0.02, 100);
     const TexelMap map = build_texel_map(u.mesh, u.atlas);
-    const PieceGraph g = build_piece_graph(u.mesh, u.atlas, map);
-    ASSERT_EQ(g.edge_start.size(), g.n_pieces() + 1);
-    for (std::uint32_t i = 0; i < g.n_pieces(); ++i) {
+    const ClusterGraph g = build_cluster_graph(u.mesh, u.atlas, map);
+    ASSERT_EQ(g.edge_start.size(), g.n_clusters() + 1);
+    for (std::uint32_t i = 0; i < g.n_clusters(); ++i) {
         EXPECT_GT(g.edge_start[i + 1], g.edge_start[i])
-            << "a piece of a closed surface hangs alone";
+            << "a cluster of a closed surface hangs alone";
         for (std::uint32_t k = g.edge_start[i]; k < g.edge_start[i + 1]; ++k) {
-            const PieceEdge& e = g.edges[k];
+            const ClusterEdge& e = g.edges[k];
             bool found = false;
             for (std::uint32_t l = g.edge_start[e.to]; l < g.edge_start[e.to + 1]; ++l) {
-                const PieceEdge& back = g.edges[l];
+                const ClusterEdge& back = g.edges[l];
                 if (back.to != i) continue;
                 found = true;
                 // Float rounding of hops of some 0.3 mm.
@@ -251,14 +251,14 @@ TEST(PieceGraph, EdgesComeInInversePairsAndPiecesCoverEveryTexelOnce) {
     }
 }
 
-TEST(PieceGraph, HopsOnAFlatSheetAreDifferencesOfPositions) {
+TEST(ClusterGraph, HopsOnAFlatSheetAreDifferencesOfPositions) {
     const Unwrapped u = testing::sheet(0.1, 3, 60);
     const TexelMap map = build_texel_map(u.mesh, u.atlas);
-    const PieceGraph g = build_piece_graph(u.mesh, u.atlas, map);
-    for (std::uint32_t i = 0; i < g.n_pieces(); ++i) {
-        const Piece& p = g.pieces[i];
+    const ClusterGraph g = build_cluster_graph(u.mesh, u.atlas, map);
+    for (std::uint32_t i = 0; i < g.n_clusters(); ++i) {
+        const TexelCluster& p = g.clusters[i];
         for (std::uint32_t k = g.edge_start[i]; k < g.edge_start[i + 1]; ++k) {
-            const Vec3f d = g.pieces[g.edges[k].to].centre - p.centre;
+            const Vec3f d = g.clusters[g.edges[k].to].centre - p.centre;
             const Vec3f b = glm::cross(p.normal, p.tangent);
             // Float positions of 0.05 m, a few operations.
             EXPECT_NEAR(g.edges[k].hop_u, glm::dot(d, p.tangent), 2e-8);
@@ -267,7 +267,7 @@ TEST(PieceGraph, HopsOnAFlatSheetAreDifferencesOfPositions) {
     }
 }
 
-TEST(PieceGraph, StackedSheetsDoNotHangTogether) {
+TEST(ClusterGraph, StackedSheetsDoNotHangTogether) {
     Unwrapped a = testing::plate(0.04, 0.0005, 100);
     // Without the rims the two faces are 0.5 mm apart with nothing between.
     const std::size_t n = 2 * 2 * 16 * 16;
@@ -278,10 +278,10 @@ TEST(PieceGraph, StackedSheetsDoNotHangTogether) {
     a.atlas.corner_uvs.resize(3 * n);
     a.atlas.triangle_chart.resize(n);
     const TexelMap map = build_texel_map(a.mesh, a.atlas);
-    const PieceGraph g = build_piece_graph(a.mesh, a.atlas, map);
-    for (std::uint32_t i = 0; i < g.n_pieces(); ++i) {
+    const ClusterGraph g = build_cluster_graph(a.mesh, a.atlas, map);
+    for (std::uint32_t i = 0; i < g.n_clusters(); ++i) {
         for (std::uint32_t k = g.edge_start[i]; k < g.edge_start[i + 1]; ++k)
-            EXPECT_EQ(g.pieces[i].normal.z > 0, g.pieces[g.edges[k].to].normal.z > 0);
+            EXPECT_EQ(g.clusters[i].normal.z > 0, g.clusters[g.edges[k].to].normal.z > 0);
     }
 }
 
@@ -381,7 +381,7 @@ TEST(SeamLinks, LetAGaussianSpreadOverSeamsAsInsideAChart) {
     std::vector<std::array<double, kTileTexels>> w(map.n_slots()), flux;
     for (std::uint32_t s = 0; s < map.n_slots(); ++s) {
         for (int t = 0; t < kTileTexels; ++t)
-            w[s][t] = map.tiles[s].piece[t] == kNoPiece ? 0 : gaussian(s, t, 4);
+            w[s][t] = map.tiles[s].cluster[t] == kNoCluster ? 0 : gaussian(s, t, 4);
     }
     const double k = 0.19;  // σ² grows by 2 k a step
     double before = 0, after = 0;
@@ -393,7 +393,7 @@ TEST(SeamLinks, LetAGaussianSpreadOverSeamsAsInsideAChart) {
             const int x0 = int(tile % map.tiles_per_side) * kTile,
                       y0 = int(tile / map.tiles_per_side) * kTile;
             for (int t = 0; t < kTileTexels; ++t) {
-                if (map.tiles[s].piece[t] == kNoPiece) continue;
+                if (map.tiles[s].cluster[t] == kNoCluster) continue;
                 for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
                     const TexelRef o = texel_ref(map, x0 + t % kTile + dx, y0 + t / kTile + dy);
                     if (!o.valid()) continue;
@@ -416,7 +416,7 @@ TEST(SeamLinks, LetAGaussianSpreadOverSeamsAsInsideAChart) {
     std::size_t n = 0;
     for (std::uint32_t s = 0; s < map.n_slots(); ++s) {
         for (int t = 0; t < kTileTexels; ++t) {
-            if (map.tiles[s].piece[t] == kNoPiece) continue;
+            if (map.tiles[s].cluster[t] == kNoCluster) continue;
             const double e = (w[s][t] - gaussian(s, t, 15)) / (16.0 / 225);  // of the peak
             after += w[s][t];
             if (glm::length(Vec2(map.position(s, t))) / texel > 45) continue;

@@ -93,9 +93,9 @@ TEST(Bundles, PartingDoesNotDependOnTheSteps) {
     const Preset p = load_preset("mixed-medium");
     Bundles once = make_bundles(p, 1), often = once;
     const std::vector<double> dry(once.place.size(), 0.05);
-    part_bundles(once, p, 1, dry, 5e-3, 0.1);
-    for (int i = 0; i < 50; ++i) part_bundles(often, p, 1, dry, 1e-4, 0.002);
-    for (std::size_t k = 0; k < dry.size(); ++k) EXPECT_NEAR(once.apart[k], often.apart[k], 1e-12);
+    split_bundles(once, p, 1, dry, 5e-3, 0.1);
+    for (int i = 0; i < 50; ++i) split_bundles(often, p, 1, dry, 1e-4, 0.002);
+    for (std::size_t k = 0; k < dry.size(); ++k) EXPECT_NEAR(once.separation[k], often.separation[k], 1e-12);
 }
 
 TEST(Bundles, DryHairUnderStressPartsStaysSoAndMergesWhenWettedOrCombed) {
@@ -104,22 +104,22 @@ TEST(Bundles, DryHairUnderStressPartsStaysSoAndMergesWhenWettedOrCombed) {
     const std::vector<double> dry(b.place.size(), 0.02), wet(b.place.size(), 0.98);
     const auto sum = [&] {
         double s = 0;
-        for (const double a : b.apart) s += a;
+        for (const double a : b.separation) s += a;
         return s;
     };
-    part_bundles(b, p, 1, wet, 1, 1);
+    split_bundles(b, p, 1, wet, 1, 1);
     EXPECT_EQ(sum(), 0) << "wet hair holds together under any stress";
-    part_bundles(b, p, 0.2, dry, 1, 1);
+    split_bundles(b, p, 0.2, dry, 1, 1);
     EXPECT_EQ(sum(), 0) << "dry hair that is not pressed stays as it is";
-    part_bundles(b, p, 1, dry, 0.02, 0.1);
+    split_bundles(b, p, 1, dry, 0.02, 0.1);
     const double parted = sum();
     EXPECT_GT(parted, 0.8 * static_cast<double>(b.place.size()));
-    part_bundles(b, p, 0, dry, 0.1, 10);
+    split_bundles(b, p, 0, dry, 0.1, 10);
     EXPECT_EQ(sum(), parted) << "lifted and still dry";
     Bundles combed = b;
     gather(combed);
-    for (const double a : combed.apart) EXPECT_EQ(a, 0);
-    part_bundles(b, p, 0, wet, 0, 1);
+    for (const double a : combed.separation) EXPECT_EQ(a, 0);
+    split_bundles(b, p, 0, wet, 0, 1);
     EXPECT_LT(sum(), 1e-3 * parted) << "e^-10 after a second";
 }
 
@@ -165,7 +165,7 @@ TEST(Bundles, ChildrenOfAnyNumberAddUpToTheirParent) {
             shares += b.ink_share;
             area += b.sections[1].a * b.sections[1].b;
         }
-        for (const Spine& twig : tuft.twigs) stiffness += twig.rod.stiffness.back();
+        for (const Spine& sub_spine : tuft.sub_spines) stiffness += sub_spine.rod.stiffness.back();
         const double r = tuft.spine.rest_radius[tuft.spine.rest_radius.size() - 2];
         EXPECT_NEAR(shares, 1, 1e-12);
         EXPECT_NEAR(area, r * r, 1e-9 * r * r);

@@ -62,7 +62,7 @@ TEST(Presets, OfAnySizeAProjectHoldsThemToTheBit) {
     for (const char* size : {"*0.39984", "*1.7321", "*0.1234"}) names.push_back("goat-small" + std::string(size));
     for (const std::string& name : names) {
         const Preset p = load_preset(name), q = parse_preset(preset_toml(p), "stored");
-        for (const auto member : {&Preset::length, &Preset::radius, &Preset::stiffness, &Preset::adhesion, &Preset::capacity, &Preset::end_give, &Preset::tip_radius})
+        for (const auto member : {&Preset::length, &Preset::radius, &Preset::stiffness, &Preset::adhesion, &Preset::capacity, &Preset::end_compliance, &Preset::tip_radius})
             EXPECT_EQ(p.*member, q.*member) << name;
     }
 }

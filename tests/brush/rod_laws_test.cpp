@@ -88,7 +88,7 @@ Scene rough_scene(bool hard, Under under = Under::plane) {
     s.law.pore_grip = 0.5;
     s.law.stick_stiffness = 800;
     s.law.max_iterations = 200;
-    s.law.end_give = 0.06;
+    s.law.end_compliance = 0.06;
     s.law.damping = 0.7;
     s.law.edge = 0.04;
     Obstacle o;
@@ -312,7 +312,7 @@ TEST(RodLaws, EndsThatMeetTheSurfaceEndOnGiveAsTheySay) {
     Law law;
     law.stiffness = 1e7;
     law.points_per_segment = 24;
-    law.end_give = give;
+    law.end_compliance = give;
     law.friction = 0;
     law.max_iterations = 200;
     const std::vector<Obstacle> plane(17);
@@ -425,7 +425,7 @@ TEST(RodLaws, WorkOfTheHandEqualsStoredPlusLostEnergy) {
     std::vector<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     // With all that takes energy on the way: ends that give, damped joints, a set that recovers.
-    law.end_give = 0.016;
+    law.end_compliance = 0.016;
     law.end_friction = 0.2;
     law.damping = 2;
     law.recovery = 1e-3;

@@ -1,4 +1,4 @@
-#include "brush/skin.h"
+#include "brush/tuft_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ TuftState bent(bool pressed) {
     return state;
 }
 
-double volume(const Skin& skin) {
+double volume(const TuftSurface& skin) {
     double v = 0;
     for (std::size_t i = 0; i < skin.triangles.size(); i += 3) {
         const Vec3 a = skin.positions[skin.triangles[i]], b = skin.positions[skin.triangles[i + 1]], c = skin.positions[skin.triangles[i + 2]];
@@ -31,8 +31,8 @@ double volume(const Skin& skin) {
     return v;
 }
 
-TEST(Skin, IsOpenOnlyAtTheFerruleAndTurnedOutward) {
-    const Skin skin = make_skin(bent(true));
+TEST(TuftSurface, IsOpenOnlyAtTheFerruleAndTurnedOutward) {
+    const TuftSurface skin = make_tuft_surface(bent(true));
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
     for (std::size_t i = 0; i < skin.triangles.size(); i += 3) {
         for (int k = 0; k < 3; ++k) {
@@ -55,7 +55,7 @@ TEST(Skin, IsOpenOnlyAtTheFerruleAndTurnedOutward) {
     }
 }
 
-TEST(Skin, RestVolumeIsTheSolidOfRevolution) {
+TEST(TuftSurface, RestVolumeIsTheSolidOfRevolution) {
     const Preset p = load_preset("mixed-medium");
     double exact = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -65,10 +65,10 @@ TEST(Skin, RestVolumeIsTheSolidOfRevolution) {
     TuftState state = bent(false);
     for (Section& s : state.branches[0].sections) s.centre -= Vec3{0.02, 0, 0.033};  // root ring round the origin closes the cone
     // 24-gon for a circle: 1.1 % less; interpolation between 17 sections: below 1 %.
-    EXPECT_NEAR(volume(make_skin(state)), exact, 0.025 * exact);
+    EXPECT_NEAR(volume(make_tuft_surface(state)), exact, 0.025 * exact);
 }
 
-TEST(Skin, RefinedSectionsPassThroughTheGivenOnesAndStayPositive) {
+TEST(TuftSurface, RefinedSectionsPassThroughTheGivenOnesAndStayPositive) {
     const TuftState state = bent(true);
     const std::vector<Section>& in = state.branches[0].sections;
     const std::vector<Section> fine = refine_sections(in, 4);

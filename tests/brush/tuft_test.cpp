@@ -376,7 +376,7 @@ TEST(Tuft, ForceGrowsWithDepth) {
         const TuftState state = draw(tuft, s);
         EXPECT_GT(state.normal_force, before);
         before = state.normal_force;
-        const Vec3 felt = hand_force(tuft.preset, state);
+        const Vec3 felt = device_force(tuft.preset, state);
         EXPECT_LE(glm::length(felt), tuft.preset.force_limit * (1 + 1e-12));
         EXPECT_GT(glm::dot(felt, state.force), 0);
     }
@@ -462,7 +462,7 @@ TEST(Tuft, SplitsWhenBentAndDryAndMergesWhenWetAgain) {
         // The next section, a segment on, goes on from there; one that began round was not half as wide.
         EXPECT_GT(state.branches[side].sections[leave - 1].a, 0.7 * root.a);
     }
-    EXPECT_EQ(predicted_nodes(tuft, tuft.pose).size(), 17 + 3 * tuft.twigs[0].rest_radius.size());
+    EXPECT_EQ(predicted_nodes(tuft, tuft.pose).size(), 17 + 3 * tuft.sub_spines[0].rest_radius.size());
     tuft.ink_left = 1;
     const ContactPlane plane;
     step(tuft, tuft.pose, {&plane, 1}, 0.01);

@@ -353,7 +353,7 @@ TEST(Contact, HoverFeelsTheSurfaceWithinTheTolerance) {
         }
         // Next to what the tuft itself feels, such as the pull of a wet tip.
         const double force =
-            glm::dot(r.hand_force - brush::hand_force(hand.preset(), r.tuft), Vec3{0, 0, 1});
+            glm::dot(r.device_force - brush::device_force(hand.preset(), r.tuft), Vec3{0, 0, 1});
         if (gap > 1.0e-3) {
             EXPECT_NEAR(force, 0, 1e-12);
         } else if (gap < 0.9e-3 && gap > 1e-6) {
@@ -372,9 +372,9 @@ TEST(Contact, HandForceIsClamped) {
     Hand hand(surface);
     for (int i = 1; i <= 60; ++i) {
         const Result r = hand.move({0, 0, -0.025 * i / 60});
-        const Vec3 wanted = brush::hand_force(hand.preset(), r.tuft) + Vec3{0, 0, 0.1};
+        const Vec3 wanted = brush::device_force(hand.preset(), r.tuft) + Vec3{0, 0, 0.1};
         const double size = glm::length(wanted);
-        EXPECT_NEAR(glm::length(r.hand_force - wanted * std::min(1.0, 7.9 / size)), 0, 1e-9);
+        EXPECT_NEAR(glm::length(r.device_force - wanted * std::min(1.0, 7.9 / size)), 0, 1e-9);
     }
 }
 
@@ -415,10 +415,10 @@ TEST(Contact, AnyPoseIsFiniteAndLeavesTheTuftFit) {
                 hand.move({random.uniform(-spread, spread), random.uniform(-spread, spread),
                            random.uniform(-spread, spread)},
                           q);
-            ASSERT_TRUE(finite(r.tuft.force) && finite(r.hand_force) && finite(r.frame.origin) &&
+            ASSERT_TRUE(finite(r.tuft.force) && finite(r.device_force) && finite(r.frame.origin) &&
                         finite(r.frame.n));
             ASSERT_NEAR(glm::length(r.frame.n), 1, 1e-9);
-            ASSERT_LE(glm::length(r.hand_force), hand.preset().force_limit + 1e-9);
+            ASSERT_LE(glm::length(r.device_force), hand.preset().force_limit + 1e-9);
             for (const brush::Branch& b : r.tuft.branches)
                 for (const brush::Section& s : b.sections) ASSERT_TRUE(finite(s.centre));
         }

@@ -55,14 +55,14 @@ brush::Pose pose_at(const brush::Preset& preset, const Vec3& tip, const Quat& q,
 
 /// Of the surface on the tuft, and what of it the hand feels: what comes through the wet hair's mass.
 struct Recording {
-    Curve surface, felt;
+    Curve surface, device_force;
     Vec3 given{0}, received{0};  ///< impulses, N·ms
 
     void add(const Result& r) {
         surface.add(r.tuft.normal_force);
-        felt.add(r.tuft.felt);
+        device_force.add(r.tuft.device_force);
         given += r.tuft.force;
-        received += r.tuft.felt;
+        received += r.tuft.device_force;
     }
 };
 
@@ -112,7 +112,7 @@ TEST(Force, ASlowPressGrowsWithoutStepsOnAnySurface) {
         };
         for (const auto& p : presses) {
             EXPECT_LT(p.curve.surface.step(), kSmooth) << brush << ", " << p.name;
-            EXPECT_LT(p.curve.felt.step(), kSmooth) << brush << ", " << p.name;
+            EXPECT_LT(p.curve.device_force.step(), kSmooth) << brush << ", " << p.name;
             EXPECT_GT(p.curve.surface.peak, 0.01) << brush << ", " << p.name;
         }
         // Balanced on an edge of 120° the tuft at last slips off: one step, no more.
@@ -144,7 +144,7 @@ TEST(Force, APressBesideARimGrowsWithoutSteps) {
                 // A tip that stands on the rim may slip off it, once.
                 EXPECT_LE(curve.surface.steps_above(0.02), 3);
                 EXPECT_LT(curve.surface.step(), 0.1);
-                EXPECT_LT(curve.felt.step(), kNoKnock);
+                EXPECT_LT(curve.device_force.step(), kNoKnock);
                 EXPECT_GT(curve.surface.peak, 0.005);
             }
         }
@@ -184,8 +184,8 @@ TEST(Force, HairDraggedOverARimComesOffItEvenly) {
             });
             const Recording in = drag_along(block.surface, brush, q, 50,
                                         [&](int i) { return block.beside_rim(0.015 - 5e-5 * i, 7e-4, 0.004); });
-            EXPECT_LT(out.felt.step(), kNoKnock) << brush << " lean " << lean;
-            EXPECT_LT(in.felt.step(), kNoKnock) << brush << " lean " << lean;
+            EXPECT_LT(out.device_force.step(), kNoKnock) << brush << " lean " << lean;
+            EXPECT_LT(in.device_force.step(), kNoKnock) << brush << " lean " << lean;
             // Upright the splayed hair turns behind the hand, which sets its damped joints going: one step. It
             // trails then, steadily, and its tip leaves the rim while it is still bent.
             const std::vector<double>& force = out.surface.force;
@@ -252,7 +252,7 @@ TEST(Force, TheWheelArchIsPressedAndFollowedWithoutSteps) {
         // soft goat (13 mN in all) used to feel 2 % to and fro.
         EXPECT_LT(curve.surface.step(), 0.15) << brush;
         EXPECT_LT(curve.surface.step(0.98), 0.01) << brush;
-        EXPECT_LT(curve.felt.step(), kNoKnock) << brush;
+        EXPECT_LT(curve.device_force.step(), kNoKnock) << brush;
         EXPECT_GT(*std::min_element(curve.surface.force.begin(), curve.surface.force.end()), 0) << brush;
     }
 }
@@ -284,7 +284,7 @@ TEST(Force, HairDraggedOverAConvexCreaseShowsNoSawTooth) {
         for (const double lean : {0.0, 0.4}) {
             const Recording curve = drag_over(surface, std::tan(angle), lean);
             EXPECT_LT(curve.surface.step(), angle < 0.3 ? 0.03 : 0.09) << angle << " lean " << lean;
-            EXPECT_LT(curve.felt.step(), kNoKnock) << angle << " lean " << lean;
+            EXPECT_LT(curve.device_force.step(), kNoKnock) << angle << " lean " << lean;
         }
     }
 }
@@ -316,7 +316,7 @@ TEST(Force, NoTouchSlipOrLiftKnocks) {
         for (const double depth : {0.05, 0.15, 0.3}) {
             for (const double lean : {0.0, 0.4, -0.4}) {
                 const Recording curve = light_stroke(surface, brush, depth, lean);
-                EXPECT_LT(curve.felt.step(), kNoKnock) << brush << " depth " << depth << " lean " << lean;
+                EXPECT_LT(curve.device_force.step(), kNoKnock) << brush << " depth " << depth << " lean " << lean;
                 // Nothing is lost on the way: the hand receives the impulse that the surface gives, but for
                 // what is left of the last film's pull at the end.
                 EXPECT_LT(glm::length(curve.received - curve.given), 1e-3 * glm::length(curve.given));
@@ -330,7 +330,7 @@ TEST(Force, ASteadyDragHasASteadyForce) {
     const mesh::SurfaceQuery surface(sheet);
     for (const double lean : {0.0, 0.4, -0.3}) {
         const Recording curve = drag_over(surface, 0, lean);
-        const std::vector<double>& force = curve.felt.force;
+        const std::vector<double>& force = curve.device_force.force;
         const auto [lo, hi] = std::minmax_element(force.begin() + 500, force.end());
         // Planes of the mesh's single precision: nanometres in 6 mm.
         EXPECT_LT((*hi - *lo) / *hi, 1e-3) << lean;

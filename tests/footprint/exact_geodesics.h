@@ -46,14 +46,14 @@ class ExactGeodesics {
 
     /// Length of the shortest way to the point `p` of `triangle`, metres, and the unit direction
     /// in which it leaves the origin; infinity where no way leads there.
-    struct Way {
+    struct Geodesic {
         double length = std::numeric_limits<double>::infinity();
         Vec3 direction{0};
         bool bent = false;  ///< it bends round a vertex: the straight ways from the origin do not
                             ///< reach the point, as behind an opening
     };
-    Way to(std::uint32_t triangle, const Vec3& p) const {
-        Way way;
+    Geodesic to(std::uint32_t triangle, const Vec3& p) const {
+        Geodesic way;
         const auto found = face_.find(triangle);
         if (found == face_.end() || found->second == Surface::null_face()) return way;
         std::vector<Kernel::Point_3> points;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "brush/splay.h"
+#include "brush/upright_hair.h"
 #include "brush/tuft.h"
 #include "footprint/cuts.h"
 
@@ -31,7 +31,7 @@ std::vector<double> pressed(const std::string& brush, double depth, int ms) {
         brush::Pose pose{.position = {0, 0, length - depth * length * down + air}, .time = 1e-3 * i};
         const brush::TuftState state = step(tuft, pose, {&sheet, 1}, 1e-3);
         std::vector<Trail> found = trails(state, frame, {}, length, film);
-        cover_foot(found, foot_of(tuft, sheet), frame, film);
+        cover_upright_hair(found, upright_hair_of(tuft, sheet), frame, film);
         for (const Trail& trail : found) {
             const Outline o = outline_of(trail, OutlineOptions{}.points);
             if (o.left.size() < 3) continue;
@@ -49,7 +49,7 @@ std::vector<double> pressed(const std::string& brush, double depth, int ms) {
     return half;
 }
 
-TEST(Foot, APressStraightDownLeavesADropRoundAtTheAxisWithoutASpur) {
+TEST(UprightHair, APressStraightDownLeavesADropRoundAtTheAxisWithoutASpur) {
     for (const char* brush : {"wolf-medium", "goat-medium", "mixed-medium"}) {
         for (const double depth : {0.08, 0.16}) {
             for (const int ms : {80, 400}) {
@@ -78,17 +78,17 @@ TEST(Foot, APressStraightDownLeavesADropRoundAtTheAxisWithoutASpur) {
     }
 }
 
-TEST(Foot, HairDrawnToOneSideHasNone) {
+TEST(UprightHair, HairDrawnToOneSideHasNone) {
     brush::Tuft tuft = brush::make_tuft(brush::load_preset("goat-medium"));
     const double length = tuft.preset.length;
     const brush::ContactPlane sheet;
     brush::Pose pose{.position = {0, 0, length + 5e-4}};
-    EXPECT_EQ(foot_of(tuft, sheet).share, 0);  // in the air
+    EXPECT_EQ(upright_hair_of(tuft, sheet).share, 0);  // in the air
     for (int i = 0; i <= 100; ++i) {
         pose.position.z = length - 0.15 * length * i / 100;
         step(tuft, pose, {&sheet, 1}, 2e-3);
     }
-    const brush::Foot upright = foot_of(tuft, sheet);
+    const brush::UprightHair upright = upright_hair_of(tuft, sheet);
     EXPECT_GT(upright.share, 0.99);
     EXPECT_NEAR(glm::length(upright.centre), 0, 1e-9);
     EXPECT_NEAR(upright.radius, brush::rest_radius(tuft.preset, 0.85), 1e-9);
@@ -96,7 +96,7 @@ TEST(Foot, HairDrawnToOneSideHasNone) {
     for (int i = 0; i <= 100; ++i) {
         pose.position.x += 1e-4;
         step(tuft, pose, {&sheet, 1}, 2e-3);
-        const double share = foot_of(tuft, sheet).share;
+        const double share = upright_hair_of(tuft, sheet).share;
         EXPECT_LE(share, before + 1e-12);
         EXPECT_GT(share, before - 0.1);  // 0.1 mm of a way of some 4 mm
         before = share;

@@ -27,7 +27,7 @@ struct Model {
     atlas::Atlas atlas;
     std::unique_ptr<mesh::SurfaceQuery> query;
     atlas::TexelMap map;
-    atlas::PieceGraph graph;
+    atlas::ClusterGraph graph;
     PlanScratch scratch;
 
     Model(mesh::TriangleMesh m, std::uint32_t size, std::uint32_t gutter) : mesh(std::move(m)) {
@@ -40,7 +40,7 @@ struct Model {
     void finish() {
         query = std::make_unique<mesh::SurfaceQuery>(mesh);
         map = atlas::build_texel_map(mesh, atlas);
-        graph = atlas::build_piece_graph(mesh, atlas, map);
+        graph = atlas::build_cluster_graph(mesh, atlas, map);
     }
     StampJobs plan(const Footprint& f) {
         StampJobs jobs = plan_stamp({mesh, atlas, map, graph}, f, {}, {}, scratch);
@@ -135,9 +135,9 @@ TEST(Geodesics, StampsKeepDistancesOnARoughSurface) {
 
 void expect_distances_on_the_car(std::uint32_t gutter) {
     // Stamps as wide as the openings between the spokes, as the wheels, and between. Where the
-    // surface folds, pieces lie as exact ways say; what is left are single texels of pieces on
+    // surface folds, clusters lie as exact ways say; what is left are single texels of clusters on
     // whose other side another way is the shortest: up to 41 % there. Measured: mean 0.02 to 0.10
-    // %, 98 % within 0.14 to 0.63 %, 99 % within 0.28 to 1.03 %; by the walk over the pieces alone
+    // %, 98 % within 0.14 to 0.63 %, 99 % within 0.28 to 1.03 %; by the walk over the clusters alone
     // 99 % lay within 12 % at 256 texels.
     Model car = shipped("car", 2048, gutter);
     for (const auto& [texels, part, places] :
@@ -213,7 +213,7 @@ std::optional<Vec3> read_back(const Model& model, const StampJobs& jobs, const F
     std::vector<Near> near;
     for (const TileJob& job : jobs.tiles)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
-            if (model.map.tiles[job.slot].piece[t] == atlas::kNoPiece) continue;
+            if (model.map.tiles[job.slot].cluster[t] == atlas::kNoCluster) continue;
             const Vec2 d = (place_of(model.map, jobs, f, job.slot, t) - uv) / reach;
             if (glm::dot(d, d) < 1) near.push_back({d, Vec3(model.map.position(job.slot, t))});
         }

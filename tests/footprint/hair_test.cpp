@@ -62,7 +62,7 @@ TEST(Hair, WetHairCoversTheOutline) {
     int worst = 0;
     for (std::size_t i = 0; i < whole.coverage.size(); ++i)
         worst = std::max(worst, std::abs(int(whole.coverage[i]) - int(wet.coverage[i])));
-    EXPECT_LE(worst, 13) << "of 255: pieces of a band overlap or miss a little where it bends";
+    EXPECT_LE(worst, 13) << "of 255: clusters of a band overlap or miss a little where it bends";
 }
 
 TEST(Hair, MarksCloseIntoTheOutlineAsTheyGetWet) {
@@ -105,12 +105,12 @@ TEST(Hair, SplayedHairGivesInkFromItsWholeLowerHalf) {
     HairTracks tracks;
     for (double slid = 0; slid < patch + 1e-3; slid += 1e-4) {
         std::vector<Trail> now = p.trails;
-        splay(now, tracks, slid, length, 1);
+        spread_trails(now, tracks, slid, length, 1);
     }
     const auto area = [&](double lean, double more) {
         std::vector<Trail> leaning = p.trails;
         HairTracks own = tracks;
-        splay(leaning, own, patch + 1e-3, length, 1);
+        spread_trails(leaning, own, patch + 1e-3, length, 1);
         for (std::size_t i = 0; i < leaning[0].cuts.size(); ++i) {
             Cut& cut = leaning[0].cuts[i];
             cut.e.z += lean;
@@ -171,7 +171,7 @@ TEST(Hair, PartedBundlesLeaveGapsBetweenThem) {
     for (const std::uint64_t seed : {11, 12, 13, 14}) {
         SCOPED_TRACE(seed);
         brush::Bundles together = brush::make_bundles(pressed().tuft.preset, seed), parted = together;
-        std::fill(parted.apart.begin(), parted.apart.end(), 1.0);
+        std::fill(parted.separation.begin(), parted.separation.end(), 1.0);
         for (const double wet : {0.3, 0.5, 0.7}) {
             together_area += area_of(marks(together, wet));
             parted_area += area_of(marks(parted, wet));
@@ -270,7 +270,7 @@ TEST(Hair, CarriedTrailsLieWhereTheyLay) {
     other.origin = {1e-3, -2e-3, 0};
     other.t = {0.6, 0.8, 0};
     other.b = {-0.8, 0.6, 0};
-    carry(trails, kFlat, other);
+    change_frame(trails, kFlat, other);
     for (std::size_t i = 0; i < trails[0].cuts.size(); ++i) {
         const Cut &now = trails[0].cuts[i], &was = pressed().trails[0].cuts[i];
         EXPECT_NEAR(glm::distance(Vec2(other.to_world(Vec3(now.centre, 0))), was.centre), 0, 1e-15);
@@ -289,7 +289,7 @@ TEST(Hair, FollowsInItsTrack) {
         if (lying.cuts[i].a > lying.cuts[widest].a) widest = i;
     HairTracks tracks;
     std::vector<Trail> now = p.trails;
-    splay(now, tracks, 0, length, 1);
+    spread_trails(now, tracks, 0, length, 1);
     // A track has a place every 25 µm, over which the very tip grows from nothing.
     const auto near_tip = [&](std::size_t i) { return (lying.along[0] - lying.along[i]) * length < 5e-5; };
     for (std::size_t i = 0; i < widest; ++i) {
@@ -298,7 +298,7 @@ TEST(Hair, FollowsInItsTrack) {
     }
     now = p.trails;
     for (Cut& cut : now[0].cuts) cut.a *= 1.5;  // pressed
-    splay(now, tracks, 0, length, 1);
+    spread_trails(now, tracks, 0, length, 1);
     for (std::size_t i = 0; i < widest; ++i) {
         if (near_tip(i)) continue;
         EXPECT_NEAR(now[0].cuts[i].a, lying.cuts[i].a, 0.01 * lying.cuts[widest].a) << i;
@@ -307,7 +307,7 @@ TEST(Hair, FollowsInItsTrack) {
     const double patch = (lying.along[0] - lying.along[widest]) * length;
     for (double slid = 0; slid <= 0.5 * patch; slid += 1e-4) {
         now = p.trails;
-        splay(now, tracks, slid, length, 1);
+        spread_trails(now, tracks, slid, length, 1);
     }
     for (std::size_t i = 0; i < widest; ++i) {
         const double behind = (lying.along[i] - lying.along[widest]) * length;
@@ -330,7 +330,7 @@ TEST(Hair, ComesWithTheTuftThatLiftsIt) {
     std::vector<Trail> now;
     for (double slid = 0; slid <= drawn; slid += 1e-4) {
         now = p.trails;
-        splay(now, tracks, slid, length, 1);
+        spread_trails(now, tracks, slid, length, 1);
     }
     const double belly = now[0].cuts[12].a;
     for (const double lies : {4e-3, 2e-3, 1e-3}) {
@@ -344,7 +344,7 @@ TEST(Hair, ComesWithTheTuftThatLiftsIt) {
         double widest = 0;
         for (Cut& cut : trail.cuts) widest = std::max(widest, cut.a *= 0.5);
         ASSERT_LT(widest + 0.35 * lies, 0.8 * belly);
-        splay(now, tracks, drawn, length, 1);
+        spread_trails(now, tracks, drawn, length, 1);
         for (const Cut& cut : trail.cuts) EXPECT_LE(cut.a, widest + 0.35 * lies + 1e-12) << lies;
         EXPECT_GT(trail.cuts[n / 4].a, widest) << lies;  // it still fans out
     }
@@ -359,7 +359,7 @@ TEST(Hair, ATrackIsAsWideWhateverTheSteps) {
         HairTracks tracks;
         for (double slid = 0; slid <= drawn; slid += step) {
             std::vector<Trail> now = p.trails;
-            splay(now, tracks, slid, length, 1);
+            spread_trails(now, tracks, slid, length, 1);
             if (slid < length) continue;
             least = std::min(least, now[0].cuts[12].a);
             most = std::max(most, now[0].cuts[12].a);
@@ -411,7 +411,7 @@ TEST(Hair, BristlesRollOffAndOnAsTheyAreDrawn) {
 TEST(Hair, TouchedCellsAreThoseOfTheLowerSideNearTheTip) {
     const Pressed& p = pressed();
     const brush::HairCells cells = brush::hair_cells(p.tuft.preset);
-    const std::vector<float> touched = touched_cells(p.trails, p.tuft.bundles, 1, cells.ends);
+    const std::vector<float> touched = contact_cells(p.trails, p.tuft.bundles, 1, cells.ends);
     ASSERT_EQ(touched.size(), p.tuft.bundles.place.size() * cells.ends.size());
     double sum = 0, root = 0;
     int bundles = 0;

@@ -35,7 +35,7 @@ struct Edges {
     }
 };
 
-/// A stroke along x at 0.2 m/s, 30 mm long after a touch, pressed ever deeper down to a quarter of the hair;
+/// A stroke along x at 0.2 m/s, 30 mm long after a touch, pressed ever deeper down to a quadrant of the hair;
 /// the hand leans by `lean` towards `azimuth` from the way it goes, radians.
 Edges quick_press(brush::Preset preset, int segments, double lean, double azimuth) {
     preset.segments = segments;

@@ -23,8 +23,8 @@ inline Vec2 place_of(const atlas::TexelMap& map, const StampJobs& jobs, const Fo
     for (const TileJob& job : jobs.tiles) {
         if (job.slot != slot) continue;
         for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
-            if (jobs.frames[k].piece != map.tiles[slot].piece[t]) continue;
-            const PieceFrame& p = jobs.piecewise ? jobs.frames[k] : jobs.stamp_frame;
+            if (jobs.frames[k].cluster != map.tiles[slot].cluster[t]) continue;
+            const ClusterFrame& p = jobs.piecewise ? jobs.frames[k] : jobs.stamp_frame;
             // log_map is linear in t and b: the picture's axes take their place.
             const Frame frame{Vec3(p.origin), f.cell * Vec3(p.tu), f.cell * Vec3(p.tv), Vec3(p.normal)};
             const Vec3 m = glm::normalize(Vec3(map.normal(slot, t)));
@@ -39,13 +39,13 @@ inline Vec2 place_of(const atlas::TexelMap& map, const StampJobs& jobs, const Fo
 struct Stage {
     testing::Unwrapped u;
     atlas::TexelMap map;
-    atlas::PieceGraph graph;
+    atlas::ClusterGraph graph;
     PlanScratch scratch;
 
     explicit Stage(testing::Unwrapped unwrapped, atlas::TexelStore store = atlas::TexelStore::floats)
         : u(std::move(unwrapped)) {
         map = atlas::build_texel_map(u.mesh, u.atlas, {}, store);
-        graph = atlas::build_piece_graph(u.mesh, u.atlas, map);
+        graph = atlas::build_cluster_graph(u.mesh, u.atlas, map);
     }
     Surface surface() const { return {u.mesh, u.atlas, map, graph}; }
 

@@ -33,7 +33,7 @@ TEST(Stamp, ExposesOnTheSheetWhatTheFootprintShows) {
             const double d = glm::length(Vec3(stage.map.position(slot, t)) - at) / texel;
             worst = std::max(worst, std::abs(e - std::clamp(0.5 - (d - 40), 0.0, 1.0)));
         });
-        // Bilinear interpolation of a clamped ramp one cell wide: up to a quarter at its ends.
+        // Bilinear interpolation of a clamped ramp one cell wide: up to a quadrant at its ends.
         EXPECT_LT(worst, 0.26);
         // Sampling a disc of 40 texels at its texels, 1/255 steps: few parts in 10 000.
         EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f), 1, 1e-3) << charts;
@@ -194,7 +194,7 @@ TEST(Stamp, UnfoldsARightAngle) {
         const Errors e = errors(stage, jobs, f, r, [&](const Vec3& p) {
             return Vec2{p.z < -1e-7 ? a - p.z : p.x + a, p.y - at.y};  // u = a + b beyond the edge
         });
-        // Target for creases is 0.5 % at most; flat pieces meet in points of both planes.
+        // Target for creases is 0.5 % at most; flat clusters meet in points of both planes.
         EXPECT_LT(e.max, 1e-3) << one_chart;
         EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f), 1, 3e-3) << one_chart;
     }

@@ -263,11 +263,11 @@ TEST(Stamp, QuartersCalledFullOrEmptyAreSoToTheBit) {
         // As many poses as it takes, and 27: 27 / 27 in floats is not 1.
         StampJobs known = stage.plan(f, motion, {.sub_pose = i % 4 == 0 ? 0.01 : 1.0, .max_sub_poses = 27});
         StampJobs plain = known;
-        for (PieceFrame& frame : plain.frames) {
-            full += static_cast<std::size_t>(std::popcount(frame.full));
-            empty += static_cast<std::size_t>(std::popcount(static_cast<std::uint8_t>(~(frame.full | frame.part) & kAllQuarters)));
-            frame.full = 0;
-            frame.part = kAllQuarters;
+        for (ClusterFrame& frame : plain.frames) {
+            full += static_cast<std::size_t>(std::popcount(frame.full_quadrants));
+            empty += static_cast<std::size_t>(std::popcount(static_cast<std::uint8_t>(~(frame.full_quadrants | frame.partial_quadrants) & kAllQuadrants)));
+            frame.full_quadrants = 0;
+            frame.partial_quadrants = kAllQuadrants;
         }
         std::array<float, atlas::kTileTexels> a, b;
         for (const Isa isa : {Isa::baseline, Isa::avx2, Isa::avx512}) {

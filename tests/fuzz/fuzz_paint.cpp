@@ -48,7 +48,7 @@ stroke::Stroke stroke_of(Bytes& bytes) {
     s.settings.contact = flags & 4 ? "vertices" : "exact";
     s.settings.dip = flags & 8 ? "carry" : "each";
     s.settings.film = flags & 16 ? "wet" : "still";
-    s.settings.lead = !(flags & 32);
+    s.settings.compensate_tip_lag = !(flags & 32);
     s.settings.smooth = flags & 64 ? 1 : 0;
     s.settings.pressure = flags & 128 ? "speed+dwell" : "none";
     s.settings.down = Vec3(bytes.real(), bytes.real(), bytes.real());
@@ -57,7 +57,7 @@ stroke::Stroke stroke_of(Bytes& bytes) {
     s.trace.flat = !(more & 16);
     s.trace.erases = (more & 0xe0) == 0xe0;
     s.trace.seed = bytes.byte();
-    s.trace.placement.laying = static_cast<stroke::Laying>(bytes.below(3));
+    s.trace.placement.mapping = static_cast<stroke::SurfaceMapping>(bytes.below(3));
     s.trace.placement.origin = 0.02 * Vec3(bytes.real(), bytes.real(), bytes.real());
     if (more & 32) s.trace.placement.right = glm::normalize(Vec3(1, bytes.real(), bytes.real()));
     const int n = 1 + bytes.below(20);
@@ -112,11 +112,11 @@ void run_paint(std::span<const std::uint8_t> input) {
         stroke::ModelOptions options;
         options.unwrap.size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(4));
         const stroke::Model model = stroke::prepare_model(tiny_mesh(bytes), options);
-        stroke::Painting painting(model);
+        stroke::Document painting(model);
         for (int i = 0; i < 3 && !bytes.empty(); ++i)
             refusing([&] { painting.paint(entry_of(bytes)); });
         check_ink(painting.canvas());
-        stroke::Painting again(model);
+        stroke::Document again(model);
         again.replay(painting.journal().strokes());
         promise(again.hash() == painting.hash(), "a replay gives the same bits");
     });

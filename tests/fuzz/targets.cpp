@@ -20,7 +20,7 @@
 #include "io/svg.h"
 #include "mesh/repair.h"
 #include "promise.h"
-#include "stroke/hand/habit.h"
+#include "stroke/hand/bias_correction.h"
 #include "stroke/journal/journal.h"
 
 namespace tuft::fuzz {
@@ -144,8 +144,8 @@ void run_substrate(Input input) {
 
 void run_habit(Input input) {
     refusing([&] {
-        const stroke::Habit habit = stroke::parse_habit(text_of(input), "input.toml");
-        stroke::parse_habit(stroke::habit_toml(habit), "again.toml");
+        const stroke::BiasCorrection habit = stroke::parse_bias(text_of(input), "input.toml");
+        stroke::parse_bias(stroke::bias_toml(habit), "again.toml");
     });
 }
 

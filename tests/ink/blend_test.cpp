@@ -20,8 +20,8 @@ Canvas layer_of(const std::vector<std::string>& pigments, float most) {
     return canvas;
 }
 
-TileLook look_of(const std::vector<LayerView>& layers, const Substrate& substrate) {
-    return look_of_tile(Stack(layers), 0, substrate);
+TileAppearance look_of(const std::vector<LayerView>& layers, const Substrate& substrate) {
+    return shade_tile(Stack(layers), 0, substrate);
 }
 
 /// Reflectance R of the bare substrate below its interface, and the colour of one above it.
@@ -40,7 +40,7 @@ Rgb seen(const std::array<double, kBands>& r, const Substrate& s) {
 TEST(Blend, AGlazeOnlyAbsorbs) {
     const Substrate porcelain = load_substrate("porcelain");
     const Canvas cinnabar = layer_of({"cinnabar", "cobalt-underglaze"}, 2);
-    const TileLook look = look_of({{.canvas = &cinnabar, .blend = Blend::glaze}}, porcelain);
+    const TileAppearance look = look_of({{.canvas = &cinnabar, .blend = Blend::glaze}}, porcelain);
     for (const int t : {0, 40, 255}) {
         const double w = 2.0 * t / kN;
         std::array<double, kBands> r;
@@ -58,7 +58,7 @@ TEST(Blend, AGlazeOnlyAbsorbs) {
 TEST(Blend, MultiplyIsAFilterOfTheColourOverWhite) {
     const Substrate clay = load_substrate("clay");
     const Canvas film = layer_of({"cinnabar", "shell-white"}, 2);
-    const TileLook look = look_of({{.canvas = &film, .blend = Blend::multiply}}, clay);
+    const TileAppearance look = look_of({{.canvas = &film, .blend = Blend::multiply}}, clay);
     for (const int t : {0, 40, 255}) {
         const double w = 2.0 * t / kN;
         std::array<double, kBands> r;
@@ -77,7 +77,7 @@ TEST(Blend, MultiplyIsAFilterOfTheColourOverWhite) {
 TEST(Blend, WhiteCoversOnlyNormally) {
     const Substrate clay = load_substrate("clay");
     const Canvas white = layer_of({"titanium-white"}, 4), empty(1);
-    const TileLook none = look_of({{.canvas = &empty}}, clay);
+    const TileAppearance none = look_of({{.canvas = &empty}}, clay);
     const auto change = [&](Blend blend) {
         return look_of({{.canvas = &white, .blend = blend}}, clay).colour[1][255] -
                none.colour[1][255];
@@ -97,7 +97,7 @@ TEST(Blend, NothingGetsLighterByGlazesAndFilters) {
             for (const Blend blend : {Blend::glaze, Blend::multiply}) {
                 const Substrate substrate = load_substrate(name);
                 const Canvas film = layer_of({pigment}, 3);
-                const TileLook look = look_of({{.canvas = &film, .blend = blend}}, substrate);
+                const TileAppearance look = look_of({{.canvas = &film, .blend = blend}}, substrate);
                 const auto luminance = [&](int t) {
                     return 0.2126f * look.colour[0][t] + 0.7152f * look.colour[1][t] +
                            0.0722f * look.colour[2][t];
@@ -111,9 +111,9 @@ TEST(Blend, NothingGetsLighterByGlazesAndFilters) {
 TEST(Blend, HeightAndRoughnessAreThoseOfTheFilms) {
     const Substrate clay = load_substrate("clay");
     const Canvas film = layer_of({"cinnabar"}, 3);
-    const TileLook normal = look_of({{.canvas = &film}}, clay);
+    const TileAppearance normal = look_of({{.canvas = &film}}, clay);
     for (const Blend blend : {Blend::glaze, Blend::multiply}) {
-        const TileLook look = look_of({{.canvas = &film, .blend = blend}}, clay);
+        const TileAppearance look = look_of({{.canvas = &film, .blend = blend}}, clay);
         EXPECT_EQ(look.height, normal.height);
         EXPECT_EQ(look.roughness, normal.roughness);
     }

@@ -204,7 +204,7 @@ TEST(Spectrum, TheCompositeShowsShippedPigmentsAsTheFullSpectraDo) {
             }
             const auto full = rgb_of_spectrum(stack_in_full(films, on));
             const Rgb want = into_gamut({static_cast<float>(full[0]), static_cast<float>(full[1]), static_cast<float>(full[2])});
-            const TileLook look = look_of_films(tiles, nullptr, eight, on);
+            const TileAppearance look = shade_films(tiles, nullptr, eight, on);
             worst = std::max(worst, delta_e({look.colour[0][0], look.colour[1][0], look.colour[2][0]}, want));
         }
     }
@@ -297,7 +297,7 @@ TEST(Mixing, ColoursAndEnergyStayInBounds) {
             film.pigments[p] = &planes[p];
         }
         const TileFilm films[] = {film, film};
-        const TileLook look = look_of_films(films, nullptr, pigments, load_substrate(under));
+        const TileAppearance look = shade_films(films, nullptr, pigments, load_substrate(under));
         for (const auto& channel : look.colour)
             for (const float v : channel) {
                 EXPECT_GE(v, -1e-6);

@@ -30,7 +30,7 @@ atlas::TexelMap disc_map(std::uint32_t size, double radius) {
             const double x = tile % map.tiles_per_side * 16 + t % 16 + 0.5 - size / 2.0;
             const double y = tile / map.tiles_per_side * 16 + t / 16 + 0.5 - size / 2.0;
             const bool inside = x * x + y * y < radius * radius;
-            made.piece[t] = inside ? 0 : atlas::kNoPiece;
+            made.cluster[t] = inside ? 0 : atlas::kNoCluster;
             made.area[t] = inside ? 1e-8f : 0.0f;
             any |= inside;
         }
@@ -42,7 +42,7 @@ atlas::TexelMap disc_map(std::uint32_t size, double radius) {
     return map;
 }
 
-/// What `look_of_films` computes, in double, one texel, from the scalar formulas.
+/// What `shade_films` computes, in double, one texel, from the scalar formulas.
 struct Reference {
     std::array<double, kBands> r{};
     Substrate substrate;
@@ -100,7 +100,7 @@ TEST(Composite, AgreesWithTheScalarFormulas) {
     }
     for (const char* name : {"porcelain", "bisque", "primed-metal"}) {
         const Substrate substrate = load_substrate(name);
-        const TileLook look = look_of_tile(canvas, 0, substrate);
+        const TileAppearance look = shade_tile(canvas, 0, substrate);
         for (int t = 0; t < kN; ++t) {
             std::vector<double> w;
             double height = 0;
@@ -136,7 +136,7 @@ TEST(Composite, FilmsLieOverEachOther) {
         {},
         {.pigments = {nullptr, &blue, &white}},
     };
-    const TileLook look = look_of_films(films, &water, pigments, paper);
+    const TileAppearance look = shade_films(films, &water, pigments, paper);
     for (int t = 0; t < kN; ++t) {
         Reference reference(paper);
         reference.lay(pigments, {yellow[t], 0, 0});
@@ -166,7 +166,7 @@ TEST(Composite, LayersLieOverEachOtherInTheirOrder) {
     for (const float opacity : {1.0f, 0.3f}) {
         for (const int lower : {0, 1}) {
             const Stack stack({{&canvas[lower], 1}, {&canvas[1 - lower], opacity}});
-            const TileLook look = look_of_tile(stack, 0, paper);
+            const TileAppearance look = shade_tile(stack, 0, paper);
             for (int t = 0; t < kN; ++t) {
                 Reference reference(paper);
                 const auto film = [&](int i) {
@@ -185,7 +185,7 @@ TEST(Composite, LayersLieOverEachOtherInTheirOrder) {
     canvas[0].touch(0, 0).fill(50);
     canvas[1].touch(0, 0).fill(50);
     canvas[1].touch(0, 1).fill(0);
-    const auto faded = [&](const Canvas& c) { return look_of_tile(Stack(std::vector<LayerView>{{&c, 0.5f}}), 0, paper); };
+    const auto faded = [&](const Canvas& c) { return shade_tile(Stack(std::vector<LayerView>{{&c, 0.5f}}), 0, paper); };
     for (int t = 0; t < kN; t += 17)
         for (int c = 0; c < 3; ++c)  // fifty film units hide anything to 1e-6
             EXPECT_NEAR(faded(canvas[0]).colour[c][t], faded(canvas[1]).colour[c][t], 4e-6);
@@ -205,8 +205,8 @@ TEST(Composite, SplittingAFilmChangesNothing) {
     const std::vector<TileFilm> two{{.pigments = {&red_low, &white_low}},
                                     {.pigments = {&red_high, &white_high}}};
     const Substrate glaze = load_substrate("porcelain");
-    const TileLook whole = look_of_films(one, nullptr, pigments, glaze);
-    const TileLook parts = look_of_films(two, nullptr, pigments, glaze);
+    const TileAppearance whole = shade_films(one, nullptr, pigments, glaze);
+    const TileAppearance parts = shade_films(two, nullptr, pigments, glaze);
     for (int c = 0; c < 3; ++c)
         for (int t = 0; t < kN; ++t)
             EXPECT_NEAR(parts.colour[c][t], whole.colour[c][t], 4e-6) << "single precision";
@@ -219,7 +219,7 @@ TEST(Composite, WaterDeepensColourAndShines) {
     for (int t = 0; t < kN; ++t) water[t] = 0.05f * static_cast<float>(t);
     const std::vector<TileFilm> films{{.pigments = {&red}}};
     for (const char* name : {"rice-paper", "bisque", "clay"}) {
-        const TileLook look = look_of_films(films, &water, pigments, load_substrate(name));
+        const TileAppearance look = shade_films(films, &water, pigments, load_substrate(name));
         for (int t = 1; t < kN; ++t) {
             EXPECT_LE(look.colour[0][t], look.colour[0][t - 1] + 1e-7f);
             EXPECT_LE(look.roughness[t], look.roughness[t - 1]);
@@ -228,7 +228,7 @@ TEST(Composite, WaterDeepensColourAndShines) {
         EXPECT_LT(look.roughness[255], 0.1f) << name;
     }
     // Nothing gets wetter under a glaze.
-    const TileLook glazed = look_of_films(films, &water, pigments, load_substrate("porcelain"));
+    const TileAppearance glazed = shade_films(films, &water, pigments, load_substrate("porcelain"));
     EXPECT_FLOAT_EQ(glazed.colour[1][255], glazed.colour[1][0]);
 }
 
@@ -237,12 +237,12 @@ TEST(Composite, AnEmptyTileLooksLikeTheSubstrate) {
     canvas.add_pigment(load_ink("carbon").parts[0].pigment);
     canvas.touch(0, 0);
     const Substrate clay = load_substrate("clay");
-    const TileLook look = look_of_tile(canvas, 0, clay);
+    const TileAppearance look = shade_tile(canvas, 0, clay);
     EXPECT_EQ(look.height[9], 0);
     EXPECT_FLOAT_EQ(look.roughness[9], clay.roughness);
     for (const std::string& name : list_substrates()) {  // under its interface too
         const Substrate substrate = load_substrate(name);
-        const TileLook bare = look_of_tile(canvas, 0, substrate);
+        const TileAppearance bare = shade_tile(canvas, 0, substrate);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(bare.colour[c][9], substrate.reflectance[c], 1e-6) << name;
     }
@@ -252,7 +252,7 @@ TEST(Composite, MoreInkIsNeverLighter) {
     Canvas canvas(1);
     canvas.add_pigment(load_ink("carbon").parts[0].pigment);
     for (int t = 0; t < kN; ++t) canvas.touch(0, 0)[t] = 0.02f * static_cast<float>(t);
-    const TileLook look = look_of_tile(canvas, 0, load_substrate("porcelain"));
+    const TileAppearance look = shade_tile(canvas, 0, load_substrate("porcelain"));
     for (int t = 1; t < kN; ++t) EXPECT_LE(look.colour[1][t], look.colour[1][t - 1] + 1e-7f);
 }
 
@@ -262,12 +262,12 @@ TEST(Composite, MapsHaveTheChartsTheirGutterAndTheBackground) {
     canvas.add_pigment(load_ink("cinnabar").parts[0].pigment);
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (int t = 0; t < kN; ++t)
-            if (map.tiles[slot].piece[t] != atlas::kNoPiece) canvas.touch(slot, 0)[t] = 3;
+            if (map.tiles[slot].cluster[t] != atlas::kNoCluster) canvas.touch(slot, 0)[t] = 3;
     const Substrate porcelain = load_substrate("porcelain");
     const AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, porcelain, {.gutter = 4});
     ASSERT_EQ(image.texels.size(), 100u * 100u * 3u);
-    const TileLook look =
-        look_of_tile(canvas, map.slot_of_tile[3 * map.tiles_per_side + 3], porcelain);
+    const TileAppearance look =
+        shade_tile(canvas, map.slot_of_tile[3 * map.tiles_per_side + 3], porcelain);
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 100; ++x) {
             const double r = std::hypot(x + 0.5 - 50, y + 0.5 - 50);

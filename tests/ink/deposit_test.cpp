@@ -90,7 +90,7 @@ TEST(Deposit, ATexelHalfCoveredLooksHalfCovered) {
         for (int i = 0; i < 50; ++i) deposit(canvas, 0, coverage, kArea, 1e-3, params);
         EXPECT_NEAR((*canvas.plane(0, 0))[kN - 1], ink.film, 1e-4 * ink.film)
             << "1 − f hidden is near 0 there and has lost digits";
-        const TileLook look = look_of_tile(canvas, 0, substrate);
+        const TileAppearance look = shade_tile(canvas, 0, substrate);
         for (int t = 0; t < kN; ++t) {
             const double bare = look.colour[1][0], full = look.colour[1][kN - 1];
             // Exact for a film that only absorbs; the tolerance is that of the scattering.

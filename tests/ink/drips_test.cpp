@@ -44,7 +44,7 @@ struct Wall {
     void each(Fn&& fn) const {
         for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
             for (int t = 0; t < atlas::kTileTexels; ++t)
-                if (map.tiles[slot].piece[t] != atlas::kNoPiece) fn(slot, t, Vec3(map.position(slot, t)));
+                if (map.tiles[slot].cluster[t] != atlas::kNoCluster) fn(slot, t, Vec3(map.position(slot, t)));
     }
     /// A blot of `radius` about (0, 12 mm), `film` thick, a tenth of it ink; as much of it however the
     /// texels lie.

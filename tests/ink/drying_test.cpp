@@ -40,7 +40,7 @@ double on_texel(const Canvas& canvas, int pigment, int t) {
     return sum;
 }
 
-float worst(const TileLook& a, const TileLook& b) {
+float worst(const TileAppearance& a, const TileAppearance& b) {
     float worst = 0;
     for (std::size_t band = 0; band < a.colour.size(); ++band)
         for (int t = 0; t < kN; ++t) worst = std::max(worst, std::abs(a.colour[band][t] - b.colour[band][t]));
@@ -52,9 +52,9 @@ TEST(Drying, DoesNotChangeTheColourByABit) {
     const Substrate paper = load_substrate("rice-paper");
     for (int coat = 0; coat < kDryFilms; ++coat) {
         paint(canvas, 10 + coat);
-        const TileLook wet = look_of_tile(canvas, 0, paper);
+        const TileAppearance wet = shade_tile(canvas, 0, paper);
         close_films(canvas, 0, every_texel());
-        const TileLook dry = look_of_tile(canvas, 0, paper);
+        const TileAppearance dry = shade_tile(canvas, 0, paper);
         // Films of random mixtures: none joins the one under it, so the same numbers in the same order.
         EXPECT_EQ(worst(wet, dry), 0) << coat;
         EXPECT_EQ(wet.height, dry.height);
@@ -85,10 +85,10 @@ TEST(Drying, AFilmLikeTheOneUnderItJoinsIt) {
             canvas.touch(0, 1)[t] += 0.1f * static_cast<float>(uniform(coat, t));
             canvas.touch(0, 2)[t] += 0.05f * static_cast<float>(uniform(coat, t));
         }
-        const TileLook wet = look_of_tile(canvas, 0, clay);
+        const TileAppearance wet = shade_tile(canvas, 0, clay);
         close_films(canvas, 0, every_texel());
         // The composite's own error, 2e-6 for each of two films.
-        EXPECT_LT(worst(wet, look_of_tile(canvas, 0, clay)), 5e-6f);
+        EXPECT_LT(worst(wet, shade_tile(canvas, 0, clay)), 5e-6f);
         EXPECT_FALSE(canvas.has_film(0, kFirstDryFilm + 1)) << "one recipe needs one film";
     }
 }
@@ -115,11 +115,11 @@ TEST(Drying, PastTheLastFilmTheLowestMergeAndNothingIsLost) {
         for (int p = 0; p < 4; ++p)
             if (const Plane* w = canvas.plane(0, p))
                 for (int t = 0; t < kN; ++t) painted[p][t] += static_cast<double>((*w)[t]);
-        const TileLook wet = look_of_tile(canvas, 0, porcelain);
+        const TileAppearance wet = shade_tile(canvas, 0, porcelain);
         close_films(canvas, 0, every_texel());
         // Two films at the bottom become one mixture under seven others of up to 8 units each:
         // nothing of them is seen but for texels whose films are thin all over.
-        EXPECT_LT(worst(wet, look_of_tile(canvas, 0, porcelain)), 0.02f) << coat;
+        EXPECT_LT(worst(wet, shade_tile(canvas, 0, porcelain)), 0.02f) << coat;
     }
     for (int p = 0; p < 4; ++p)
         for (int t = 0; t < kN; ++t)

@@ -26,7 +26,7 @@ TEST(WetFilm, UniformWaterStaysUniformOverEverySeamOfEveryModel) {
         const auto each = [&](auto&& visit) {
             for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
                 for (int t = 0; t < atlas::kTileTexels; ++t)
-                    if (map.tiles[slot].piece[t] != atlas::kNoPiece) visit(slot, t);
+                    if (map.tiles[slot].cluster[t] != atlas::kNoCluster) visit(slot, t);
         };
         each([&](std::uint32_t slot, int t) {
             canvas.touch_liquid(slot, Liquid::film)[t] = 2;

@@ -156,7 +156,7 @@ TEST(WetFilm, FibresHoldGrainsBackFromWhatSeeps) {
 }
 
 TEST(WetFilm, TapeThrowsBackWhatSpreadsAndLetsNothingPass) {
-    // A Gaussian 1.5 mm beside the edge of a tape goes on as it and its image do; on the tape there is nothing. In one
+    // A Gaussian 1.5 mm beside the edge of a stencil edge goes on as it and its image do; on the stencil edge there is nothing. In one
     // chart, and over a seam at right angles to the edge.
     for (const int charts : {1, 2}) {
         Wet s(testing::sheet(0.02, charts, 160.0 / charts));
@@ -182,7 +182,7 @@ TEST(WetFilm, TapeThrowsBackWhatSpreadsAndLetsNothingPass) {
             if (!is_free(at)) ASSERT_EQ(s.amount(slot, t), 0);
             else if (glm::length(at) < 6e-3) worst = std::max(worst, std::abs(s.amount(slot, t) - gaussian(at, sigma2)));
         });
-        // As without tape; over the seam its edge is ragged by part of a texel of 0.125 mm.
+        // As without stencil edge; over the seam its edge is ragged by part of a texel of 0.125 mm.
         EXPECT_LT(worst / gaussian(Vec3{0}, sigma2), charts == 1 ? 2e-3 : 0.03);
         EXPECT_NEAR(s.canvas.total(s.map, 0) / before, 1, 1e-6);
     }

@@ -35,7 +35,7 @@ int main() {
                                   {.pigments = {nullptr, &planes[1], &planes[2], &planes[3]}, .mask = &planes[4], .opacity = 0.8f}};
         Substrate substrate;
         substrate.interface = 0.5f * static_cast<float>(round % 3);
-        const TileLook look = look_of_films(films, round % 2 ? &planes[5] : nullptr, pigments, substrate);
+        const TileAppearance look = shade_films(films, round % 2 ? &planes[5] : nullptr, pigments, substrate);
         for (const auto& channel : look.colour) hash = hash_bytes(channel.data(), sizeof channel, hash);
         hash = hash_bytes(look.roughness.data(), sizeof look.roughness, hash);
         hash = hash_bytes(look.height.data(), sizeof look.height, hash);

@@ -78,7 +78,7 @@ TEST(Match, ColourOnASubstrateIsWhatAFilmThereLooksLike) {
                 tile.pigments[p] = &planes[p];
                 held.push_back(ink.parts[p].pigment);
             }
-            const TileLook look = look_of_films(std::span(&tile, 1), nullptr, held, substrate);
+            const TileAppearance look = shade_films(std::span(&tile, 1), nullptr, held, substrate);
             const Rgb colour = colour_on(ink, substrate);
             // What the tile's single precision may differ by.
             for (std::size_t c = 0; c < 3; ++c)

@@ -22,10 +22,10 @@ TexelPlaces whole_patch() {
     return p;
 }
 
-Tents tents_over(const Texels& coverage) {
-    Tents tents;
-    tents_of(tents, whole_patch(), coverage);
-    return tents;
+HatBasis tents_over(const Texels& coverage) {
+    HatBasis hats;
+    hat_basis(hats, whole_patch(), coverage);
+    return hats;
 }
 
 /// Two inks side by side, the second half water, with places of the hair as far as they are.
@@ -47,14 +47,14 @@ std::vector<HairSample> straight_hair(const Reservoir& tuft) {
     return samples;
 }
 
-TouchGrid patch() {
+ContactGrid patch() {
     const std::array<Vec2, 2> corners{Vec2{0, -4e-3}, Vec2{10e-3, 4e-3}};
-    return touch_grid(corners, {1, 0});
+    return make_contact_grid(corners, {1, 0});
 }
 
-TEST(TouchGrid, SpansThePatchAlongTheHair) {
+TEST(ContactGrid, SpansThePatchAlongTheHair) {
     const std::array<Vec2, 3> places{Vec2{1, 1}, Vec2{1, 5}, Vec2{-1, 2}};
-    const TouchGrid grid = touch_grid(places, {0, 1});  // tip towards +v: across runs to −u
+    const ContactGrid grid = make_contact_grid(places, {0, 1});  // tip towards +v: across runs to −u
     EXPECT_NEAR(grid.at({0, 1}).x, 0, 1e-12);
     EXPECT_NEAR(grid.at({0, 5}).x, kAlong - 1, 1e-12);
     EXPECT_NEAR(grid.at({1, 0}).y, 0, 1e-12);
@@ -75,16 +75,16 @@ TEST(TouchGrid, SpansThePatchAlongTheHair) {
     }
 }
 
-TEST(TouchGrid, TentsSumToOneOnCoveredTexelsAndInterpolateLinearly) {
+TEST(ContactGrid, TentsSumToOneOnCoveredTexelsAndInterpolateLinearly) {
     Texels coverage = random_texels(5, -1, 1);
     for (float& f : coverage) f = std::max(f, 0.0f);
-    const Tents tents = tents_over(coverage);
+    const HatBasis hats = tents_over(coverage);
     std::array<float, kNodes> ones, slope;
     ones.fill(1);
     for (int n = 0; n < kNodes; ++n) slope[n] = static_cast<float>(2 * (n / kAcross) - 3 * (n % kAcross));
     Texels sum, plane;
-    interpolate(sum, tents, ones);
-    interpolate(plane, tents, slope);
+    interpolate(sum, hats, ones);
+    interpolate(plane, hats, slope);
     const TexelPlaces at = whole_patch();
     for (int t = 0; t < kN; ++t) {
         if (coverage[t] == 0) {
@@ -98,7 +98,7 @@ TEST(TouchGrid, TentsSumToOneOnCoveredTexelsAndInterpolateLinearly) {
 
 TEST(TouchNodes, EachNodeMeetsTheHairOverIt) {
     const Reservoir tuft = two_inks();
-    const NodeTouch nodes = node_touch(tuft, patch(), straight_hair(tuft), {});
+    const NodeContact nodes = node_contact(tuft, patch(), straight_hair(tuft), {});
     const NodeMixes mixes = mixes_at(tuft, nodes);
     for (int n = 0; n < kNodes; ++n) {
         double parts = 0, mixture = 0;
@@ -123,7 +123,7 @@ TEST(TouchNodes, EachNodeMeetsTheHairOverIt) {
 
 TEST(TouchNodes, WhatTheNodesGiveAndTakeIsKept) {
     Reservoir tuft = two_inks();
-    const NodeTouch nodes = node_touch(tuft, patch(), straight_hair(tuft), {});
+    const NodeContact nodes = node_contact(tuft, patch(), straight_hair(tuft), {});
     const double whole = tuft.remaining();
     std::array<double, Reservoir::kPlanes> before;
     for (int p = 0; p < Reservoir::kPlanes; ++p) before[p] = tuft.pigment(p);
@@ -151,7 +151,7 @@ TEST(TouchNodes, WhatTheNodesGiveAndTakeIsKept) {
 
 TEST(DepositMixed, LaysEachInkUnderTheHairThatHoldsItAndBooksWhatIsStored) {
     Reservoir tuft = two_inks();
-    const NodeTouch nodes = node_touch(tuft, patch(), straight_hair(tuft), {});
+    const NodeContact nodes = node_contact(tuft, patch(), straight_hair(tuft), {});
     const NodeMixes mixes = mixes_at(tuft, nodes);
     Canvas canvas(1);
     for (const char* name : {"left", "right"}) {
@@ -173,7 +173,7 @@ TEST(DepositMixed, LaysEachInkUnderTheHairThatHoldsItAndBooksWhatIsStored) {
         EXPECT_EQ((*canvas.plane(0, 1))[row * atlas::kTile], 0) << "left edge";
         EXPECT_EQ((*canvas.plane(0, 0))[row * atlas::kTile + 15], 0) << "right edge";
         for (int x = 1; x < atlas::kTile; ++x) {
-            // From one ink to the other without a step: at most what a tent rises over a texel.
+            // From one ink to the other without a step: at most what a hat rises over a texel.
             const auto part = [&](int at) {
                 const int t = row * atlas::kTile + at;
                 return (*canvas.plane(0, 0))[t] / coverage[t];

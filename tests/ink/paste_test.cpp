@@ -12,47 +12,47 @@
 namespace tuft::ink {
 namespace {
 
-std::vector<Tine> tines(int n) {
-    std::vector<Tine> out;
+std::vector<BundleFirmness> bundles(int n) {
+    std::vector<BundleFirmness> out;
     for (int k = 0; k < n; ++k)
         out.push_back({(k + 0.2 + 0.6 * uniform(5, static_cast<std::uint64_t>(k))) / n, 0.5 + 0.5 * uniform(6, static_cast<std::uint64_t>(k))});
     return out;
 }
 
-double mean_of(const Comb& comb) {
+double mean_of(const FurrowDepths& furrows) {
     double sum = 0;
-    for (int i = 0; i < kTines; ++i) sum += (i == 0 || i == kTines - 1 ? 0.5 : 1.0) * static_cast<double>(comb[i]) / (kTines - 1);
+    for (int i = 0; i < kFirmnessSamples; ++i) sum += (i == 0 || i == kFirmnessSamples - 1 ? 0.5 : 1.0) * static_cast<double>(furrows[i]) / (kFirmnessSamples - 1);
     return sum;
 }
 
 /// Amplitude of mode n of the cosine series over the width.
-double mode(const Comb& comb, int n) {
+double mode(const FurrowDepths& furrows, int n) {
     double a = 0;
-    for (int i = 0; i < kTines; ++i)
-        a += (i == 0 || i == kTines - 1 ? 1.0 : 2.0) * static_cast<double>(comb[i]) * std::cos(M_PI * n * i / (kTines - 1)) / (kTines - 1);
+    for (int i = 0; i < kFirmnessSamples; ++i)
+        a += (i == 0 || i == kFirmnessSamples - 1 ? 1.0 : 2.0) * static_cast<double>(furrows[i]) * std::cos(M_PI * n * i / (kFirmnessSamples - 1)) / (kFirmnessSamples - 1);
     return a;
 }
 
-TEST(Comb, NoWaveIsHigherThanTheYieldStressCanHold) {
-    const std::vector<Tine> hair = tines(18);
+TEST(FurrowDepths, NoWaveIsHigherThanTheYieldStressCanHold) {
+    const std::vector<BundleFirmness> hair = bundles(18);
     for (const double yield : {20.0, 400.0, 3000.0})
         for (const double film : {5e-5, 3e-4}) {
-            const Comb comb = comb_of(hair, {.width = 9e-3, .film = film, .yield = yield});
-            EXPECT_NEAR(mean_of(comb), 1, 1e-6) << "floats of about 1";
+            const FurrowDepths furrows = furrow_depths(hair, {.width = 9e-3, .film = film, .yield = yield});
+            EXPECT_NEAR(mean_of(furrows), 1, 1e-6) << "floats of about 1";
             for (int n = 1; n <= 60; ++n) {
                 const double k = M_PI * n / 9e-3;
-                // Orchard: stress σ k³ a h at the foot of the film; the comb is over its mean.
-                EXPECT_LE(0.03 * k * k * k * std::abs(mode(comb, n)) * film * film, yield * (1 + 1e-3) + 1e-6 * k * k * k * film * film) << n;
+                // Orchard: stress σ k³ a h at the foot of the film; the furrows is over its mean.
+                EXPECT_LE(0.03 * k * k * k * std::abs(mode(furrows, n)) * film * film, yield * (1 + 1e-3) + 1e-6 * k * k * k * film * film) << n;
             }
         }
 }
 
-TEST(Comb, AStiffPasteKeepsTheFurrowsThatAThinOneLoses) {
-    const std::vector<Tine> hair = tines(18);
+TEST(FurrowDepths, AStiffPasteKeepsTheFurrowsThatAThinOneLoses) {
+    const std::vector<BundleFirmness> hair = bundles(18);
     const auto rough = [&](double yield) {
-        const Comb comb = comb_of(hair, {.width = 9e-3, .film = 3e-4, .yield = yield});
+        const FurrowDepths furrows = furrow_depths(hair, {.width = 9e-3, .film = 3e-4, .yield = yield});
         double sum = 0;
-        for (const float v : comb) sum += (static_cast<double>(v) - 1) * (static_cast<double>(v) - 1) / kTines;
+        for (const float v : furrows) sum += (static_cast<double>(v) - 1) * (static_cast<double>(v) - 1) / kFirmnessSamples;
         return std::sqrt(sum);
     };
     EXPECT_EQ(rough(0), 0) << "what flows lies even";
@@ -61,15 +61,15 @@ TEST(Comb, AStiffPasteKeepsTheFurrowsThatAThinOneLoses) {
     EXPECT_GT(rough(1000), 0.05) << "of 300 µm: what raking light shows";
 }
 
-TEST(Comb, WhatIsPushedOutStandsAtTheSides) {
-    const Comb comb = comb_of({}, {.width = 9e-3, .film = 3e-4, .yield = 1000, .depth = 0, .rim = 0.5});
-    EXPECT_GT(comb.front(), 1.1);
-    EXPECT_GT(comb.back(), 1.1);
-    EXPECT_LT(comb[kTines / 2], 1);
-    EXPECT_NEAR(mean_of(comb), 1, 1e-6);
+TEST(FurrowDepths, WhatIsPushedOutStandsAtTheSides) {
+    const FurrowDepths furrows = furrow_depths({}, {.width = 9e-3, .film = 3e-4, .yield = 1000, .depth = 0, .rim = 0.5});
+    EXPECT_GT(furrows.front(), 1.1);
+    EXPECT_GT(furrows.back(), 1.1);
+    EXPECT_LT(furrows[kFirmnessSamples / 2], 1);
+    EXPECT_NEAR(mean_of(furrows), 1, 1e-6);
 }
 
-TEST(Comb, PasteStandsAsHighAsItsWeightLets) {
+TEST(FurrowDepths, PasteStandsAsHighAsItsWeightLets) {
     // τ / ρ g: 400 Pa hold 27 mm of paint of 1500 kg/m³.
     EXPECT_NEAR(standing_film(400) * kFilmUnit, 400 / (1500 * 9.81), 1e-9);
     EXPECT_EQ(standing_film(0), 0);
@@ -98,14 +98,14 @@ TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
         places.across[t] = static_cast<float>(t % 16) / 15 * (kAcross - 1);
         coverage[t] = t / 16 < 12 ? 1.0f : 0.5f;
     }
-    Tents tents;
-    tents_of(tents, places, coverage);
+    HatBasis hats;
+    hat_basis(hats, places, coverage);
     NodeMixes first{}, second{};
     first[0].fill(0.8f);
     first[kMaxPigments].fill(0.2f);
     second[1].fill(1);
     PasteParams params{.target = 40, .exchange = 0.01, .room = 1e3};
-    params.comb = comb_of(tines(9), {.width = 9e-3, .film = 4e-4, .yield = 800});
+    params.furrows = furrow_depths(bundles(9), {.width = 9e-3, .film = 4e-4, .yield = 800});
     const Texels area = random_texels(3, 0.9e-8, 1.1e-8);
     const auto total = [&](int p) {
         double sum = 0;
@@ -116,7 +116,7 @@ TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
     const auto pass = [&](const NodeMixes& mixes, const Plane& before) {
         const double had[] = {total(0), total(1)};
         Pass out;
-        lay_paste(canvas, 0, coverage, places, tents, area, 5e-5, params, mixes, before, out.given, out.taken);
+        lay_paste(canvas, 0, coverage, places, hats, area, 5e-5, params, mixes, before, out.given, out.taken);
         for (int p = 0; p < 2; ++p) {
             const double kept = sum_of(out.given, p) - sum_of(out.taken, p);
             // Doubles of what floats took; 256 of them.
@@ -132,19 +132,19 @@ TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
         // The fifth that is water leaves with the pigment, in that proportion.
         EXPECT_NEAR(sum_of(p.given, kMaxPigments), 0.25 * sum_of(p.given, 0), 1e-6 * sum_of(p.given, 0));
     }
-    // Many touches: the film is the comb's, under half coverage half of it.
+    // Many touches: the film is the furrows's, under half coverage half of it.
     const Plane* w = canvas.plane(0, 0);
     ASSERT_NE(w, nullptr);
     for (int t = 0; t < atlas::kTileTexels; ++t) {
-        const double at = (t % 16) / 15.0 * (kTines - 1);
-        const int i = std::min(static_cast<int>(at), kTines - 2);
-        const double phi = static_cast<double>(params.comb[i]) + (at - i) * static_cast<double>(params.comb[i + 1] - params.comb[i]);
+        const double at = (t % 16) / 15.0 * (kFirmnessSamples - 1);
+        const int i = std::min(static_cast<int>(at), kFirmnessSamples - 2);
+        const double phi = static_cast<double>(params.furrows[i]) + (at - i) * static_cast<double>(params.furrows[i + 1] - params.furrows[i]);
         // 60 touches of 0.05 mm over a transfer length of 0.08: exp(−37) is left. Renewal under half
         // coverage keeps what lies there.
         EXPECT_NEAR((*w)[t], 0.8 * 40 * phi * static_cast<double>(coverage[t]), 1e-3) << t;
     }
-    // Another comb and another paint: it rides on a part of the first, which it ploughs and takes up.
-    params.comb = comb_of(tines(7), {.width = 9e-3, .film = 4e-4, .yield = 800});
+    // Another furrows and another paint: it rides on a part of the first, which it ploughs and takes up.
+    params.furrows = furrow_depths(bundles(7), {.width = 9e-3, .film = 4e-4, .yield = 800});
     const Plane before = open_pigment(canvas, 0);
     double lifted = 0;
     for (int i = 0; i < 60; ++i) lifted += sum_of(pass(second, before).taken, 0);
@@ -157,7 +157,7 @@ TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
     // A brush without room leaves what stands there.
     params.room = 0;
     params.exchange = 0;
-    params.comb.fill(0);
+    params.furrows.fill(0);
     const Pass none = pass(first, open_pigment(canvas, 0));
     EXPECT_EQ(sum_of(none.taken, 0) + sum_of(none.taken, 1), 0);
 }
@@ -182,7 +182,7 @@ TwoTiles two_tiles(bool seam) {
     out.map.tiles.resize(2);
     for (atlas::TexelTile& tile : out.map.tiles) {
         for (float& a : tile.area) a = 1e-8f;
-        for (std::uint8_t& p : tile.piece) p = 0;
+        for (std::uint8_t& p : tile.cluster) p = 0;
     }
     out.seams.start = {0, 0, 0};
     if (!seam) return out;

@@ -120,7 +120,7 @@ Lab masstone(const char* pigment, double part = 1) {
     planes[1].fill(static_cast<float>(40 * (1 - part)));
     const TileFilm film{.pigments = {&planes[0], &planes[1]}};
     const std::vector<Pigment> pigments{load_pigment(pigment), load_pigment("titanium-white")};
-    const TileLook look = look_of_films(std::span(&film, 1), nullptr, pigments, matte);
+    const TileAppearance look = shade_films(std::span(&film, 1), nullptr, pigments, matte);
     return lab_of_rgb({look.colour[0][0], look.colour[1][0], look.colour[2][0]});
 }
 

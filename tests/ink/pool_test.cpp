@@ -49,7 +49,7 @@ struct Furrowed {
     void each(Fn&& fn) const {
         for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
             for (int t = 0; t < kN; ++t)
-                if (map.tiles[slot].piece[t] != atlas::kNoPiece) fn(slot, t, Vec3(map.position(slot, t)));
+                if (map.tiles[slot].cluster[t] != atlas::kNoCluster) fn(slot, t, Vec3(map.position(slot, t)));
     }
     double film(std::uint32_t slot, int t) const {
         return static_cast<double>((*canvas.plane(slot, 1))[t]) + static_cast<double>((*canvas.plane(slot, 2))[t]);

@@ -43,8 +43,8 @@ TEST(Recolour, OldTexelsLookAsIfPaintedWithTheNewRecipe) {
         recolour(canvas, old, wanted);
         EXPECT_EQ(canvas.hash(), hash) << "amounts and names stay";
         EXPECT_EQ(canvas.take_dirty(), (std::vector<std::uint32_t>{1}));
-        const TileLook look = look_of_tile(canvas, 1, porcelain);
-        const TileLook anew = look_of_tile(painted_with(wanted), 1, porcelain);
+        const TileAppearance look = shade_tile(canvas, 1, porcelain);
+        const TileAppearance anew = shade_tile(painted_with(wanted), 1, porcelain);
         for (int t = 0; t < kN; ++t) {
             for (int c = 0; c < 3; ++c)
                 EXPECT_NEAR(look.colour[c][t], anew.colour[c][t], 4e-6) << wanted.name << " " << t;
@@ -57,12 +57,12 @@ TEST(Recolour, TheSameRecipeChangesNoColourAndBackIsBack) {
     const Ink old = recipe("old", {{"cinnabar", 0.6}, {"gamboge", 0.3}});
     const Ink blue = recipe("blue", {{"indigo", 0.9}});
     Canvas canvas = painted_with(old);
-    const TileLook before = look_of_tile(canvas, 1, load_substrate("bisque"));
+    const TileAppearance before = shade_tile(canvas, 1, load_substrate("bisque"));
     recolour(canvas, old, old);
-    const TileLook same = look_of_tile(canvas, 1, load_substrate("bisque"));
+    const TileAppearance same = shade_tile(canvas, 1, load_substrate("bisque"));
     recolour(canvas, old, blue);
     recolour(canvas, old, old);
-    const TileLook back = look_of_tile(canvas, 1, load_substrate("bisque"));
+    const TileAppearance back = shade_tile(canvas, 1, load_substrate("bisque"));
     EXPECT_EQ(same.colour, before.colour);
     EXPECT_EQ(back.colour, before.colour);
 }

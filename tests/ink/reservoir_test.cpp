@@ -70,8 +70,8 @@ void expect_sound(const Reservoir& tuft) {
 }
 
 /// Touches some cells near the tip, unevenly.
-Touch some_touch(const Reservoir& tuft, std::uint64_t seed) {
-    Touch touch(tuft.content.size(), 0);
+ContactCells some_touch(const Reservoir& tuft, std::uint64_t seed) {
+    ContactCells touch(tuft.content.size(), 0);
     for (std::size_t i = 0; i < touch.size(); ++i)
         if (i % kCells >= 2 && uniform(seed, i) < 0.3) touch[i] = static_cast<float>(uniform(seed + 1, i));
     const float sum = std::accumulate(touch.begin(), touch.end(), 0.0f);
@@ -258,7 +258,7 @@ TEST(Reservoir, WhatTouchesGivesItsOwnMixtureAndNothingIsLost) {
     Content all_taken{};
     const Content before = planes_of(tuft);
     for (int i = 0; i < 400; ++i) {
-        const Touch touch = some_touch(tuft, i);
+        const ContactCells touch = some_touch(tuft, i);
         const double want = 2e-4 * uniform(77, i);
         const double left = tuft.remaining();
         const Content taken = take(tuft, want, touch);
@@ -279,7 +279,7 @@ TEST(Reservoir, WhatTouchesGivesItsOwnMixtureAndNothingIsLost) {
 
 TEST(Reservoir, TakingUpFromTheSurfaceKeepsTheSumAndFillsWhatTouchesFirst) {
     Reservoir tuft = uneven();
-    const Touch touch = some_touch(tuft, 5);
+    const ContactCells touch = some_touch(tuft, 5);
     const Content before = planes_of(tuft);
     const double room = room_left(tuft, touch);
     Content lifted{};
@@ -303,7 +303,7 @@ TEST(Reservoir, AShallowDipLoadsAGradientThatSpreadsSlowly) {
     const double taken = dip(tuft, kBlack, {.depth = 0.2});
     // The last cell and a half: of rooms 0.05 and 0.15 · ½ the missing 0.3.
     EXPECT_NEAR(taken / tuft.capacity, 0.3 * (0.05 + 0.5 * 0.15), 1e-12);
-    Touch tip(tuft.content.size(), 0), root(tuft.content.size(), 0);
+    ContactCells tip(tuft.content.size(), 0), root(tuft.content.size(), 0);
     for (std::size_t i = 0; i < tip.size(); ++i) (i % kCells == kCells - 1 ? tip : root)[i] = i % kCells == 3 || i % kCells == 0 ? 1.0f / 16 : 0;
     EXPECT_NEAR(mix_at(tuft, tip)[0], 0.3, 1e-6) << "0.3 of black on 0.7 of thin";
     EXPECT_EQ(mix_at(tuft, root)[0], 0);

@@ -24,7 +24,7 @@ struct Tile {
     Canvas canvas{1};
     std::array<float, kN> coverage, area;
     TexelPlaces places;
-    Tents tents;
+    HatBasis hats;
 
     explicit Tile(std::uint64_t seed) {
         for (const char* name : {"indigo", "gamboge", "cinnabar"}) mix_of(canvas, load_ink(name));
@@ -39,7 +39,7 @@ struct Tile {
             canvas.touch(0, 0)[t] = 1.5f * chance(seed + 7, t);
             canvas.touch(0, 1)[t] = chance(seed + 8, t);
         }
-        tents_of(tents, places, coverage);
+        hat_basis(hats, places, coverage);
     }
 };
 
@@ -58,12 +58,12 @@ int main() {
         Tile tile(100 * round + round % 2);
         TransferParams p;
         p.deposit = {.target = 1.8f + static_cast<float>(round % 3), .capacity = 6, .extinction = round % 4 < 2 ? 0.0f : 0.7f};
-        p.thirst = 0.4f * chance(round, 1);
+        p.uptake = 0.4f * chance(round, 1);
         p.room = round % 5 ? 2.0f : 0.0f;
         p.pour = round % 6 ? 0.0f : 0.5f;
         NodeMixes mixes{};
-        Comb comb;
-        for (int i = 0; i < kTines; ++i) comb[i] = p.rub[i] = 0.4f + 1.2f * chance(round + 30, i);
+        FurrowDepths furrows;
+        for (int i = 0; i < kFirmnessSamples; ++i) furrows[i] = p.rub[i] = 0.4f + 1.2f * chance(round + 30, i);
         for (int node = 0; node < kNodes; ++node) {
             p.exchange[node] = chance(round + 31, node);
             for (int k = 0; k < kPigments; ++k) mixes[k][node] = 0.3f * chance(round + 40, 10 * node + k);
@@ -72,13 +72,13 @@ int main() {
         }
         NodeContents given{}, taken{};
         for (int touch = 0; touch < 3; ++touch) {
-            transfer(tile.canvas, 0, tile.coverage, tile.places, tile.tents, tile.area, 4e-5, p, given);
+            transfer(tile.canvas, 0, tile.coverage, tile.places, tile.hats, tile.area, 4e-5, p, given);
             p.deposit.mix = {0.2f, 0.1f, 0.05f};
             add(deposit(tile.canvas, 0, tile.coverage, tile.area, 3e-5, p.deposit));
-            deposit_mixed(tile.canvas, 0, tile.coverage, tile.tents, tile.area, 3e-5, p.deposit, mixes, given);
+            deposit_mixed(tile.canvas, 0, tile.coverage, tile.hats, tile.area, 3e-5, p.deposit, mixes, given);
             const Plane before = open_pigment(tile.canvas, 0);
-            lay_paste(tile.canvas, 0, tile.coverage, tile.places, tile.tents, tile.area, 5e-5,
-                      {.target = 12, .exchange = 0.2, .room = 3, .comb = comb}, mixes, before, given, taken);
+            lay_paste(tile.canvas, 0, tile.coverage, tile.places, tile.hats, tile.area, 5e-5,
+                      {.target = 12, .exchange = 0.2, .room = 3, .furrows = furrows}, mixes, before, given, taken);
         }
         add(given);
         add(taken);

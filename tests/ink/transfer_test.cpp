@@ -15,13 +15,13 @@ constexpr float kArea = 1e-8f;
 struct Touching {
     Canvas canvas{1};
     Reservoir tuft;
-    Skin skin;
+    SurfaceLiquid skin;
     Mix purple{}, yellow{};
     DepositParams deposit;
-    Touch touch;
+    ContactCells touch;
     std::array<float, kN> coverage, area;
     TexelPlaces places;
-    Tents tents;
+    HatBasis hats;
 
     Touching() : tuft(make_reservoir(0.05)) {
         purple = mix_of(canvas, load_ink("indigo"));
@@ -40,17 +40,17 @@ struct Touching {
     }
     NodeAreas areas() const {
         NodeAreas out{}, of_tents;
-        tent_sums(of_tents, tents, nullptr, area);
-        for (int k = 0; k < tents.count; ++k) out[tents.node[k]] = of_tents[k];
+        integrate_hats(of_tents, hats, nullptr, area);
+        for (int k = 0; k < hats.count; ++k) out[hats.node[k]] = of_tents[k];
         return out;
     }
-    NodeTouch nodes() const { return node_touch(tuft, {}, {}, touch); }
+    NodeContact nodes() const { return node_contact(tuft, {}, {}, touch); }
     void move(double ds, double dt) {
-        tents_of(tents, places, coverage);
+        hat_basis(hats, places, coverage);
         refresh(skin, tuft, touch, nodes(), areas(), dt);
         const TransferParams p = transfer_params(skin, tuft, touch, areas(), deposit, ds, dt, 1);
         NodeContents given{};
-        transfer(canvas, 0, coverage, places, tents, area, ds, p, given);
+        transfer(canvas, 0, coverage, places, hats, area, ds, p, given);
         for (int node = 0; node < kNodes; ++node)
             for (int k = 0; k < Reservoir::kPlanes; ++k) skin.content[node][k] -= given[node][k];
     }
@@ -133,7 +133,7 @@ NodeAreas tapered(double end) {
 TEST(Transfer, TheTipOnlyGrazesWhatTheBellyRubs) {
     for (const double f : firmness(tapered(1))) EXPECT_NEAR(f, 1, 1e-6) << "of one width it lies evenly";
     for (const double f : firmness(NodeAreas{})) EXPECT_EQ(f, 1);
-    // A leaf that runs out to a point, by its closed form: tents over 1 − x / 3, the outer halves doubled.
+    // A leaf that runs out to a point, by its closed form: hats over 1 − x / 3, the outer halves doubled.
     const std::array<double, kAlong> leaf = firmness(tapered(0));
     const double first = 1 - 1.0 / 9, expected[] = {1, 2.0 / 3 / first, 1.0 / 3 / first, 1.0 / 9 / first};
     for (int i = 0; i < kAlong; ++i) EXPECT_NEAR(leaf[i], expected[i], 1e-5) << i;
@@ -144,12 +144,12 @@ TEST(Transfer, TheTipOnlyGrazesWhatTheBellyRubs) {
 }
 
 TEST(Transfer, BundlesRubInStreaksAndNoMoreInTheMean) {
-    std::vector<Tine> tines;
-    for (int k = 0; k < 12; ++k) tines.push_back({(k + 0.3 + 0.4 * uniform(3, k)) / 12, 0.3 + 0.7 * uniform(4, k)});
-    const Comb rub = rub_of(tines);
+    std::vector<BundleFirmness> bundles;
+    for (int k = 0; k < 12; ++k) bundles.push_back({(k + 0.3 + 0.4 * uniform(3, k)) / 12, 0.3 + 0.7 * uniform(4, k)});
+    const FurrowDepths rub = rub_of(bundles);
     double mean = 0, least = 9, most = 0;
     for (const float r : rub) {
-        mean += static_cast<double>(r) / kTines;
+        mean += static_cast<double>(r) / kFirmnessSamples;
         least = std::min(least, static_cast<double>(r));
         most = std::max(most, static_cast<double>(r));
     }

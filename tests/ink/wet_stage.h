@@ -30,7 +30,7 @@ struct Wet {
     void each(Fn&& fn) const {
         for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
             for (int t = 0; t < kN; ++t)
-                if (map.tiles[slot].piece[t] != atlas::kNoPiece) fn(slot, t, Vec3(map.position(slot, t)));
+                if (map.tiles[slot].cluster[t] != atlas::kNoCluster) fn(slot, t, Vec3(map.position(slot, t)));
     }
     template <class Fn>
     void wet(Fn&& amount, Liquid where = Liquid::film) {

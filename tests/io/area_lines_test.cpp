@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "stroke/painting/tape.h"
+#include "stroke/painting/surface_stencil.h"
 
 namespace tuft::io {
 namespace {
@@ -30,7 +30,7 @@ Ring star() {
 double reach(const std::vector<AreaLine>& lines, const Vec2& p) {
     double least = 1e9;
     for (const AreaLine& l : lines) {
-        if (stroke::inside_tape(l.tape, p) < 0) continue;
+        if (stroke::inside_stencil(l.stencil, p) < 0) continue;
         double whole = 0, along = 0;
         for (std::size_t i = 1; i < l.line.size(); ++i) whole += glm::distance(l.line[i - 1], l.line[i]);
         for (std::size_t i = 1; i < l.line.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(AreaLines, AJaggedOutlineIsDrawnAsASmoothOne) {
             const Vec2 in = glm::normalize(line.line[i] - line.line[i - 1]), out = glm::normalize(line.line[i + 1] - line.line[i]);
             EXPECT_LT(std::acos(std::min(1.0, glm::dot(in, out))), bend) << i;
         }
-        EXPECT_GT(line.tape.size(), ring.size() / 2) << "the tape is the outline's own";
+        EXPECT_GT(line.stencil.size(), ring.size() / 2) << "the tape is the outline's own";
     }
 }
 

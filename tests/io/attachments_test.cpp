@@ -27,7 +27,7 @@ std::vector<stroke::Stroke> journal() {
         s.trace.label = "横 " + std::to_string(k);
         s.hidden = k == 3;
         s.group = {4, "leaves.svg"};
-        s.trace.placement = {.origin = {0.1, 1.0 / 3, -1e-9}, .right = {0, 1, 0}, .down = {0, 0, -1}, .laying = stroke::Laying::drape};
+        s.trace.placement = {.origin = {0.1, 1.0 / 3, -1e-9}, .right = {0, 1, 0}, .down = {0, 0, -1}, .mapping = stroke::SurfaceMapping::drape};
         for (int i = 0; i < 20 * static_cast<int>(k); ++i)
             s.trace.samples.push_back({.time = 0.001 * i, .position = {std::sin(i), 1e-7 * i, std::sqrt(2.0) * i}, .pressure = 0.1, .tilt = {0.2, -0.3}, .rotation = Quat(0.6, 0, 0.8, 0)});
         entries.push_back(std::move(s));
@@ -54,7 +54,7 @@ TEST(PackedEntries, ComeBackToTheBit) {
         EXPECT_EQ(a.trace.label, b.trace.label);
         EXPECT_EQ(a.trace.flat, b.trace.flat);
         EXPECT_EQ(a.trace.placement.origin, b.trace.placement.origin);
-        EXPECT_EQ(a.trace.placement.laying, b.trace.placement.laying);
+        EXPECT_EQ(a.trace.placement.mapping, b.trace.placement.mapping);
         ASSERT_EQ(a.trace.samples.size(), b.trace.samples.size());
         for (std::size_t k = 0; k < a.trace.samples.size(); ++k) {
             EXPECT_EQ(a.trace.samples[k].position, b.trace.samples[k].position);

@@ -93,7 +93,7 @@ TEST(Export, PigmentAmountsComeBackByNameFromAnExrFile) {
     int seen = 0;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
-            if (map.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+            if (map.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
             const std::uint32_t tile = map.tile_of_slot[slot];
             const std::uint32_t x = tile % map.tiles_per_side * 16 + t % 16, y = tile / map.tiles_per_side * 16 + t / 16;
             if (x >= map.size || y >= map.size) continue;

@@ -217,11 +217,11 @@ TEST(Inkml, AnnotationsInheritThroughGroupsAndBrushes) {
     EXPECT_EQ(t[0].seed, 77u);
     EXPECT_NEAR(glm::length(t[0].placement.origin - Vec3(0.001, 0.0025, -0.003)), 0, 1e-15);
     EXPECT_EQ(t[0].placement.right, Vec3(0, 1, 0));
-    EXPECT_EQ(t[0].placement.laying, stroke::Laying::project);
+    EXPECT_EQ(t[0].placement.mapping, stroke::SurfaceMapping::project);
     EXPECT_EQ(t[1].ink, "cobalt");
     EXPECT_EQ(t[1].label, "");
     EXPECT_EQ(t[2].brush, "");
-    EXPECT_EQ(t[2].placement.laying, stroke::Laying::wrap);
+    EXPECT_EQ(t[2].placement.mapping, stroke::SurfaceMapping::wrap);
 }
 
 TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
@@ -297,7 +297,7 @@ TEST(Inkml, WritesForPeopleWhatItReads) {
             t.placement = {{0.1, -0.02 * double(k / 2), 1e-4 / 3},
                            glm::normalize(Vec3(1, 2, 3)),
                            glm::normalize(Vec3(2, -1, 0)),
-                           k == 3 ? stroke::Laying::project : k == 2 ? stroke::Laying::drape : stroke::Laying::wrap};
+                           k == 3 ? stroke::SurfaceMapping::project : k == 2 ? stroke::SurfaceMapping::drape : stroke::SurfaceMapping::wrap};
         for (int i = 0; i < 50; ++i) {
             stroke::TraceSample s;
             s.time = 0.005 * i + (i ? 1e-3 * random(0, 1) : 0);
@@ -321,7 +321,7 @@ TEST(Inkml, WritesForPeopleWhatItReads) {
         EXPECT_EQ(a.ink, b.ink);
         EXPECT_EQ(a.label, b.label);
         EXPECT_EQ(a.seed, b.seed);
-        EXPECT_EQ(a.placement.laying, b.placement.laying);
+        EXPECT_EQ(a.placement.mapping, b.placement.mapping);
         EXPECT_LT(glm::length(a.placement.origin - b.placement.origin), 1e-9);
         EXPECT_LT(glm::length(a.placement.right - b.placement.right), 1e-9);
         ASSERT_EQ(a.samples.size(), b.samples.size());
@@ -359,7 +359,7 @@ TEST(Inkml, AnyNumberComesBackToTheBit) {
         t.settings = R"({"dip":"carry","down":[0.1,0.0,-1.0],"film":"wet"})";
         if (t.flat)
             t.placement = {{number(1000), number(1000), number(1000)},
-                           glm::normalize(Vec3(1, number(3), 3)), glm::normalize(Vec3(2, -1, number(3))), stroke::Laying::wrap};
+                           glm::normalize(Vec3(1, number(3), 3)), glm::normalize(Vec3(2, -1, number(3))), stroke::SurfaceMapping::wrap};
         // A clock that began before the stroke, at it, and at minus nothing.
         double time = k % 4 == 0 ? 0 : k % 4 == 1 ? -0.0 : k % 4 == 2 ? 1e5 + number(1) : -std::abs(number(1e6));
         for (int i = 0; i < 20; ++i) {
@@ -493,15 +493,15 @@ TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
 TEST(Inkml, TapeIsReadAsItIsWritten) {
     stroke::Trace trace;
     for (int i = 0; i < 3; ++i) trace.samples.push_back({.time = 0.1 * i, .position = {0.01 * i, 0, 0}, .pressure = 0.5});
-    trace.tape = {{{1.0 / 3, -0.1}, {2e-7, 0.5}}, {{0, 0}, {0.1, 0.2}}};
+    trace.stencil = {{{1.0 / 3, -0.1}, {2e-7, 0.5}}, {{0, 0}, {0.1, 0.2}}};
     const std::string text = inkml_text({&trace, 1}, "");
-    EXPECT_EQ(parse_inkml(text, "tape").at(0).tape, trace.tape) << "to the bit";
+    EXPECT_EQ(parse_inkml(text, "tape").at(0).stencil, trace.stencil) << "to the bit";
     const auto with = [&](const std::string& tape) {
         std::string other = text;
-        const std::size_t from = other.find('>', other.find("tuft:tape")) + 1;
+        const std::size_t from = other.find('>', other.find("tuft:stencil")) + 1;
         return other.replace(from, other.find('<', from) - from, tape);
     };
-    EXPECT_TRUE(parse_inkml(with(""), "tape").at(0).tape.empty());
+    EXPECT_TRUE(parse_inkml(with(""), "tape").at(0).stencil.empty());
     for (const char* bad : {"1 2 3", "1 2 3 four", "1 2 3 nan"}) EXPECT_THROW(parse_inkml(with(bad), "tape"), Error) << bad;
 }
 

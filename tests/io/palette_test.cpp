@@ -35,7 +35,7 @@ std::vector<stroke::Stroke> mixing() {
 TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
     const stroke::Model model = stroke::make_palette();  // any model will do
     const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tuft_palette.tuft";
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     for (const stroke::Stroke& s : mixing()) painting.paint(s);
     const std::uint64_t last = painting.journal().strokes().back().id;
     {
@@ -50,7 +50,7 @@ TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
     }
     const Project project = Project::open(file);
     EXPECT_EQ(project.strokes()[0].layer, stroke::kPaletteLayer);
-    stroke::Painting back(model);
+    stroke::Document back(model);
     restore_strokes(project, back, [](std::string_view phase, double) {
         ADD_FAILURE() << "a replay: " << phase;
         return true;
@@ -70,7 +70,7 @@ TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
 TEST(Palette, IsOneMoreThanTheMostLayers) {
     const stroke::Model model = stroke::make_palette();
     const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tuft_palette_layers.tuft";
-    stroke::Painting painting(model);
+    stroke::Document painting(model);
     painting.paint(mixing()[0]);
     const stroke::LayerTexels palette = painting.all_canvases().back();
     ASSERT_EQ(palette.layer, stroke::kPaletteLayer);

@@ -41,9 +41,9 @@ stroke::Stroke sample_stroke(std::uint64_t id, int samples = 50) {
     s.trace.seed = 0xfedcba9876543210ULL + id;
     s.trace.label = "七 \"1\"\n";
     s.trace.placement.origin = {0.1, -0.0, 1e-300};
-    s.trace.placement.laying = id % 3 == 0 ? stroke::Laying::project : stroke::Laying::wrap;
+    s.trace.placement.mapping = id % 3 == 0 ? stroke::SurfaceMapping::project : stroke::SurfaceMapping::wrap;
     s.settings.spacing = 0.1 + 1.0 / 3;
-    s.settings.lead = false;
+    s.settings.compensate_tip_lag = false;
     s.hidden = id % 5 == 0;
     for (int i = 0; i < samples; ++i) {
         const auto r = [&](int k) { return uniform(id, 100 * i + k) - 0.5; };
@@ -66,7 +66,7 @@ void expect_equal(const stroke::Stroke& a, const stroke::Stroke& b) {
     EXPECT_EQ(a.trace.ink, b.trace.ink);
     EXPECT_EQ(a.trace.seed, b.trace.seed);
     EXPECT_EQ(a.trace.label, b.trace.label);
-    EXPECT_EQ(a.trace.placement.laying, b.trace.placement.laying);
+    EXPECT_EQ(a.trace.placement.mapping, b.trace.placement.mapping);
     EXPECT_EQ(std::memcmp(&a.trace.placement.origin, &b.trace.placement.origin, 9 * sizeof(double)),
               0);
     ASSERT_EQ(a.trace.samples.size(), b.trace.samples.size());
@@ -196,7 +196,7 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
     for (const std::uint64_t id : {3, 1, 2, 10, 5}) strokes.push_back(sample_stroke(id));
     strokes.push_back(sample_stroke(11, 0));
     ASSERT_TRUE(strokes[3].trace.flat);
-    strokes[3].trace.placement.laying = stroke::Laying::drape;
+    strokes[3].trace.placement.mapping = stroke::SurfaceMapping::drape;
     {
         Project project = Project::create(folder / "a.tuft", sample_model());
         project.append(std::span(strokes).first(4));

@@ -32,9 +32,9 @@ void expect_fits(const std::string& strokes, const std::string& model, std::size
         ASSERT_GT(t.samples.size(), 10u);
         EXPECT_EQ(t.samples.front().pressure, 0);  // lands from the air and leaves for it
         EXPECT_EQ(t.samples.back().pressure, 0);
-        const stroke::LaidTrace laid = stroke::lay(query, t);
+        const stroke::SurfaceTrace laid = stroke::map_to_surface(query, t);
         EXPECT_EQ(laid.missed, 0u) << t.label;
-        const bool wrapped = t.placement.laying == stroke::Laying::wrap;
+        const bool wrapped = t.placement.mapping == stroke::SurfaceMapping::wrap;
         EXPECT_LT(laid.origin_gap, wrapped ? 1e-3 : 0.1) << t.label;
         for (std::size_t i = 1; i < t.samples.size(); ++i) {
             const auto &a = t.samples[i - 1], &b = t.samples[i];

@@ -10,7 +10,7 @@
 #include "mesh/polygon_soup.h"
 #include "mesh/repair.h"
 
-/// Small meshes and the laws every repaired surface obeys, for the tests of this room.
+/// Small meshes and the laws every repaired surface obeys, for the tests of this module.
 namespace tuft::mesh {
 
 inline std::vector<char> bytes_of(std::string_view text) {

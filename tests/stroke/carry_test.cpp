@@ -42,7 +42,7 @@ double set_of(const BrushInHand& brush) {
 
 TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
     double left = capacity;
     for (int row = 0; row < 3; ++row) {
@@ -64,7 +64,7 @@ TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
 
 TEST(Carry, HairKeepsItsSetUntilItIsCombed) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(carried(0, "carbon", kBrush, 0.6 * painting.brush(kBrush).length));
     const double set = set_of(*painting.held(kBrush));
     ASSERT_GT(set, 0);
@@ -78,15 +78,15 @@ TEST(Carry, HairKeepsItsSetUntilItIsCombed) {
 
 TEST(Carry, WetnessFollowsTheInkAlsoInAReplay) {
     const Model model = sheet();
-    const auto wetness = [](const Painting& painting) { return painting.held(kBrush)->tuft.wetness; };
-    Painting painting(model);
+    const auto wetness = [](const Document& painting) { return painting.held(kBrush)->tuft.wetness; };
+    Document painting(model);
     painting.paint(action(Action::dip, "carbon"));
     EXPECT_EQ(wetness(painting), 1);
     painting.paint(carried(0));
     EXPECT_LE(wetness(painting), 1);
     painting.paint(action(Action::rinse));
     EXPECT_EQ(wetness(painting), 0) << "rinsed and wiped";
-    Painting again(model);
+    Document again(model);
     again.replay(painting.journal().strokes());
     EXPECT_EQ(wetness(again), 0);
     painting.paint(action(Action::dip, "carbon"));
@@ -95,7 +95,7 @@ TEST(Carry, WetnessFollowsTheInkAlsoInAReplay) {
 
 TEST(Carry, ACombedFullBrushIsAFreshOne) {
     const Model model = sheet();
-    Painting carry(model), each(model);
+    Document carry(model), each(model);
     carry.paint(carried(0));
     carry.paint(action(Action::reshape));
     carry.paint(action(Action::dip, "carbon"));
@@ -110,7 +110,7 @@ TEST(Carry, ACombedFullBrushIsAFreshOne) {
 
 TEST(Carry, AnotherInkIsDippedIntoUnlessItWasToldBefore) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(carried(0, "carbon"));
     painting.paint(carried(1, "cinnabar"));
     EXPECT_EQ(painting.held(kBrush)->dipped, "cinnabar");
@@ -144,11 +144,11 @@ TEST(Carry, ReplayIsTheSameToTheBitForAnyThreadCount) {
     std::uint64_t hash = 0;
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
-        Painting painting(model);
+        Document painting(model);
         for (const Stroke& s : session()) painting.paint(s);
         if (threads == 1) hash = painting.canvas().hash();
         EXPECT_EQ(painting.canvas().hash(), hash);
-        Painting again(model);
+        Document again(model);
         const auto reports = again.replay(painting.journal().strokes());
         EXPECT_EQ(reports.size(), 6u) << "one for each stroke, none for the actions";
         EXPECT_EQ(again.canvas().hash(), hash);
@@ -160,7 +160,7 @@ TEST(Carry, ReplayIsTheSameToTheBitForAnyThreadCount) {
 TEST(Carry, UndoBringsTheBrushBackToo) {
     const Model model = sheet();
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
-        Painting painting(model, {.undo_bytes = undo_bytes});
+        Document painting(model, {.undo_bytes = undo_bytes});
         for (const char* name : {"carbon", "cinnabar"})  // a canvas never forgets a pigment it has met
             ink::mix_of(painting.canvas(), painting.ink(name));
         const std::vector<Stroke> entries = session();
@@ -192,25 +192,25 @@ TEST(Carry, UndoBringsTheBrushBackToo) {
 
 TEST(Carry, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
     const Model model = sheet();
-    Painting first(model);
+    Document first(model);
     first.paint(carried(0));
     EXPECT_EQ(first.journal().strokes()[0].settings.dip, "each") << "nothing to carry on from";
     first.paint(carried(1));
     EXPECT_EQ(first.journal().strokes()[1].settings.dip, "carry");
-    Painting second(model);
+    Document second(model);
     second.adopt(first.journal().strokes(), first.canvas());
     EXPECT_EQ(second.held(kBrush), nullptr);
     second.paint(carried(2));
     EXPECT_EQ(second.journal().strokes()[2].settings.dip, "each");
     second.paint(carried(3));
-    Painting replayed(model);
+    Document replayed(model);
     replayed.replay(second.journal().strokes());
     EXPECT_EQ(replayed.canvas().hash(), second.canvas().hash());
 }
 
 TEST(Carry, ACancelledStrokeLeavesTheBrushAsItWas) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(carried(0));
     const double ink = painting.held(kBrush)->reservoir.remaining(), set = set_of(*painting.held(kBrush));
     painting.begin(carried(1));
@@ -230,7 +230,7 @@ TEST(Steady, AStrokeInPiecesIsTheWholeStrokeAndReplays) {
         whole.trace.samples[i].position.y += 3e-4 * std::sin(1.9 * static_cast<double>(i));
     whole.settings.smooth = 1;
     whole.settings.stabilise = 1e-3;
-    Painting at_once(model), in_pieces(model), again(model);
+    Document at_once(model), in_pieces(model), again(model);
     at_once.paint(whole);
     Stroke header = whole;
     header.trace.samples.clear();

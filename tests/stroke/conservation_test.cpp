@@ -49,7 +49,7 @@ Stroke care(Action action, const std::string& ink, const Extent& extent = {}, do
 
 TEST(Conservation, AThousandStrokesKeepEachPigment) {
     const Model model = sheet();
-    Painting painting(model, {.substrate = "bisque", .undo_bytes = 1});
+    Document painting(model, {.substrate = "bisque", .undo_bytes = 1});
     std::array<double, kPigments> supplied{};
     const auto in_hair = [&](int p) {
         const BrushInHand* held = painting.held(kBrush);

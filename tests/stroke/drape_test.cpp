@@ -12,9 +12,9 @@ namespace {
 /// Letters are written over this many metres to each side.
 constexpr double kReach = 0.03;
 
-Placement upright_at(const Vec3& p, const Vec3& n, Laying laying) {
+Placement upright_at(const Vec3& p, const Vec3& n, SurfaceMapping mapping) {
     const Vec3 right = glm::normalize(glm::cross(Vec3{0, 0, 1}, n));
-    return {p, right, glm::cross(right, n), laying};
+    return {p, right, glm::cross(right, n), mapping};
 }
 
 /// A zigzag over the square of the reach in steps of 0.5 mm.
@@ -28,12 +28,12 @@ std::vector<Vec2> zigzag() {
 /// Quotients of the distance of neighbours on the ground to that on paper, along the rows,
 /// with the height over the ground left out (`up`: its direction at a place).
 template <class Up>
-std::pair<double, double> stretch(const LaidTrace& laid, const std::vector<Vec2>& points, Up up) {
+std::pair<double, double> stretch(const SurfaceTrace& mapped, const std::vector<Vec2>& points, Up up) {
     double least = 1e9, most = 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
         if (points[i].y != points[i - 1].y) continue;
-        Vec3 d = laid.samples[i].position - laid.samples[i - 1].position;
-        const Vec3 n = up(laid.samples[i].position);
+        Vec3 d = mapped.samples[i].position - mapped.samples[i - 1].position;
+        const Vec3 n = up(mapped.samples[i].position);
         d -= glm::dot(d, n) * n;
         const double q = glm::length(d) / glm::length(points[i] - points[i - 1]);
         least = std::min(least, q);
@@ -53,32 +53,32 @@ TriangleMesh rough_sphere() {
 TEST(Drape, OnAPlaneIsTheIdentity) {
     const TriangleMesh sheet = make_sheet();
     const SurfaceQuery query(sheet);
-    const Trace trace = make_trace({{0.012, -0.007, 0}, {1, 0, 0}, {0, -1, 0}, Laying::drape}, scattered(200, 0.05));
-    const LaidTrace laid = lay(query, trace);
-    EXPECT_EQ(laid.missed, 0u);
-    for (std::size_t i = 0; i < laid.samples.size(); ++i) {
+    const Trace trace = make_trace({{0.012, -0.007, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, scattered(200, 0.05));
+    const SurfaceTrace mapped = map_to_surface(query, trace);
+    EXPECT_EQ(mapped.missed, 0u);
+    for (std::size_t i = 0; i < mapped.samples.size(); ++i) {
         const Vec3 flat = trace.samples[i].position;
         // Between lines two degrees apart: chords, short by (2 degrees)²/8 = 1.5e-4 of 70 mm.
-        EXPECT_LT(glm::length(laid.samples[i].position - Vec3(0.012 + flat.x, -0.007 - flat.y, 0)), 1.1e-5);
-        EXPECT_LT(glm::length(laid.samples[i].right - Vec3(1, 0, 0)), 1e-5);
-        EXPECT_LT(glm::length(laid.samples[i].down - Vec3(0, -1, 0)), 1e-5);
+        EXPECT_LT(glm::length(mapped.samples[i].position - Vec3(0.012 + flat.x, -0.007 - flat.y, 0)), 1.1e-5);
+        EXPECT_LT(glm::length(mapped.samples[i].right - Vec3(1, 0, 0)), 1e-5);
+        EXPECT_LT(glm::length(mapped.samples[i].down - Vec3(0, -1, 0)), 1e-5);
     }
 }
 
 TEST(Drape, UnrollsACylinder) {
     const TriangleMesh cylinder = make_cylinder();
     const SurfaceQuery query(cylinder);
-    const Placement place{{kCylinderRadius, 0, 0.01}, {0, 1, 0}, {0, 0, -1}, Laying::drape};
+    const Placement place{{kCylinderRadius, 0, 0.01}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::drape};
     const Trace trace = make_trace(place, scattered(300, 0.035));
-    const LaidTrace laid = lay(query, trace);
-    EXPECT_EQ(laid.missed, 0u);
-    for (std::size_t i = 0; i < laid.samples.size(); ++i) {
+    const SurfaceTrace mapped = map_to_surface(query, trace);
+    EXPECT_EQ(mapped.missed, 0u);
+    for (std::size_t i = 0; i < mapped.samples.size(); ++i) {
         const Vec3 flat = trace.samples[i].position;
         const double a = flat.x / kCylinderRadius;
         const Vec3 want(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a), 0.01 - flat.y);
         // 0.2 % of the length, as the header says: the paraboloid over 8 mm of a radius of 40 mm.
-        EXPECT_LT(glm::length(laid.samples[i].position - want), 2e-5 + 0.002 * glm::length(flat)) << i;
-        EXPECT_LT(glm::length(laid.samples[i].down - Vec3(0, 0, -1)), 0.01);
+        EXPECT_LT(glm::length(mapped.samples[i].position - want), 2e-5 + 0.002 * glm::length(flat)) << i;
+        EXPECT_LT(glm::length(mapped.samples[i].down - Vec3(0, 0, -1)), 0.01);
     }
 }
 
@@ -88,15 +88,15 @@ TEST(Drape, WalksGreatCircles) {
     const TriangleMesh sphere = make_sphere(128);
     const SurfaceQuery query(sphere);
     const std::vector<Vec2> points = scattered(200, 0.05);
-    const LaidTrace laid = lay(query, make_trace({frame.origin, frame.t, -frame.b, Laying::drape}, points));
+    const SurfaceTrace mapped = map_to_surface(query, make_trace({frame.origin, frame.t, -frame.b, SurfaceMapping::drape}, points));
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double length = glm::length(points[i]), angle = length / kSphereRadius;
         const Vec3 heading = (points[i].x * frame.t - points[i].y * frame.b) / length;
         const Vec3 want = kSphereRadius * (std::cos(angle) * n0 + std::sin(angle) * heading);
-        EXPECT_LT(glm::length(laid.samples[i].position - want), 3e-5 + 0.002 * length) << i;
+        EXPECT_LT(glm::length(mapped.samples[i].position - want), 3e-5 + 0.002 * length) << i;
         const Vec3 along = std::cos(angle) * heading - std::sin(angle) * n0;
-        EXPECT_NEAR(glm::dot(laid.samples[i].right, along), points[i].x / length, 0.01);
-        EXPECT_NEAR(glm::dot(laid.samples[i].down, along), points[i].y / length, 0.01);
+        EXPECT_NEAR(glm::dot(mapped.samples[i].right, along), points[i].x / length, 0.01);
+        EXPECT_NEAR(glm::dot(mapped.samples[i].down, along), points[i].y / length, 0.01);
     }
 }
 
@@ -106,8 +106,8 @@ TEST(Drape, LettersStayWholeOnANoisyScan) {
     const Vec3 n = glm::normalize(Vec3(0.3, -0.8, 0.35));
     const auto points = zigzag();
     const auto up = [](const Vec3& p) { return glm::normalize(p); };
-    const auto drape = stretch(lay(query, make_trace(upright_at(kSphereRadius * n, n, Laying::drape), points)), points, up);
-    const auto wrap = stretch(lay(query, make_trace(upright_at(kSphereRadius * n, n, Laying::wrap), points)), points, up);
+    const auto drape = stretch(map_to_surface(query, make_trace(upright_at(kSphereRadius * n, n, SurfaceMapping::drape), points)), points, up);
+    const auto wrap = stretch(map_to_surface(query, make_trace(upright_at(kSphereRadius * n, n, SurfaceMapping::wrap), points)), points, up);
     // The map of a sphere itself is narrower away from the middle: sin(a)/a at the corner,
     // a = 0.85, is 0.88. The noise may add as much.
     EXPECT_GT(drape.first, 0.76);
@@ -140,16 +140,16 @@ TEST(Drape, GoesStraightOverGroovesAndGaps) {
     const SurfaceQuery query(m);
     std::vector<Vec2> line;
     for (int i = 0; i <= 400; ++i) line.push_back(Vec2(0.0001 * i, 0.00003 * i));
-    const LaidTrace laid = lay(query, make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, Laying::drape}, line));
+    const SurfaceTrace mapped = map_to_surface(query, make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, line));
     for (std::size_t i = 0; i < line.size(); ++i) {
-        const LaidSample& s = laid.samples[i];
+        const SurfaceSample& s = mapped.samples[i];
         const double across = std::hypot(s.position.x - line[i].x, s.position.y + line[i].y);
         // Where wrap would be 6 mm short. A tenth of the groove's depth is what it may tilt.
         EXPECT_LT(across, 3e-4) << i;
         EXPECT_GT(s.normal.z, 0.99) << i;
     }
-    EXPECT_LT(laid.missed, 20u) << "samples over the gap only";
-    const LaidTrace wrapped = lay(query, make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, Laying::wrap}, line));
+    EXPECT_LT(mapped.missed, 20u) << "samples over the gap only";
+    const SurfaceTrace wrapped = map_to_surface(query, make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::wrap}, line));
     EXPECT_GT(line[150].x - wrapped.samples[150].position.x, 0.004);
 }
 
@@ -157,22 +157,22 @@ TEST(Drape, DoesNotDependOnTheOtherSamples) {
     const TriangleMesh rough = rough_sphere();
     const SurfaceQuery query(rough);
     const Vec3 n = glm::normalize(Vec3(0.3, -0.8, 0.35));
-    const Placement place = upright_at(kSphereRadius * n, n, Laying::drape);
+    const Placement place = upright_at(kSphereRadius * n, n, SurfaceMapping::drape);
     const auto points = scattered(50, kReach);
-    const LaidTrace all = lay(query, make_trace(place, points));
+    const SurfaceTrace all = map_to_surface(query, make_trace(place, points));
     for (std::size_t i = 0; i < points.size(); i += 7)
-        EXPECT_EQ(lay(query, make_trace(place, {points[i]})).samples[0].position, all.samples[i].position);
+        EXPECT_EQ(map_to_surface(query, make_trace(place, {points[i]})).samples[0].position, all.samples[i].position);
 }
 
 TEST(Drape, PastABorderGoesOnFlat) {
     const TriangleMesh sheet = make_sheet();
     const SurfaceQuery query(sheet);
-    const LaidTrace laid =
-        lay(query, make_trace({{0.09, 0, 0}, {1, 0, 0}, {0, -1, 0}, Laying::drape}, {{0, 0}, {0.005, 0.001}, {0.025, 0.01}}));
-    EXPECT_EQ(laid.missed, 1u);
-    EXPECT_FALSE(laid.samples[2].on_surface);
-    EXPECT_LT(glm::length(laid.samples[2].position - Vec3(0.115, -0.01, 0)), 1.1e-5);
-    EXPECT_NEAR(laid.samples[2].on.position.x, 0.1, 1e-8);
+    const SurfaceTrace mapped =
+        map_to_surface(query, make_trace({{0.09, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, {{0, 0}, {0.005, 0.001}, {0.025, 0.01}}));
+    EXPECT_EQ(mapped.missed, 1u);
+    EXPECT_FALSE(mapped.samples[2].on_surface);
+    EXPECT_LT(glm::length(mapped.samples[2].position - Vec3(0.115, -0.01, 0)), 1.1e-5);
+    EXPECT_NEAR(mapped.samples[2].on.position.x, 0.1, 1e-8);
 }
 
 }  // namespace

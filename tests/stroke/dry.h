@@ -26,8 +26,8 @@ inline Stroke drag(std::uint64_t seed, double speed = 0.06, int rate = 200) {
 }
 
 /// A brush wiped to `left` of its ink draws one stroke.
-inline Painting dry_stroke(const Model& model, double left, std::uint64_t seed, const PaintingOptions& options = {}, Stroke s = {}) {
-    Painting painting(model, options);
+inline Document dry_stroke(const Model& model, double left, std::uint64_t seed, const DocumentOptions& options = {}, Stroke s = {}) {
+    Document painting(model, options);
     if (s.trace.samples.empty()) s = drag(seed);
     if (left < 1) {
         painting.paint(wipe(1 - left, seed));

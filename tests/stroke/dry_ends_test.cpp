@@ -27,7 +27,7 @@ Stroke drawn_and_lifted(std::uint64_t seed, double lift, double on) {
 }
 
 /// Ink by texels of the sheet, row by row: whether there is a tenth of a film.
-std::vector<std::vector<bool>> inked(const Painting& p) {
+std::vector<std::vector<bool>> inked(const Document& p) {
     std::vector<std::vector<bool>> rows(kSize, std::vector<bool>(kSize));
     const atlas::TexelMap& map = p.model().texels;
     for (const std::uint32_t slot : p.canvas().touched_slots()) {
@@ -67,7 +67,7 @@ TEST(DryBrush, ALiftedTuftLeavesWithItsTip) {
             Stroke wiped = wipe(0.6, seed), s = drawn_and_lifted(seed, hand.lift, hand.on);
             wiped.trace.brush = s.trace.brush;
             s.settings.dip = "carry";
-            Painting painting(model);
+            Document painting(model);
             painting.paint(wiped);
             painting.paint(s);
             // Its tip is 0.9 mm wide with its film, and there are texels on both sides. Hair that followed the hand in
@@ -109,7 +109,7 @@ TEST(DryBrush, AStrokeThatIsLiftedOnceEndsOnce) {
         wiped.trace.brush = s.trace.brush;
         s.settings.dip = "carry";
         s.settings.spacing = 1;
-        Painting painting(model);
+        Document painting(model);
         painting.paint(wiped);
         painting.paint(s);
         // Hair that passed for swept aside tore two strokes of the six over 5 mm; their streaks
@@ -120,7 +120,7 @@ TEST(DryBrush, AStrokeThatIsLiftedOnceEndsOnce) {
 
 /// Of the edges of the ink between two places of the stroke, the part that does not run along it: the share of the
 /// tone's squared slope that is along x. Straight lines at an angle a to the stroke have sin² a.
-double off_the_stroke(const Painting& p, double from, double to) {
+double off_the_stroke(const Document& p, double from, double to) {
     const atlas::TexelMap& map = p.model().texels;
     std::vector<double> tone(kSize * kSize, 0);
     const auto cell = [&](double v) { return static_cast<std::size_t>((v / kSide + 0.5) * (kSize - 1)); };
@@ -155,7 +155,7 @@ TEST(DryBrush, ASplitTipBeginsAndEndsAlongTheStroke) {
             const double u = static_cast<double>(i) / n;
             s.trace.samples[i].position.z = std::lerp(top, low, std::min(1.0, std::min(u, 1 - u) * 24));
         }
-        const Painting p = dry_stroke(model, 0.14, seed, {}, s);
+        const Document p = dry_stroke(model, 0.14, seed, {}, s);
         begin += off_the_stroke(p, -0.020, -0.011) / 3;
         end += off_the_stroke(p, 0.007, 0.016) / 3;
     }
@@ -184,7 +184,7 @@ TEST(DryBrush, ALeaningTuftThatSwingsRoundLeavesNoFan) {
     double begin = 0, end = 0;
     for (const std::uint64_t seed : {21, 22, 23}) {
         const Stroke s = leaning(seed);
-        const Painting p = dry_stroke(model, 0.28, seed, {}, s);
+        const Document p = dry_stroke(model, 0.28, seed, {}, s);
         begin += off_the_stroke(p, -0.020, -0.010) / 3;
         end += off_the_stroke(p, 0.009, 0.020) / 3;
     }
@@ -196,7 +196,7 @@ TEST(DryBrush, ALeaningTuftThatSwingsRoundLeavesNoFan) {
 
 /// Ink by itself: the area, m², of texels from which no way over inked texels or past `gap` bare ones leads to the
 /// most of the ink.
-double loose_ink(const Painting& p, int gap) {
+double loose_ink(const Document& p, int gap) {
     const auto n = static_cast<int>(kSize);
     std::vector<char> inked(static_cast<std::size_t>(n) * n, 0);
     const double texel = p.model().texels.texel_size;
@@ -248,7 +248,7 @@ TEST(DryBrush, ALeaningTipThatComesToTouchPrintsNoSpeck) {
             s.trace.samples.push_back({.time = 0.4 * u, .position = {-0.013 + 0.013 * u * std::min(1.0, 2 * u), 0, 0}, .pressure = press, .tilt = {0, 0.7}});
         }
         s.settings.dip = "carry";
-        Painting painting(model);
+        Document painting(model);
         Stroke care = wipe(0.72, s.trace.seed);
         care.trace.brush = s.trace.brush;
         painting.paint(care);

@@ -13,7 +13,7 @@ namespace tuft::stroke {
 namespace {
 
 /// Inked area between two places along the stroke, m².
-double covered(const Painting& p, double from = -1, double to = 1) {
+double covered(const Document& p, double from = -1, double to = 1) {
     double sum = 0;
     const atlas::TexelMap& map = p.model().texels;
     for (const std::uint32_t slot : p.canvas().touched_slots()) {
@@ -28,7 +28,7 @@ double covered(const Painting& p, double from = -1, double to = 1) {
 }
 
 /// Of the area that either covers, the part that only one does.
-double apart(const Painting& a, const Painting& b) {
+double apart(const Document& a, const Document& b) {
     double difference = 0, all = 0;
     const atlas::TexelMap& map = a.model().texels;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
@@ -44,7 +44,7 @@ double apart(const Painting& a, const Painting& b) {
 
 TEST(DryBrush, AFullOneClosesWhateverItsHair) {
     const Model model = sheet();
-    const Painting a = dry_stroke(model, 1, 1), b = dry_stroke(model, 1, 2);
+    const Document a = dry_stroke(model, 1, 1), b = dry_stroke(model, 1, 2);
     // The shape is the outline's; only how much each bundle gives differs, and so the film by a little.
     EXPECT_LT(apart(a, b), 0.005);
 }
@@ -64,7 +64,7 @@ TEST(DryBrush, LessInkLeavesMoreWhite) {
 
 TEST(DryBrush, AnotherSeedOtherStreaksTheSameSeedTheSameBits) {
     const Model model = sheet();
-    const Painting a = dry_stroke(model, 0.15, 1), b = dry_stroke(model, 0.15, 1), c = dry_stroke(model, 0.15, 2);
+    const Document a = dry_stroke(model, 0.15, 1), b = dry_stroke(model, 0.15, 1), c = dry_stroke(model, 0.15, 2);
     EXPECT_EQ(a.canvas().hash(), b.canvas().hash());
     EXPECT_GT(apart(a, c), 0.3);
     EXPECT_NEAR(covered(a) / covered(c), 1, 0.4) << "as dry as the other";
@@ -81,13 +81,13 @@ TEST(DryBrush, ThreadsDoNotChangeABit) {
 
 TEST(DryBrush, StreaksLieWhereTheyLieAtAnySamplingRate) {
     const Model model = sheet();
-    const Painting slow = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 100)), fast = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 800));
+    const Document slow = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 100)), fast = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 800));
     // Another seed differs in more than 0.3; the corners of the press are rounded by a sample.
     EXPECT_LT(apart(slow, fast), 0.1);
 }
 
 /// Part of the area that shows ink at all, a tenth of its full tone, which shows less than half of it.
-double half_tone(const Painting& p, const ink::Ink& ink) {
+double half_tone(const Document& p, const ink::Ink& ink) {
     const double extinction = ink::extinction_of(ink);
     double half = 0, all = 0;
     for (const std::uint32_t slot : p.canvas().touched_slots()) {
@@ -109,7 +109,7 @@ struct Streaks {
     double area = 0, edge = 0;
 };
 
-Streaks streaks_of(const Painting& p, const ink::Ink& ink) {
+Streaks streaks_of(const Document& p, const ink::Ink& ink) {
     const double extinction = ink::extinction_of(ink), texel = p.model().texels.texel_size;
     const auto n = static_cast<int>(std::ceil(kSide / texel));
     std::vector<char> inked(static_cast<std::size_t>(n) * n, 0);
@@ -145,7 +145,7 @@ TEST(DryBrush, HairLeavesInkOrNone) {
         double part[2];
         int k = 0;
         for (const Model* model : {&coarse, &fine}) {
-            const Painting p = dry_stroke(*model, left, seed);
+            const Document p = dry_stroke(*model, left, seed);
             const Streaks streaks = streaks_of(p, ink);
             part[k] = half_tone(p, ink);
             EXPECT_LT(part[k] / (1 - part[k]) * streaks.area, streaks.edge * model->texels.texel_size) << seed;
@@ -156,7 +156,7 @@ TEST(DryBrush, HairLeavesInkOrNone) {
 }
 
 /// Part of each square of `side` metres that is covered, over the sheet.
-std::vector<double> by_squares(const Painting& p, double side) {
+std::vector<double> by_squares(const Document& p, double side) {
     const int n = static_cast<int>(std::ceil(kSide / side));
     std::vector<double> sum(static_cast<std::size_t>(n) * n, 0);
     const atlas::TexelMap& map = p.model().texels;
@@ -198,7 +198,7 @@ TEST(DryBrush, AFinerAtlasShowsTheSameStreaks) {
 
 TEST(DryBrush, TuftAndTexelsKeepTheInk) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(wipe(0.8, 6));
     const double start = painting.held(kBrush)->reservoir.remaining();
     Stroke s = drag(6);
@@ -211,7 +211,7 @@ TEST(DryBrush, TuftAndTexelsKeepTheInk) {
 
 TEST(DryBrush, AStrokeRunsDryByItself) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     brush::Preset small = painting.brush(kBrush);
     small.capacity *= 0.006;  // about what the stroke asks for
     painting.use_brush(small);
@@ -238,7 +238,7 @@ std::vector<std::vector<bool>> rows_of_slanted_stroke(const Model& model, std::u
         p.position = Vec3{p.position.x, 0, 0} + length * (turn * Vec3{0, 0, 1}) + Vec3{0, 0, 1e-3 - press};
     }
     s.settings.spacing = 1;
-    const Painting painting = dry_stroke(model, 0.3, seed, {}, s);
+    const Document painting = dry_stroke(model, 0.3, seed, {}, s);
     const atlas::TexelMap& map = model.texels;
     std::vector<std::vector<bool>> rows(kSize, std::vector<bool>(kSize, false));
     for (const std::uint32_t slot : painting.canvas().touched_slots())
@@ -255,21 +255,21 @@ TEST(DryBrush, HairThatSticksTogetherDoesNotComeAndGoAtOnce) {
     const Model model = sheet();
     for (std::uint64_t seed = 1; seed < 5; ++seed) {
         const auto rows = rows_of_slanted_stroke(model, seed);
-        std::array<double, 30> pieces{};  // inked texels of every half millimetre along the way
+        std::array<double, 30> clusters{};  // inked texels of every half millimetre along the way
         for (const auto& row : rows)
             for (std::size_t i = 0; i < row.size(); ++i) {
                 const double at = ((static_cast<double>(i) + 0.5) / kSize - 0.5) * kSide;
-                if (row[i] && std::abs(at) < 7.5e-3) ++pieces[static_cast<std::size_t>((at + 7.5e-3) / 0.5e-3)];
+                if (row[i] && std::abs(at) < 7.5e-3) ++clusters[static_cast<std::size_t>((at + 7.5e-3) / 0.5e-3)];
             }
-        std::sort(pieces.begin(), pieces.end());
+        std::sort(clusters.begin(), clusters.end());
         // Some 150 bristles go on and off each for itself: 1 / √150 is 8 %; a bundle's hair all at once made 40 to 70.
-        EXPECT_LT(pieces.back(), 1.2 * pieces[15]) << seed;
+        EXPECT_LT(clusters.back(), 1.2 * clusters[15]) << seed;
     }
 }
 
 /// How much the edge of the ink of a stroke along x goes in and out to one side (±1) of it, metres for each metre of the
 /// way from x0 to x1: by the ink within half a millimetre of the outermost.
-double raggedness(const Painting& p, int side, double x0, double x1) {
+double raggedness(const Document& p, int side, double x0, double x1) {
     constexpr double texel = kSide / (kSize - 16), strip = 0.5e-3;
     const atlas::TexelMap& map = p.model().texels;
     const auto each = [&](auto f) {
@@ -306,7 +306,7 @@ TEST(DryBrush, EdgesOfAHalfDryStrokeHaveNoTeeth) {
         s.trace.seed = seed;
         s.settings.spacing = 1;
         s.settings.dip = "carry";
-        Painting painting(model);
+        Document painting(model);
         painting.paint(wiped);
         painting.paint(s);
         for (const int side : {-1, 1}) sum += raggedness(painting, side, -10e-3, 4e-3);
@@ -317,7 +317,7 @@ TEST(DryBrush, EdgesOfAHalfDryStrokeHaveNoTeeth) {
 
 TEST(DryBrush, ThreadsOfInkDoNotBreakInDashes) {
     const Model model = sheet();
-    double all = 0, dashes = 0;  // pieces of texel rows; those below half a millimetre, where threads break over 4 mm
+    double all = 0, dashes = 0;  // clusters of texel rows; those below half a millimetre, where threads break over 4 mm
     for (std::uint64_t seed = 1; seed < 5; ++seed)
         for (const auto& row : rows_of_slanted_stroke(model, seed))
             for (std::size_t i = 1, begin = 0; i < row.size(); ++i) {
@@ -326,14 +326,14 @@ TEST(DryBrush, ThreadsOfInkDoNotBreakInDashes) {
                 ++all;
                 if (static_cast<double>(i - begin) * kSide / kSize < 0.5e-3) ++dashes;
             }
-    // Streaks a little askew cut rows short as well: 39 % of the pieces; with threads that flicker, 51 %.
+    // Streaks a little askew cut rows short as well: 39 % of the clusters; with threads that flicker, 51 %.
     EXPECT_LT(dashes, 0.45 * all);
 }
 
 TEST(DryBrush, PaintingDriesTheTuft) {
     // Its wetness is what it holds over a quarter of its capacity, x (2 - x), and only falls.
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     brush::Preset small = painting.brush(kBrush);
     small.capacity *= 0.006;
     painting.use_brush(small);
@@ -369,7 +369,7 @@ TEST(DryBrush, FastHairIsDrierAndRoughGroundShowsItsGrain) {
 
 TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     Stroke rinse = wipe(1, 9);
     painting.paint(rinse);
     Stroke dip = wipe(1, 9);
@@ -390,7 +390,7 @@ TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     s.trace.ink = "cinnabar";
     s.settings.dip = "carry";
     painting.paint(s);
-    Painting again(model);
+    Document again(model);
     again.replay(painting.journal().strokes());
     EXPECT_EQ(again.canvas().hash(), painting.canvas().hash());
     EXPECT_EQ(again.held(kBrush)->reservoir.remaining(), painting.held(kBrush)->reservoir.remaining());
@@ -403,7 +403,7 @@ TEST(DryBrush, LeavesFlyingWhiteWithWetInkAsWithInkThatStays) {
     for (const bool wet : {false, true}) {
         Stroke s = drag(5, 0.2);
         if (wet) s.settings.film = "wet";
-        const Painting painting = dry_stroke(model, 0.18, 5, {}, s);
+        const Document painting = dry_stroke(model, 0.18, 5, {}, s);
         ink[wet] = painting.canvas().total(model.texels, 0);
     }
     EXPECT_GT(ink[1], 0.4 * ink[0]);

@@ -46,7 +46,7 @@ Stroke eraser(double depth = 3e-3) {
     return s;
 }
 
-double total(const Painting& p) {
+double total(const Document& p) {
     double sum = 0;
     for (int k = 0; k < static_cast<int>(p.canvas().pigments().size()); ++k)
         sum += p.canvas().total(model().texels, k);
@@ -54,7 +54,7 @@ double total(const Painting& p) {
 }
 
 // Film on the nearest texel, all films.
-double film_at(const Painting& p, const Vec3& at, int pigment) {
+double film_at(const Document& p, const Vec3& at, int pigment) {
     const auto near = model().query->closest_point(at);
     const atlas::TexelRef texel =
         atlas::texel_at(*model().mesh, model().atlas, model().texels, near->triangle, near->position);
@@ -66,7 +66,7 @@ double film_at(const Painting& p, const Vec3& at, int pigment) {
 }
 
 TEST(Fill, IsFilmTimesArea) {
-    Painting p(model());
+    Document p(model());
     const StrokeReport r = p.paint(fill("carbon", {.film = 1.5}));
     const double wanted = 1.5 * area() * p.ink("carbon").strength();
     EXPECT_NEAR(total(p) / wanted, 1, 1e-6);  // films are single precision
@@ -80,7 +80,7 @@ TEST(Fill, IsFilmTimesArea) {
 }
 
 TEST(Fill, AGradientIsLinearBetweenItsEnds) {
-    Painting p(model());
+    Document p(model());
     p.paint(fill("cinnabar", {.film = 2, .gradient = Gradient::along, .to_film = 0.5, .to_ink = "indigo",
                               .from = {-0.02, 0, 0}, .to = {0.02, 0, 0}}));
     const double red = p.ink("cinnabar").strength(), blue = p.ink("indigo").strength();
@@ -90,7 +90,7 @@ TEST(Fill, AGradientIsLinearBetweenItsEnds) {
         EXPECT_NEAR(film_at(p, {x, 0.005, 0}, 0), film * (1 - t) * red, 4e-3) << x;
         EXPECT_NEAR(film_at(p, {x, 0.005, 0}, 1), film * t * blue, 4e-3) << x;
     }
-    Painting round(model());
+    Document round(model());
     round.paint(fill("carbon", {.film = 0, .gradient = Gradient::round, .to_film = 1, .from = {0, 0, 0}, .to = {0, 0.02, 0}}));
     EXPECT_NEAR(film_at(round, {0.006, 0.008, 0}, 0), 0.5 * round.ink("carbon").strength(), 4e-3);
     EXPECT_NEAR(film_at(round, {0.025, 0, 0}, 0), round.ink("carbon").strength(), 1e-6);
@@ -112,7 +112,7 @@ TEST(Fill, APartAndAChartEndWhereTheyEnd) {
     options.unwrap.cutting = atlas::Cutting::never;
     const Model two = prepare_model(std::move(soup), options);
     for (const Region region : {Region::part, Region::chart}) {
-        Painting p(two);
+        Document p(two);
         p.paint(fill("carbon", {.film = 1, .region = region, .at = {0.01, 0.01, 0.011}}));
         const double strength = p.ink("carbon").strength();
         // 256² texels approximate the area of a chart to a texel along its rim.
@@ -126,7 +126,7 @@ TEST(Fill, APartAndAChartEndWhereTheyEnd) {
 }
 
 TEST(Eraser, TakesWhatItsContactCoversAndTheBooksBalance) {
-    Painting p(model());
+    Document p(model());
     p.paint(fill("carbon", {.film = 2}));
     Stroke wait;
     wait.action = Action::dry;
@@ -154,7 +154,7 @@ TEST(Eraser, TakesWhatItsContactCoversAndTheBooksBalance) {
 TEST(Eraser, FilmOnlyFallsAndMoreSoUnderMorePressure) {
     double last = 0;
     for (const double depth : {1e-3, 2e-3, 4e-3}) {
-        Painting p(model());
+        Document p(model());
         p.paint(fill("carbon", {.film = 2}));
         std::vector<ink::TileSnapshot> before;
         for (const std::uint32_t slot : p.canvas().touched_slots()) before.push_back(p.canvas().snapshot(slot));
@@ -173,13 +173,13 @@ TEST(Eraser, FilmOnlyFallsAndMoreSoUnderMorePressure) {
 }
 
 /// How dark a texel looks, 0–1: what it hides.
-double looks(const Painting& p, std::uint32_t slot, int t) {
+double looks(const Document& p, std::uint32_t slot, int t) {
     const ink::EraseStart start = ink::erase_start(p.canvas(), slot);
     return 1 - std::exp(-static_cast<double>(start.hides[t]));
 }
 
 TEST(Eraser, TheSameStrokeLeavesNothingOfIt) {
-    Painting p(model());
+    Document p(model());
     p.paint(quick());
     double before = 0, after = 0, worst = 0;
     const auto each = [&](auto&& fn) {
@@ -194,7 +194,7 @@ TEST(Eraser, TheSameStrokeLeavesNothingOfIt) {
 }
 
 TEST(Eraser, WorksOnItsLayerAlone) {
-    Painting p(model());
+    Document p(model());
     p.paint(fill("carbon", {.film = 2}));
     Stroke add;
     add.action = Action::layer;
@@ -211,13 +211,13 @@ TEST(Eraser, ReplaysToTheBitForAnyThreadCount) {
     std::uint64_t hash = 0;
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
-        Painting p(model());
+        Document p(model());
         p.paint(fill("indigo", {.film = 1, .gradient = Gradient::round, .to_film = 2, .from = {0, 0, 0}, .to = {0, 0.02, 0}}));
         p.paint(quick());
         p.paint(eraser(2e-3));
         if (threads == 1) hash = p.hash();
         EXPECT_EQ(p.hash(), hash);
-        Painting again(model());
+        Document again(model());
         std::vector<Stroke> strokes = p.journal().strokes();
         for (Stroke& s : strokes) {  // as a file has them
             Stroke back = s;
@@ -234,7 +234,7 @@ TEST(Eraser, ReplaysToTheBitForAnyThreadCount) {
 }
 
 TEST(Fill, NonsenseIsRefused) {
-    Painting p(model());
+    Document p(model());
     EXPECT_THROW(p.paint(fill("carbon", {.film = -1})), Error);
     EXPECT_THROW(p.paint(fill("carbon", {.film = std::nan("")})), Error);
     EXPECT_THROW(p.paint(fill("carbon", {.gradient = Gradient::along})), Error) << "no length";

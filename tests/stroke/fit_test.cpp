@@ -16,10 +16,10 @@ constexpr double kDepth = 2e-3;
 
 std::string reason_on(const Model& revised, const Stroke& stroke) {
     const Model former = sheet();
-    Painting painting(revised);
+    Document painting(revised);
     const auto reports = painting.replay({stroke});
     const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
-    const auto misfits = find_misfits(reports, compare_fit(painting.journal().strokes(), length_of,
+    const auto misfits = find_mismatches(reports, compare_fit(painting.journal().strokes(), length_of,
                                                            *former.query, *revised.query));
     EXPECT_LE(misfits.size(), 1u);
     return misfits.empty() ? "" : misfits.front().reason;
@@ -65,14 +65,14 @@ TEST(Fit, AStrokeInTheAirIsNoMisfit) {
 
 constexpr std::uint32_t kSmall = 128;  // texels: only the mesh matters here
 
-/// A flat stroke of 30 mm along x, laid on whatever lies at the origin.
-Stroke written(Laying laying) {
+/// A flat stroke of 30 mm along x, mapped on whatever lies at the origin.
+Stroke written(SurfaceMapping mapping) {
     Stroke s;
     s.id = 1;
     s.trace.brush = "wolf-small";
     s.trace.ink = "carbon";
     s.trace.placement = {
-        .origin = {0, 0, 0}, .right = {1, 0, 0}, .down = {0, -1, 0}, .laying = laying};
+        .origin = {0, 0, 0}, .right = {1, 0, 0}, .down = {0, -1, 0}, .mapping = mapping};
     for (int i = 0; i <= 100; ++i)
         s.trace.samples.push_back({.time = 0.01 * i,
                                    .position = {0.03 * (i / 100.0 - 0.5), 0, 0},
@@ -126,45 +126,45 @@ mesh::TriangleMesh remeshed(const mesh::TriangleMesh& mesh) {
 }
 
 TEST(Fit, AFlatStrokeOnTheSameModelOrAnotherMeshOfItFits) {
-    for (const Laying laying : {Laying::wrap, Laying::drape, Laying::project}) {
-        const StrokeFit same = fit_on(*sheet({}, kSmall).mesh, written(laying), true),
-                        finer = fit_on(remeshed(*sheet({}, kSmall).mesh), written(laying), true);
-        EXPECT_EQ(misfit_reason(same), "");
+    for (const SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::drape, SurfaceMapping::project}) {
+        const StrokeFit same = fit_on(*sheet({}, kSmall).mesh, written(mapping), true),
+                        finer = fit_on(remeshed(*sheet({}, kSmall).mesh), written(mapping), true);
+        EXPECT_EQ(mismatch_reason(same), "");
         EXPECT_EQ(same.moved_most, 0);
         EXPECT_EQ(same.missing(), 0);
         EXPECT_EQ(same.stretched, 0);
         EXPECT_NEAR(same.way, 0.03, 1e-3);
         EXPECT_FALSE(same.slid);
-        EXPECT_EQ(misfit_reason(finer), "") << static_cast<int>(laying);
+        EXPECT_EQ(mismatch_reason(finer), "") << static_cast<int>(mapping);
         EXPECT_FALSE(finer.slid);
     }
 }
 
 TEST(Fit, AFlatStrokeTellsHowFarItsPlaceMoved) {
-    for (const Laying laying : {Laying::wrap, Laying::drape, Laying::project}) {
-        EXPECT_EQ(misfit_reason(fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh,
-                                       written(laying))),
+    for (const SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::drape, SurfaceMapping::project}) {
+        EXPECT_EQ(mismatch_reason(fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh,
+                                       written(mapping))),
                   "lies 20.0 mm from where it lay");
         // Along itself the sheet goes from under the stroke: it stays in space, but not on the
         // model.
         const Model aside = sheet(make_frame({0, 20e-3, 0}, {0, 0, 1}), kSmall);
-        const StrokeFit fit = fit_on(*aside.mesh, written(laying), true);
+        const StrokeFit fit = fit_on(*aside.mesh, written(mapping), true);
         EXPECT_LT(fit.moved, 1e-6);
         ASSERT_TRUE(fit.slid);
         EXPECT_NEAR(*fit.slid, 20e-3, 1e-6);
-        EXPECT_EQ(misfit_reason(fit), "lies 20.0 mm from its place on the model");
+        EXPECT_EQ(mismatch_reason(fit), "lies 20.0 mm from its place on the model");
     }
 }
 
 // A hole of 10 mm across the middle of 30 mm; triangles of 3 mm make it ragged.
 TEST(Fit, AHoleUnderAStrokeIsMissingInk) {
     const StrokeFit flat =
-        fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), written(Laying::project));
+        fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), written(SurfaceMapping::project));
     const StrokeFit space = fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), pressed());
     for (const StrokeFit& fit : {flat, space}) {
         EXPECT_NEAR(fit.missing(), 10.0 / 30, 0.1);
-        EXPECT_NE(misfit_reason(fit).find("% of it touches nothing"), std::string::npos)
-            << misfit_reason(fit);
+        EXPECT_NE(mismatch_reason(fit).find("% of it touches nothing"), std::string::npos)
+            << mismatch_reason(fit);
     }
 }
 
@@ -172,17 +172,17 @@ TEST(Fit, AHoleUnderAStrokeIsMissingInk) {
 TEST(Fit, AStrokeThatIsPulledLongIsToldByItsShare) {
     const Model steep =
         sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
-    const StrokeFit fit = fit_on(*steep.mesh, written(Laying::project));
+    const StrokeFit fit = fit_on(*steep.mesh, written(SurfaceMapping::project));
     EXPECT_NEAR(fit.kept_now / fit.kept, 2, 0.02);
     EXPECT_GT(fit.stretched, 0.5 * fit.way);
-    EXPECT_NE(misfit_reason(fit).find("stretched or squeezed"), std::string::npos)
-        << misfit_reason(fit);
+    EXPECT_NE(mismatch_reason(fit).find("stretched or squeezed"), std::string::npos)
+        << mismatch_reason(fit);
 }
 
 TEST(Fit, TheTotalSaysWhatAllStrokesDo) {
     const std::vector<StrokeFit> fits{
-        fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(Laying::wrap)),
-        fit_on(*sheet({}, kSmall).mesh, written(Laying::wrap))};
+        fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(SurfaceMapping::wrap)),
+        fit_on(*sheet({}, kSmall).mesh, written(SurfaceMapping::wrap))};
     const FitTotal total = total_of(fits, {{1, "moved"}});
     EXPECT_EQ(total.strokes, 2u);
     EXPECT_NEAR(total.moved_most, 20e-3, 1e-6);

@@ -36,33 +36,33 @@ Stroke press_drag_lift(const std::string& brush, double depth) {
 TEST(Forces, GrowAndFallWithoutJumpsAndStayWithinTheClamp) {
     const Model model = sheet();
     for (const char* name : {"wolf-small", "goat-medium", "wolf-medium"}) {
-        Painting painting(model, {.record_forces = true});
+        Document painting(model, {.record_forces = true});
         const brush::Preset& preset = painting.brush(name);
         const StrokeReport r = painting.paint(press_drag_lift(name, 0.3 * preset.length));
         ASSERT_GT(r.forces.size(), 500u);
         double greatest = 0, fastest = 0;
         for (std::size_t i = 0; i < r.forces.size(); ++i) {
             const ForceRecord& f = r.forces[i];
-            ASSERT_TRUE(std::isfinite(glm::length(f.hand_force)) && std::isfinite(glm::length(f.torque)));
-            EXPECT_LE(glm::length(f.hand_force), preset.force_limit * (1 + 1e-12));
-            greatest = std::max(greatest, glm::length(f.hand_force));
+            ASSERT_TRUE(std::isfinite(glm::length(f.device_force)) && std::isfinite(glm::length(f.torque)));
+            EXPECT_LE(glm::length(f.device_force), preset.force_limit * (1 + 1e-12));
+            greatest = std::max(greatest, glm::length(f.device_force));
             if (i == 0) continue;
             const double dt = f.pose.time - r.forces[i - 1].pose.time;
             if (dt > 1e-5)
-                fastest = std::max(fastest, glm::distance(f.hand_force, r.forces[i - 1].hand_force) / dt);
+                fastest = std::max(fastest, glm::distance(f.device_force, r.forces[i - 1].device_force) / dt);
         }
         // A hand tells changes of a tenth of a newton apart; the hair's onset and slip (up to
         // 1.5 N at once under a gain of 15) come spread over the low-pass of 5 ms.
         EXPECT_LT(fastest * 1e-3, 0.3) << name << ", newtons in 1 ms";
         EXPECT_GT(greatest, 0.5) << name;
         // On, along and off again: nothing is left in the air.
-        EXPECT_LT(glm::length(r.forces.back().hand_force), 1e-3) << name;
+        EXPECT_LT(glm::length(r.forces.back().device_force), 1e-3) << name;
     }
 }
 
 TEST(Forces, PullBackAndTurnAsTheyMust) {
     const Model model = sheet();
-    Painting painting(model, {.record_forces = true});
+    Document painting(model, {.record_forces = true});
     const brush::Preset& preset = painting.brush("wolf-medium");
     const StrokeReport r = painting.paint(press_drag_lift("wolf-medium", 0.25 * preset.length));
     bool dragged = false;
@@ -82,12 +82,12 @@ TEST(Forces, PullBackAndTurnAsTheyMust) {
 
 TEST(Forces, TellWhenTheSurfaceIsNear) {
     const Model model = sheet();
-    Painting painting(model, {.record_forces = true});
+    Document painting(model, {.record_forces = true});
     const double length = painting.brush("wolf-small").length;
     const auto resting = [&](double height) {
         Stroke s = line("wolf-small", 4e-3);
         for (TraceSample& p : s.trace.samples) p.position.z = length + height;
-        return painting.paint(s).forces.back().hand_force;
+        return painting.paint(s).forces.back().device_force;
     };
     EXPECT_EQ(glm::length(resting(1.5 * kTolerance)), 0);
     // The wet tip is drawn to the surface a little already.
@@ -104,7 +104,7 @@ TEST(Forces, AreRecordedAtTheHandsSamplesWhateverTheTexels) {
     std::vector<std::vector<ForceRecord>> logs;
     for (const std::uint32_t texels : {1024u, 512u, 256u}) {
         const Model model = sheet({}, texels);
-        Painting painting(model, {.record_forces = true});
+        Document painting(model, {.record_forces = true});
         logs.push_back(painting.paint(s).forces);
         ASSERT_EQ(logs.back().size(), s.trace.samples.size());
         for (std::size_t i = 0; i < logs.back().size(); ++i) {
@@ -129,10 +129,10 @@ TEST(Forces, OfAFlatStrokeAreThoseOfItsOwnSamples) {
     Stroke s;
     s.trace.brush = "goat-small";
     s.trace.ink = "carbon";
-    s.trace.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, Laying::wrap};
+    s.trace.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::wrap};
     for (int i = 0; i <= 100; ++i)
         s.trace.samples.push_back({.time = 0.005 * i, .position = {-0.01 + 2e-4 * i, 0, 0}, .pressure = i == 100 ? 0 : 0.3});
-    Painting painting(model, {.record_forces = true});
+    Document painting(model, {.record_forces = true});
     const std::vector<ForceRecord> forces = painting.paint(s).forces;
     // It is set down before them and lifted off behind; neither has a sample of the hand.
     ASSERT_EQ(forces.size(), s.trace.samples.size());

@@ -33,41 +33,41 @@ Stroke edit(const LayerEdit& e) {
     return s;
 }
 
-std::uint32_t add(Painting& p, const std::string& name) {
+std::uint32_t add(Document& p, const std::string& name) {
     p.paint(edit(add_on_top(p.layers(), name)));
     return p.layers().layers.back().id;
 }
 
-void set(Painting& p, std::uint32_t id, const std::function<void(Layer&)>& how) {
+void set(Document& p, std::uint32_t id, const std::function<void(Layer&)>& how) {
     Layer layer = *p.layers().find(id);
     how(layer);
     p.paint(edit(changed(p.layers(), layer)));
 }
 
-std::vector<std::uint8_t> picture(const Painting& p) {
+std::vector<std::uint8_t> picture(const Document& p) {
     return ink::compose_srgb8(p.stack(), model().texels, p.substrate()).texels;
 }
 
 TEST(Layers, OneOverAnEmptyOneIsASingleLayerToTheBit) {
-    Painting single(model()), two(model()), below(model());
+    Document single(model()), two(model()), below(model());
     single.paint(on(kFirstLayer));
     two.paint(on(add(two, "gold")));
     below.paint(on(kFirstLayer));
     add(below, "gold");
     EXPECT_TRUE(two.canvas(2).same_contents(single.canvas()));
     EXPECT_TRUE(below.canvas().same_contents(single.canvas()));
-    const auto linear = [](const Painting& p) {
+    const auto linear = [](const Document& p) {
         return ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
     };
     EXPECT_EQ(linear(two), linear(single));
     EXPECT_EQ(linear(below), linear(single));
-    const auto height = [](const Painting& p) { return ink::compose_height(p.stack(), model().texels).texels; };
+    const auto height = [](const Document& p) { return ink::compose_height(p.stack(), model().texels).texels; };
     EXPECT_EQ(height(two), height(single));
     EXPECT_EQ(single.hash(), single.canvas().hash()) << "as without layers";
 }
 
 TEST(Layers, AHiddenOneAndOneWithoutOpacityContributeNothing) {
-    Painting p(model());
+    Document p(model());
     p.paint(on(kFirstLayer));
     const auto before = picture(p);
     const std::uint32_t gold = add(p, "gold");
@@ -87,7 +87,7 @@ TEST(Layers, AHiddenOneAndOneWithoutOpacityContributeNothing) {
 
 // What a change alters is told, so that only that is drawn anew.
 TEST(Layers, AChangeOfTheLookIsDirtyWhereTheLayerHasInk) {
-    Painting p(model());
+    Document p(model());
     p.paint(on(kFirstLayer, -3));
     const std::uint32_t gold = add(p, "gold");
     p.take_dirty();
@@ -104,7 +104,7 @@ TEST(Layers, AChangeOfTheLookIsDirtyWhereTheLayerHasInk) {
 }
 
 TEST(Layers, ALockedOneRefusesTheHandAndNothingChanges) {
-    Painting p(model());
+    Document p(model());
     const std::uint32_t gold = add(p, "gold");
     set(p, gold, [](Layer& l) { l.locked = true; });
     const std::uint64_t before = p.hash();
@@ -141,7 +141,7 @@ std::vector<Stroke> session() {
 
 TEST(Layers, UndoAndRedoGoOverEveryChange) {
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
-        Painting p(model(), {.undo_bytes = undo_bytes});
+        Document p(model(), {.undo_bytes = undo_bytes});
         for (const char* name : {"carbon", "cinnabar", "indigo"})  // a canvas never forgets a pigment
             ink::mix_of(p.canvas(), p.ink(name));
         std::vector<LayerTable> tables;
@@ -169,11 +169,11 @@ TEST(Layers, AReplayIsTheSameToTheBitForAnyThreadCount) {
     std::uint64_t hash = 0;
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
-        Painting p(model());
+        Document p(model());
         for (const Stroke& s : session()) p.paint(s);
         if (threads == 1) hash = p.hash();
         EXPECT_EQ(p.hash(), hash);
-        Painting again(model());
+        Document again(model());
         again.replay(p.journal().strokes());
         EXPECT_EQ(again.hash(), hash);
         EXPECT_EQ(again.layers(), p.layers());
@@ -183,9 +183,9 @@ TEST(Layers, AReplayIsTheSameToTheBitForAnyThreadCount) {
 
 // Stored texels serve also when the layers were changed after them.
 TEST(Layers, ChangesAfterTheStoredTexelsNeedNoReplay) {
-    Painting p(model());
+    Document p(model());
     for (const Stroke& s : session()) p.paint(s);
-    Painting at(model());
+    Document at(model());
     std::vector<Stroke> strokes = p.journal().strokes();
     const std::uint64_t stored = strokes[6].id;
     at.replay({strokes.begin(), strokes.begin() + 7});
@@ -195,10 +195,10 @@ TEST(Layers, ChangesAfterTheStoredTexelsNeedNoReplay) {
         return out;
     };
     EXPECT_FALSE(fits(strokes, stored)) << "a stroke came after them";
-    EXPECT_THROW(Painting(model()).adopt(strokes, stored_texels(), stored), Error);
+    EXPECT_THROW(Document(model()).adopt(strokes, stored_texels(), stored), Error);
     strokes.resize(9);  // up to the removal of layer 1
     ASSERT_TRUE(fits(strokes, stored));
-    Painting adopted(model()), replayed(model());
+    Document adopted(model()), replayed(model());
     adopted.adopt(strokes, stored_texels(), stored);
     replayed.replay(strokes);
     EXPECT_EQ(adopted.layers(), replayed.layers());
@@ -234,7 +234,7 @@ std::vector<Stroke> merging_session() {
 
 TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
-        Painting p(model(), {.undo_bytes = undo_bytes});
+        Document p(model(), {.undo_bytes = undo_bytes});
         for (const char* name : {"carbon", "cinnabar", "indigo"}) ink::mix_of(p.canvas(), p.ink(name));
         std::vector<LayerTable> tables;
         std::vector<std::vector<std::uint8_t>> pictures;
@@ -254,7 +254,7 @@ TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
         }
         while (p.redo()) {}
         EXPECT_EQ(picture(p), end);
-        Painting again(model());
+        Document again(model());
         again.replay(p.journal().strokes());
         EXPECT_EQ(picture(again), end);
     }
@@ -262,7 +262,7 @@ TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
 
 // A copy right above an opaque original shows nothing new; changed later, each goes its own way.
 TEST(Layers, ACopyHasTheSameTexelsAndIsItsOwn) {
-    Painting p(model());
+    Document p(model());
     p.paint(on(kFirstLayer));
     p.paint(edit(duplicated(p.layers(), kFirstLayer, "copy")));
     const std::uint32_t copy = p.layers().layers.back().id;
@@ -275,7 +275,7 @@ TEST(Layers, ACopyHasTheSameTexelsAndIsItsOwn) {
 
 TEST(Layers, MergedOnesLookAsBeforeAndLoseNoPigment) {
     for (const ink::Blend blend : {ink::Blend::normal, ink::Blend::glaze}) {
-        Painting p(model());
+        Document p(model());
         p.paint(on(kFirstLayer));
         const std::uint32_t gold = add(p, "gold");
         p.paint(on(gold, 0, "cinnabar"));  // over the first
@@ -320,7 +320,7 @@ TEST(Layers, WhatOneLayerCannotShowIsNotMerged) {
 
 // Stored texels serve also when layers were copied and merged after them.
 TEST(Layers, CopiesAndMergesAfterTheStoredTexelsNeedNoReplay) {
-    Painting p(model()), replayed(model());
+    Document p(model()), replayed(model());
     p.paint(on(kFirstLayer));
     const std::uint32_t gold = add(p, "gold");
     p.paint(on(gold, 0, "cinnabar"));
@@ -329,7 +329,7 @@ TEST(Layers, CopiesAndMergesAfterTheStoredTexelsNeedNoReplay) {
     const std::uint64_t last = p.journal().strokes().back().id;
     p.paint(edit(duplicated(p.layers(), gold, "copy")));
     p.paint(edit(merged_down(p.layers(), gold)));
-    Painting adopted(model());
+    Document adopted(model());
     ASSERT_TRUE(fits(p.journal().strokes(), last));
     adopted.adopt(p.journal().strokes(), std::move(stored), last);
     replayed.replay(p.journal().strokes());

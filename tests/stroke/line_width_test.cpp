@@ -19,7 +19,7 @@ Stroke straight(const std::string& brush, double width, double angle) {
     s.trace.ink = "carbon";
     s.trace.pressed = false;
     s.trace.line_width = width;
-    s.trace.placement = {{0, 0, 0}, {std::cos(angle), std::sin(angle), 0}, {std::sin(angle), -std::cos(angle), 0}, Laying::drape};
+    s.trace.placement = {{0, 0, 0}, {std::cos(angle), std::sin(angle), 0}, {std::sin(angle), -std::cos(angle), 0}, SurfaceMapping::drape};
     for (int i = 0; i <= 100; ++i) s.trace.samples.push_back({.time = i / 120.0, .position = {-0.025 + 5e-4 * i, 0, 0}, .pressure = 0.5});
     return s;
 }
@@ -31,7 +31,7 @@ struct Band {
 
 Band drawn(const Stroke& stroke) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(stroke);
     const atlas::TexelMap& map = model.texels;
     const Placement& place = stroke.trace.placement;
@@ -82,7 +82,7 @@ Stroke circle(const std::string& brush, double width, double radius) {
 }
 
 TEST(LineWidth, ALeanAgainstTheWayDoesNotTurnTheTuftOver) {
-    // Ground that is not quite as the hand takes it: three and six degrees tip ahead, and to the sides.
+    // BaseColour that is not quite as the hand takes it: three and six degrees tip ahead, and to the sides.
     for (const char* brush : {"wolf-medium*0.168", "goat-medium", "mixed-small"})
         for (const Vec2& lean : {Vec2{-0.05, 0}, Vec2{-0.1, 0}, Vec2{-0.05, 0.05}, Vec2{0, -0.05}}) {
             const double width = brush == std::string("goat-medium") ? 0.002 : 0.0012;
@@ -97,7 +97,7 @@ TEST(LineWidth, AFineBrushSetsDownOnItsLineToo) {
     // One that goes less than a texel ahead of its ink trails from the start as a large one does.
     const double width = 0.0007, radius = 0.0084;
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(circle("wolf-medium*0.1074", width, radius));
     double farthest = 0;
     for (const std::uint32_t slot : painting.canvas().touched_slots())
@@ -114,7 +114,7 @@ TEST(LineWidth, AClosedLineHasNoGapWhereItsEndsMeet) {
     const Stroke stroke = circle("wolf-small", width, radius);
     EXPECT_TRUE(std::is_sorted(stroke.trace.samples.begin(), stroke.trace.samples.end(), [](auto& a, auto& b) { return a.time < b.time; }));
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(stroke);
     std::vector<double> across(36, 0);  // area of ink per ten degrees
     for (const std::uint32_t slot : painting.canvas().touched_slots())
@@ -168,7 +168,7 @@ TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreLaidBothWays) {
             place.down = glm::cross(place.right, at.normal);
             for (TraceSample& s : stroke.trace.samples) s.position = s.position.x * (way ? 1.0 : -1.0) * Vec3(std::sqrt(0.5), std::sqrt(0.5), 0);
             draw_to_width(stroke.trace, LineWidths(brush::load_preset("wolf-medium")));
-            Painting painting(model);
+            Document painting(model);
             painting.paint(stroke);
             const Vec3 across = (place.right - place.down) * std::sqrt(0.5);
             double area = 0;
@@ -199,7 +199,7 @@ TEST(LineWidth, BrushesComeInTheSizeThatDrawsIt) {
         EXPECT_GT(sized.at(0.7), width) << name;
         EXPECT_LT(sized.at(0.1), width) << name;
     }
-    // Held to the sizes that there are.
+    // HolderPose to the sizes that there are.
     EXPECT_LT(brush::sized_name(brush_for_width("goat-medium", medium, 1e-5)).factor, 1.25 * brush::kLeastSize);
     EXPECT_GT(brush::sized_name(brush_for_width("goat-medium", medium, 10)).factor, brush::kMostSize / 1.25);
 }

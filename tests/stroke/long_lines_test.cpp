@@ -15,7 +15,7 @@ constexpr double kWidth = 0.001;  // metres of the lines that are painted
 
 /// Flat samples every 0.25 mm along corners.
 Trace along(const std::vector<Vec2>& corners) {
-    Trace t{.placement = {.laying = Laying::drape},
+    Trace t{.placement = {.mapping = SurfaceMapping::drape},
             .placed = true,
             .ink = "carbon",
             .pressed = false,
@@ -72,7 +72,7 @@ Drawn drawn(const Trace& line, bool redips, const std::string& brush = "",
     choose_brushes(entries, drawing, 1, 0.05, {.grow = false, .fit = brush.empty()}, widths);
     if (redips) redip_long_lines(entries, {}, widths);
     press_to_widths(entries, widths);
-    Painting painting(model);
+    Document painting(model);
     Drawn out;
     for (const Stroke& s : entries) out.reports.push_back(painting.paint(s));
     out.entries = entries;
@@ -141,19 +141,19 @@ TEST(LongLines, ARingIsClosedAndFullAllRound) {
 TEST(LongLines, PiecesCoverTheLineOverlapAndAreCutWhereItIsStraight) {
     const Trace line = serpentine(6);
     const double whole = length_of(line), overlap = 0.004;
-    const std::vector<Trace> pieces = cut_line(line, 0.1, overlap);
-    ASSERT_EQ(pieces.size(), static_cast<std::size_t>(std::ceil(whole / 0.1)));
+    const std::vector<Trace> clusters = cut_line(line, 0.1, overlap);
+    ASSERT_EQ(clusters.size(), static_cast<std::size_t>(std::ceil(whole / 0.1)));
     double sum = 0;
-    for (const Trace& p : pieces) {
+    for (const Trace& p : clusters) {
         sum += length_of(p);
         EXPECT_EQ(p.samples.front().time, 0);
-        EXPECT_LT(length_of(p), 0.1 * 1.2 + overlap) << "a tenth of a piece at both ends";
+        EXPECT_LT(length_of(p), 0.1 * 1.2 + overlap) << "a tenth of a cluster at both ends";
     }
-    EXPECT_NEAR(sum, whole + overlap * static_cast<double>(pieces.size() - 1), 1e-9);
-    for (std::size_t k = 1; k < pieces.size(); ++k) {
+    EXPECT_NEAR(sum, whole + overlap * static_cast<double>(clusters.size() - 1), 1e-9);
+    for (std::size_t k = 1; k < clusters.size(); ++k) {
         // The end of one and the beginning of the next go the same way, straight.
-        const Vec3 a = pieces[k].samples.front().position,
-                   b = pieces[k - 1].samples.back().position;
+        const Vec3 a = clusters[k].samples.front().position,
+                   b = clusters[k - 1].samples.back().position;
         EXPECT_NEAR(glm::distance(a, b), overlap, 1e-6)
             << k << ": a little less in the last of a bend";
     }

@@ -104,7 +104,7 @@ TEST(Mask, ByGroupIsTheGroupAndItsInverseTheRest) {
     const MaskTexels upper = evaluate(*table.find("upper"), table, ball());
     for (std::uint32_t slot = 0; slot < ball().texels.n_slots(); ++slot)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
-            if (ball().texels.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+            if (ball().texels.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
             const float z = ball().texels.position(slot, t).z;
             if (std::abs(z) > 1e-4f) {
                 ASSERT_EQ(upper.coverage(slot, t), z > 0 ? 255 : 0);
@@ -136,7 +136,7 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
     // ink does not feel that: what differs inside is a hundredth of 1.3 % of the film of 1.8.
     brush::Preset deep = brush::load_preset("wolf-small");
     deep.capacity *= 100;
-    Painting free(model()), kept(model());
+    Document free(model()), kept(model());
     free.use_brush(deep);
     kept.use_brush(deep);
     free.paint(quick());
@@ -162,7 +162,7 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
     }
     EXPECT_LT(difference, 1e-3);
     // A mask of everything is none, to the bit.
-    Painting all(model());
+    Document all(model());
     all.use_brush(deep);
     all.paint(entry({.mask = {.name = "all", .kind = MaskKind::angle, .within = 3.14159}}));
     s.mask = 1;
@@ -181,7 +181,7 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
     wait.action = Action::dry;
     wait.trace.flat = false;
     wait.seconds = 5;
-    const auto outside = [](Painting& painting) {
+    const auto outside = [](Document& painting) {
         const MaskTexels& mask = painting.mask(1);
         double sum = 0;
         for (std::uint32_t slot = 0; slot < model().texels.n_slots(); ++slot)
@@ -192,7 +192,7 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
                             if (const ink::Plane* w = painting.canvas().film_plane(slot, film, p)) sum += static_cast<double>((*w)[t]);
         return sum;
     };
-    Painting painting(model(), {.substrate = "rice-paper"});
+    Document painting(model(), {.substrate = "rice-paper"});
     painting.paint(entry({.mask = half}));
     wet.mask = 1;
     painting.paint(wet);
@@ -205,10 +205,10 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
     painting.redo();
     painting.redo();
     EXPECT_EQ(painting.hash(), hash);
-    Painting again(model(), {.substrate = "rice-paper"});
+    Document again(model(), {.substrate = "rice-paper"});
     again.replay(painting.journal().strokes());
     EXPECT_EQ(again.hash(), hash);
-    // The tape comes off with the next stroke, which lies elsewhere.
+    // The stencil edge comes off with the next stroke, which lies elsewhere.
     Stroke beside = wet;
     beside.mask = 0;
     for (TraceSample& s : beside.trace.samples) s.position += Vec3{0.012, 0, 0};
@@ -221,7 +221,7 @@ TEST(Mask, UndoReplayAndTextKeepIt) {
     std::uint64_t hash = 0;
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
-        Painting p(model());
+        Document p(model());
         p.paint(entry({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}})}));
         p.paint(entry({.mask = {.name = "金", .kind = MaskKind::invert, .of = {1}}}));
         Stroke fill;
@@ -244,7 +244,7 @@ TEST(Mask, UndoReplayAndTextKeepIt) {
             EXPECT_EQ(back.mask_edit, e.mask_edit);
             e = back;
         }
-        Painting again(model());
+        Document again(model());
         again.replay(strokes);
         EXPECT_EQ(again.hash(), hash);
         EXPECT_EQ(again.masks(), table);
@@ -282,14 +282,14 @@ TEST(Mask, NonsenseIsRefused) {
                              R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"moon"}})",
                              R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"lasso","polygon":[[1]]}})"})
         EXPECT_THROW(read_entry_json(text, s), Error) << text;
-    Painting p(model());
+    Document p(model());
     Stroke masked = quick();
     masked.mask = 3;
     EXPECT_THROW(p.paint(masked), Error);
 }
 
 TEST(Eyedropper, ReturnsWhatWasDepositedAndMakesAnInkOfIt) {
-    Painting p(model());
+    Document p(model());
     const auto fill = [&](const std::string& ink, double film) {
         Stroke s;
         s.action = Action::fill;
@@ -321,7 +321,7 @@ TEST(Eyedropper, ReturnsWhatWasDepositedAndMakesAnInkOfIt) {
     // It is an ink like any other: it goes through a file and paints what was picked.
     picked = ink::parse_ink(ink::ink_toml(picked), "picked");
     picked.name = "picked";
-    Painting other(model());
+    Document other(model());
     other.use_ink(picked);
     Stroke s;
     s.action = Action::fill;

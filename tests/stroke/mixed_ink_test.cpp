@@ -20,7 +20,7 @@ Stroke care(Action action, const std::string& ink, const Extent& extent) {
 }
 
 /// A brush with cinnabar in its right flank and gamboge in the left.
-void load_sides(Painting& painting) {
+void load_sides(Document& painting) {
     painting.paint(care(Action::dip, "gamboge", {}));
     painting.paint(care(Action::wipe, "gamboge", {.amount = 1, .side = 0.5}));
     painting.paint(care(Action::dip, "cinnabar", {.side = 0.5}));
@@ -43,7 +43,7 @@ Stroke drawn(const std::string& film, double y = 0, bool along_y = true) {
 struct Spread {
     double amount = 0, mean = 0;
 };
-Spread spread(const Painting& painting, const Model& model, int plane) {
+Spread spread(const Document& painting, const Model& model, int plane) {
     Spread out;
     for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
@@ -61,7 +61,7 @@ Spread spread(const Painting& painting, const Model& model, int plane) {
 TEST(MixedInk, TwoInksSideBySideLieSideBySideInTheStroke) {
     const Model model = sheet();
     for (const char* film : {"still", "wet"}) {
-        Painting painting(model);
+        Document painting(model);
         load_sides(painting);
         painting.paint(drawn(film));
         const Spread yellow = spread(painting, model, 0), red = spread(painting, model, 1);
@@ -75,7 +75,7 @@ TEST(MixedInk, TwoInksSideBySideLieSideBySideInTheStroke) {
 TEST(MixedInk, EachPigmentIsKeptStillAndWet) {
     const Model model = sheet();
     for (const char* film : {"still", "wet"}) {
-        Painting painting(model);
+        Document painting(model);
         load_sides(painting);
         std::array<double, 2> whole;
         for (int p = 0; p < 2; ++p) whole[p] = painting.held(kBrush)->reservoir.pigment(p);
@@ -96,7 +96,7 @@ TEST(MixedInk, ReplaysToTheBitOnAnyNumberOfThreads) {
         std::vector<Stroke> journal;
         for (int i = 0; i < 2; ++i) {
             set_thread_count(i ? 3 : 1);
-            Painting painting(model);
+            Document painting(model);
             if (i == 0) {
                 load_sides(painting);
                 painting.paint(drawn(film));
@@ -112,11 +112,11 @@ TEST(MixedInk, ReplaysToTheBitOnAnyNumberOfThreads) {
 }
 
 TEST(MixedInk, CaresWithASideComeBackFromTheirText) {
-    Care c = care_of_text("dip:cinnabar,depth=0.25,side=-0.5");
+    BrushAction c = action_of_text("dip:cinnabar,depth=0.25,side=-0.5");
     EXPECT_EQ(c.extent, (Extent{.depth = 0.25, .side = -0.5}));
-    EXPECT_EQ(care_text(c), "dip:cinnabar,depth=0.25,side=-0.5");
-    EXPECT_ANY_THROW(care_of_text("wipe,side=1.5"));
-    EXPECT_ANY_THROW(care_of_text("rinse,side=0.5"));
+    EXPECT_EQ(action_text(c), "dip:cinnabar,depth=0.25,side=-0.5");
+    EXPECT_ANY_THROW(action_of_text("wipe,side=1.5"));
+    EXPECT_ANY_THROW(action_of_text("rinse,side=0.5"));
     Stroke entry = care(Action::wipe, "carbon", {.depth = 0.5, .amount = 0.25, .side = 0.125});
     Stroke back;
     read_entry_json(entry_json(entry), back);

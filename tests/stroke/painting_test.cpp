@@ -16,9 +16,9 @@
 namespace tuft::stroke {
 namespace {
 
-TEST(Painting, InkGivenByTheTuftIsInkOnTheTexels) {
+TEST(Document, InkGivenByTheTuftIsInkOnTheTexels) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     const StrokeReport r = painting.paint(line("wolf-small", 4e-3));
     ASSERT_TRUE(r.touched());
     double on_texels = 0;
@@ -45,7 +45,7 @@ TEST(Painting, InkGivenByTheTuftIsInkOnTheTexels) {
 }
 
 /// Ink by columns of the sheet's texels across a stroke along x.
-std::vector<double> ink_by_columns(const Painting& painting, std::uint32_t size) {
+std::vector<double> ink_by_columns(const Document& painting, std::uint32_t size) {
     std::vector<double> columns(size, 0);
     const atlas::TexelMap& map = painting.model().texels;
     for (const std::uint32_t slot : painting.canvas().touched_slots()) {
@@ -61,7 +61,7 @@ std::vector<double> ink_by_columns(const Painting& painting, std::uint32_t size)
 
 // The tip springs back while it is lifted and then goes several texels in the time in which the
 // hand goes one.
-TEST(Painting, AFlickLeavesALineNotDots) {
+TEST(Document, AFlickLeavesALineNotDots) {
     constexpr std::uint32_t kCoarse = 384;  // texels of 0.16 mm
     const Model model = sheet({}, kCoarse);
     // A leaf of bamboo, as it is pressed.
@@ -74,7 +74,7 @@ TEST(Painting, AFlickLeavesALineNotDots) {
         for (int i = 0; i < 17; ++i)
             s.trace.samples.push_back(
                 {.time = pace * i, .position = {0.0022 * i - 0.02, 0, 0}, .pressure = pressure[i]});
-        Painting painting(model);
+        Document painting(model);
         painting.paint(s);
         const std::vector<double> ink = ink_by_columns(painting, kCoarse);
         std::size_t first = kCoarse, last = 0;
@@ -91,16 +91,16 @@ TEST(Painting, AFlickLeavesALineNotDots) {
     }
 }
 
-TEST(Painting, ReplayIsTheSameToTheBitForAnyThreadCount) {
+TEST(Document, ReplayIsTheSameToTheBitForAnyThreadCount) {
     const Model model = sheet();
     std::uint64_t hash = 0;
     for (const int threads : {1, 2, 8}) {
         set_thread_count(threads);
-        Painting painting(model);
+        Document painting(model);
         painting.paint(line("wolf-medium", 6e-3));
         if (threads == 1) hash = painting.canvas().hash();
         EXPECT_EQ(painting.canvas().hash(), hash) << threads << " threads";
-        Painting again(model);
+        Document again(model);
         again.replay(painting.journal().strokes());
         EXPECT_EQ(again.canvas().hash(), hash);
     }
@@ -109,16 +109,16 @@ TEST(Painting, ReplayIsTheSameToTheBitForAnyThreadCount) {
 
 // Pigments have places in the order in which they are met. Those of strokes that were taken back
 // have none: what was painted is to the bit what the journal paints.
-TEST(Painting, InksThatWereTakenBackLeaveNoTraceInThoseThatFollow) {
+TEST(Document, InksThatWereTakenBackLeaveNoTraceInThoseThatFollow) {
     const Model model = sheet();
     const auto stroke_of = [](const std::string& ink, double y) {
         Stroke s = line("wolf-small", 2e-3, make_frame({0, y, 0}, {0, 0, 1}));
         s.trace.ink = ink;
         return s;
     };
-    Painting painting(model);
+    Document painting(model);
     const auto as_replayed = [&](const char* when) {
-        Painting again(model);
+        Document again(model);
         again.replay(painting.journal().strokes());
         EXPECT_EQ(painting.hash(), again.hash()) << when;
     };
@@ -145,19 +145,19 @@ TEST(Painting, InksThatWereTakenBackLeaveNoTraceInThoseThatFollow) {
     as_replayed("cancelled");
 
     // Older strokes are undone by painting the others anew.
-    Painting other(model, {.undo_bytes = 0});
+    Document other(model, {.undo_bytes = 0});
     for (const char* ink : {"carbon", "cinnabar", "indigo"}) other.paint(stroke_of(ink, 0));
     for (int i = 0; i < 2; ++i) other.undo();
     for (const char* ink : {"indigo", "cinnabar"}) other.paint(stroke_of(ink, 0));
-    Painting again(model);
+    Document again(model);
     again.replay(other.journal().strokes());
     EXPECT_EQ(other.hash(), again.hash());
 }
 
-TEST(Painting, UndoTakesTheTexelsBackAndRedoMakesThemAgain) {
+TEST(Document, UndoTakesTheTexelsBackAndRedoMakesThemAgain) {
     const Model model = sheet();
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
-        Painting painting(model, {.undo_bytes = undo_bytes});
+        Document painting(model, {.undo_bytes = undo_bytes});
         const std::uint64_t empty = painting.canvas().hash();
         painting.paint(line("wolf-small", 3e-3));
         const std::uint64_t one = painting.canvas().hash();
@@ -179,10 +179,10 @@ TEST(Painting, UndoTakesTheTexelsBackAndRedoMakesThemAgain) {
     }
 }
 
-TEST(Painting, AStrokeInPiecesIsTheWholeStroke) {
+TEST(Document, AStrokeInPiecesIsTheWholeStroke) {
     const Model model = sheet();
     const Stroke whole = line("mixed-small", 4e-3);
-    Painting at_once(model), in_pieces(model);
+    Document at_once(model), in_pieces(model);
     at_once.paint(whole);
     Stroke header = whole;
     header.trace.samples.clear();
@@ -195,9 +195,9 @@ TEST(Painting, AStrokeInPiecesIsTheWholeStroke) {
     EXPECT_EQ(in_pieces.journal().strokes()[0].trace.samples.size(), whole.trace.samples.size());
 }
 
-TEST(Painting, CancelLeavesNothingBehind) {
+TEST(Document, CancelLeavesNothingBehind) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     const Stroke s = line("wolf-small", 4e-3);
     painting.paint(s);
     const std::uint64_t before = painting.canvas().hash();
@@ -209,15 +209,15 @@ TEST(Painting, CancelLeavesNothingBehind) {
     EXPECT_EQ(painting.journal().strokes().size(), 1u);
 }
 
-TEST(Painting, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {
+TEST(Document, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     Stroke wide = line("goat-large*2", 12e-3, make_frame({0, 0, 0}, {0, 0, 1}, {1, 0, 0}));
     wide.settings.spacing = 3;  // coarse is enough here, and quick
     const std::uint64_t before = painting.canvas().hash();
     int asked = 0;
     const StrokeReport report =
-        Painting(model).paint(wide, [&](std::string_view, double) { return ++asked > 0; });
+        Document(model).paint(wide, [&](std::string_view, double) { return ++asked > 0; });
     EXPECT_GT(asked, static_cast<int>(report.stamps + report.stamps / StampBatch::kStamps))
         << "within batches too";
     for (int last = asked / 2; last < asked / 2 + 12; ++last) {  // a batch and more
@@ -229,9 +229,9 @@ TEST(Painting, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {
     }
 }
 
-TEST(Painting, AStrokeInTheAirTouchesNothingAndSaysHowFar) {
+TEST(Document, AStrokeInTheAirTouchesNothingAndSaysHowFar) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     Stroke s = line("wolf-small", 4e-3);
     for (TraceSample& p : s.trace.samples) p.position.z += 0.05;
     const StrokeReport r = painting.paint(s);
@@ -241,9 +241,9 @@ TEST(Painting, AStrokeInTheAirTouchesNothingAndSaysHowFar) {
 }
 
 // Covered width across the middle of the stroke, metres: by how dark it looks, which is what the
-// film of an edge is laid for (`deposit`), so that a texel counts as the part of it that the edge
+// film of an edge is mapped for (`deposit`), so that a texel counts as the part of it that the edge
 // leaves covered, wherever the edge runs in it.
-double middle_width(const Painting& painting, const Frame& frame) {
+double middle_width(const Document& painting, const Frame& frame) {
     const ink::Ink ink = ink::load_ink("carbon");
     const double extinction = ink::extinction_of(ink), full = -std::expm1(-extinction * ink.film);
     double covered = 0;
@@ -261,7 +261,7 @@ double middle_width(const Painting& painting, const Frame& frame) {
     return covered / 4e-3;
 }
 
-TEST(Painting, TurningSheetAndHandTogetherKeepsTheWidth) {
+TEST(Document, TurningSheetAndHandTogetherKeepsTheWidth) {
     const Model flat = sheet();
     const Vec3 n = glm::normalize(Vec3{0.3, -0.5, 0.7});
     const Frame turned = make_frame({0.4, -0.2, 0.1}, n, {0.2, 0.9, 0.1});
@@ -276,7 +276,7 @@ TEST(Painting, TurningSheetAndHandTogetherKeepsTheWidth) {
     };
     for (const double angle : {0.2, 0.5, 1.1}) {
         const Frame way = at_angle({}, angle), turned_way = at_angle(turned, angle);
-        Painting here(flat), there(model);
+        Document here(flat), there(model);
         here.paint(line("wolf-small", 4e-3, way));
         there.paint(line("wolf-small", 4e-3, turned_way));
         const double width = middle_width(here, way);
@@ -287,7 +287,7 @@ TEST(Painting, TurningSheetAndHandTogetherKeepsTheWidth) {
 
 /// Root of the mean square of the differences between two paintings over the peak of the second,
 /// on the texels that either inked.
-double difference(const Painting& a, const Painting& b) {
+double difference(const Document& a, const Document& b) {
     double square = 0, peak = 0;
     std::size_t n = 0;
     for (std::uint32_t slot = 0; slot < b.model().texels.n_slots(); ++slot) {
@@ -302,13 +302,13 @@ double difference(const Painting& a, const Painting& b) {
     return std::sqrt(square / double(n)) / peak;
 }
 
-TEST(Painting, TheStrokeIsTheSameAtAnySamplingRate) {
+TEST(Document, TheStrokeIsTheSameAtAnySamplingRate) {
     const Model model = sheet();
-    Painting fast(model);
+    Document fast(model);
     fast.paint(line("wolf-small", 4e-3, {}, 0.03, 1000));
     const double total = fast.canvas().total(model.texels, 0);
     for (const double rate : {100.0, 125.0, 250.0}) {
-        Painting slow(model);
+        Document slow(model);
         slow.paint(line("wolf-small", 4e-3, {}, 0.03, rate));
         // The press and lift are corners of the motion; the spline rounds them by part of a sample.
         EXPECT_NEAR(slow.canvas().total(model.texels, 0) / total, 1, 0.01) << rate;
@@ -337,10 +337,10 @@ Stroke sway(double rate) {
     return s;
 }
 
-TEST(Painting, RefusesABrushOfThousandsOfTexelsBeforeItPaints) {
+TEST(Document, RefusesABrushOfThousandsOfTexelsBeforeItPaints) {
     Model small = sheet();
     const double width = 2 * brush::load_preset("wolf-small").radius;
-    Painting painting(small);
+    Document painting(small);
     small.texels.texel_size = width / 2000;
     EXPECT_NO_THROW(painting.begin(line("wolf-small", 4e-3)));
     painting.cancel();
@@ -349,14 +349,14 @@ TEST(Painting, RefusesABrushOfThousandsOfTexelsBeforeItPaints) {
     EXPECT_EQ(painting.canvas().total(small.texels, 0), 0);
 }
 
-TEST(Painting, ASmoothMotionIsTheSameAtAnySamplingRate) {
+TEST(Document, ASmoothMotionIsTheSameAtAnySamplingRate) {
     const Model model = sheet();
-    Painting fast(model);
+    Document fast(model);
     fast.paint(sway(1000));
     ASSERT_GT(fast.canvas().total(model.texels, 0), 0);
     const double total = fast.canvas().total(model.texels, 0);
     for (const double rate : {100.0, 125.0, 250.0, 500.0}) {
-        Painting slow(model);
+        Document slow(model);
         slow.paint(sway(rate));
         EXPECT_NEAR(slow.canvas().total(model.texels, 0) / total, 1, 1e-3) << rate;
         // The hand is known to 2 µm at 100 Hz, to the third order. Measured: 0.44, 0.23, 0.12 and

@@ -50,7 +50,7 @@ std::vector<Stroke> mixing() {
 }
 
 // Of pigment `plane`: on palette and model, and in the brush, film·m².
-double all_of(Painting& painting, int plane) {
+double all_of(Document& painting, int plane) {
     double sum = painting.canvas().total(painting.model().texels, plane);
     if (painting.palette()) sum += painting.palette()->total(painting.palette_model().texels, plane);
     if (const BrushInHand* brush = painting.held(kBrush)) sum += brush->reservoir.pigment(plane);
@@ -64,7 +64,7 @@ TEST(Palette, ItsTexelsLieWhereTheyAreSaidTo) {
     std::size_t covered = 0;
     for (std::uint32_t slot = 0; slot < plate.texels.n_slots(); ++slot)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
-            if (plate.texels.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+            if (plate.texels.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
             const std::uint32_t tile = plate.texels.tile_of_slot[slot];
             const double i = tile % plate.texels.tiles_per_side * 16.0 + t % 16, j = tile / plate.texels.tiles_per_side * 16.0 + t / 16;
             const Vec3 wanted{(i + 0.5) * kPaletteTexel - 0.064, (j + 0.5) * kPaletteTexel - 0.049, 0};
@@ -83,7 +83,7 @@ TEST(Palette, NoMaskOfTheModelHoldsOnIt) {
     mask.trace.flat = false;
     mask.mask_edit.mask = {.id = 1, .name = "under", .kind = MaskKind::angle, .direction = {0, 0, -1}, .within = 0.5};
     const auto painted = [&](std::uint32_t with) {
-        Painting painting(model);
+        Document painting(model);
         painting.paint(mask);
         std::vector<Stroke> strokes = mixing();
         strokes.resize(4);
@@ -99,7 +99,7 @@ TEST(Palette, NoMaskOfTheModelHoldsOnIt) {
 
 TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     const std::vector<Stroke> strokes = mixing();
     for (std::size_t i = 0; i < 3; ++i) painting.paint(strokes[i]);
     const int red = 0, yellow = 1;
@@ -133,7 +133,7 @@ TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
 }
 
 // 0: every texel is of one of two pigments; 1: all have them in the same parts.
-double mixedness(Painting& painting) {
+double mixedness(Document& painting) {
     const atlas::TexelMap& map = painting.palette_model().texels;
     const double whole[] = {painting.palette()->total(map, 0), painting.palette()->total(map, 1)};
     double sum = 0, parts = 0, square = 0;
@@ -155,7 +155,7 @@ double mixedness(Painting& painting) {
 
 TEST(Palette, FiveCirclesThroughTwoPoolsMixThem) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(pool("gamboge", {-0.007, 0, 0}));
     painting.paint(pool("indigo", {0.007, 0, 0}));
     painting.paint(rinse("gamboge"));
@@ -178,7 +178,7 @@ TEST(Palette, FiveCirclesThroughTwoPoolsMixThem) {
 
 TEST(Palette, ReplaysAndIsTakenBackToTheBit) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     std::vector<std::uint64_t> palette, texels;
     const auto note = [&] {
         palette.push_back(painting.palette() ? painting.palette()->hash() : 0);
@@ -205,7 +205,7 @@ TEST(Palette, ReplaysAndIsTakenBackToTheBit) {
     EXPECT_EQ(painting.palette()->hash(), palette.back());
     EXPECT_EQ(painting.hash(), texels.back());
 
-    Painting again(model);
+    Document again(model);
     again.replay(painting.journal().strokes());
     EXPECT_EQ(again.palette()->hash(), palette.back());
     EXPECT_EQ(again.hash(), texels.back());
@@ -214,7 +214,7 @@ TEST(Palette, ReplaysAndIsTakenBackToTheBit) {
 
 TEST(Palette, PicturesShowThePoolsInTheirPlaces) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     PalettePicture bare, inked;
     painting.paint(rinse("cinnabar"));
     painting.palette_model();

@@ -29,7 +29,7 @@ Stroke stroke_of(const std::string& ink, const Frame& frame) {
 double capacity() { return ink::film_of_millilitres(brush::load_preset(kBrush).capacity * 1e6); }
 
 // Heights along a line across the stroke, micrometres.
-std::vector<double> heights_across(const Painting& painting, double x) {
+std::vector<double> heights_across(const Document& painting, double x) {
     const ink::AtlasMap<float> map = ink::compose_height(painting.stack(), painting.model().texels);
     std::vector<double> out;
     const double texel = painting.model().texels.texel_size;
@@ -40,7 +40,7 @@ std::vector<double> heights_across(const Painting& painting, double x) {
 
 TEST(PasteStroke, ItLeavesFurrowsAlongTheHairAndSmoothOnes) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(stroke_of(kWhite, {}));
     const std::vector<double> across = heights_across(painting, 0), further = heights_across(painting, 0.003);
     std::vector<double> inside, beside;
@@ -76,7 +76,7 @@ TEST(PasteStroke, ItLeavesFurrowsAlongTheHairAndSmoothOnes) {
 
 TEST(PasteStroke, EachPigmentIsKeptWhenItPloughsAnother) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.use_ink(red_paste());
     painting.paint(stroke_of(kWhite, {}));
     const double left = painting.held(kBrush)->reservoir.pigment(0);
@@ -93,7 +93,7 @@ TEST(PasteStroke, EachPigmentIsKeptWhenItPloughsAnother) {
 
 TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     painting.paint(stroke_of(kWhite, {}));
     Stroke wait;
     wait.action = Action::dry;
@@ -119,7 +119,7 @@ TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
     }
     ASSERT_GT(n_ridges, 5);
     ASSERT_GT(n_furrows, 5);
-    EXPECT_GT(furrows / n_furrows, 2 * ridges / n_ridges) << "as laid they are alike";
+    EXPECT_GT(furrows / n_furrows, 2 * ridges / n_ridges) << "as mapped they are alike";
     const std::uint64_t after = painting.hash();
     painting.undo();
     EXPECT_EQ(painting.hash(), before);
@@ -135,7 +135,7 @@ Stroke wash_over(double depth) {
 
 TEST(PasteStroke, AWashTakesOfItsSurfaceAndLeavesItsBodyStanding) {
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     Stroke paste = stroke_of(kWhite, {});
     paste.settings.film = "wet";
     painting.paint(paste);
@@ -172,7 +172,7 @@ TEST(PasteStroke, ItReplaysAndIsTakenBackToTheBit) {
     std::uint64_t hash = 0;
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
-        Painting painting(model);
+        Document painting(model);
         painting.use_ink(red_paste());
         painting.paint(stroke_of(kWhite, {}));
         const std::uint64_t first = painting.hash();

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "grids.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/tip_lag.h"
 
 namespace tuft::stroke {
 namespace {
@@ -15,20 +15,20 @@ namespace {
 TEST(Placement, WrapAndProjectOnTheSheetAreTheIdentity) {
     const TriangleMesh sheet = make_sheet();
     const SurfaceQuery query(sheet);
-    for (Laying laying : {Laying::wrap, Laying::project}) {
-        const Placement place{{0.012, -0.007, 0.003}, {1, 0, 0}, {0, -1, 0}, laying};
+    for (SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::project}) {
+        const Placement place{{0.012, -0.007, 0.003}, {1, 0, 0}, {0, -1, 0}, mapping};
         const Trace trace = make_trace(place, scattered(200, 0.06));
-        const LaidTrace laid = lay(query, trace);
-        ASSERT_EQ(laid.samples.size(), trace.samples.size());
-        EXPECT_EQ(laid.missed, 0u);
-        EXPECT_NEAR(laid.origin_gap, 0.003, 1e-9);
-        for (std::size_t i = 0; i < laid.samples.size(); ++i) {
+        const SurfaceTrace mapped = map_to_surface(query, trace);
+        ASSERT_EQ(mapped.samples.size(), trace.samples.size());
+        EXPECT_EQ(mapped.missed, 0u);
+        EXPECT_NEAR(mapped.origin_gap, 0.003, 1e-9);
+        for (std::size_t i = 0; i < mapped.samples.size(); ++i) {
             const Vec3 want(0.012 + trace.samples[i].position.x,
                             -0.007 - trace.samples[i].position.y, 0);
             // Vertices are floats: 0.1 m carries 7e-9 m.
-            EXPECT_LT(glm::length(laid.samples[i].position - want), 5e-8);
-            EXPECT_LT(glm::length(laid.samples[i].right - Vec3(1, 0, 0)), 1e-6);
-            EXPECT_LT(glm::length(laid.samples[i].down - Vec3(0, -1, 0)), 1e-6);
+            EXPECT_LT(glm::length(mapped.samples[i].position - want), 5e-8);
+            EXPECT_LT(glm::length(mapped.samples[i].right - Vec3(1, 0, 0)), 1e-6);
+            EXPECT_LT(glm::length(mapped.samples[i].down - Vec3(0, -1, 0)), 1e-6);
         }
     }
 }
@@ -42,42 +42,42 @@ TEST(Placement, WrapOnACylinderUnrollsIt) {
     const Placement place{{0.05 * std::cos(a0), 0.05 * std::sin(a0), 0.01},
                           {-std::sin(a0), std::cos(a0), 0},
                           {0, 0, -1},
-                          Laying::wrap};
+                          SurfaceMapping::wrap};
     const Trace trace = make_trace(place, scattered(300, 0.045));
-    const LaidTrace laid = lay(query, trace);
-    EXPECT_EQ(laid.missed, 0u);
+    const SurfaceTrace mapped = map_to_surface(query, trace);
+    EXPECT_EQ(mapped.missed, 0u);
     const double sagitta = kCylinderRadius * (1 - std::cos(pi / 180));
-    for (std::size_t i = 0; i < laid.samples.size(); ++i) {
+    for (std::size_t i = 0; i < mapped.samples.size(); ++i) {
         const Vec3 flat = trace.samples[i].position;
         const double a = a0 + flat.x / kCylinderRadius;
         const Vec3 want(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a),
                         0.01 - flat.y);
-        EXPECT_LT(glm::length(laid.samples[i].position - want), 2 * sagitta + 0.045 * 1e-4);
+        EXPECT_LT(glm::length(mapped.samples[i].position - want), 2 * sagitta + 0.045 * 1e-4);
         // The frame does not turn; the facets' normals differ from the circle's by pi/180 at most.
-        EXPECT_LT(glm::length(laid.samples[i].right - Vec3(-std::sin(a), std::cos(a), 0)), 0.02);
-        EXPECT_LT(glm::length(laid.samples[i].down - Vec3(0, 0, -1)), 1e-5);
+        EXPECT_LT(glm::length(mapped.samples[i].right - Vec3(-std::sin(a), std::cos(a), 0)), 0.02);
+        EXPECT_LT(glm::length(mapped.samples[i].down - Vec3(0, 0, -1)), 1e-5);
     }
 }
 
 TEST(Placement, WrapOnASphereWalksGreatCircles) {
     const Vec3 n0 = glm::normalize(Vec3(0.3, -0.8, 0.35));
     const Frame frame = make_frame(kSphereRadius * n0, n0, {0, 0, 1});
-    const Placement place{frame.origin, frame.t, -frame.b, Laying::wrap};
+    const Placement place{frame.origin, frame.t, -frame.b, SurfaceMapping::wrap};
     const std::vector<Vec2> points = scattered(200, 0.05);
     double worst[2];
     for (int level = 0; level < 2; ++level) {
         const TriangleMesh sphere = make_sphere(level ? 128 : 64);
         const SurfaceQuery query(sphere);
-        const LaidTrace laid = lay(query, make_trace(place, points));
+        const SurfaceTrace mapped = map_to_surface(query, make_trace(place, points));
         worst[level] = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const double length = glm::length(points[i]), angle = length / kSphereRadius;
             const Vec3 heading = (points[i].x * frame.t - points[i].y * frame.b) / length;
             const Vec3 want = kSphereRadius * (std::cos(angle) * n0 + std::sin(angle) * heading);
-            worst[level] = std::max(worst[level], glm::length(laid.samples[i].position - want));
+            worst[level] = std::max(worst[level], glm::length(mapped.samples[i].position - want));
             // Parallel transport along a great circle keeps the angle to it.
             const Vec3 along = std::cos(angle) * heading - std::sin(angle) * n0;
-            const LaidSample& s = laid.samples[i];
+            const SurfaceSample& s = mapped.samples[i];
             EXPECT_NEAR(glm::dot(s.right, along), points[i].x / length, 0.02);
             EXPECT_NEAR(glm::dot(s.down, along), points[i].y / length, 0.02);
             EXPECT_NEAR(glm::length(s.right), 1, 1e-12);
@@ -100,8 +100,8 @@ TEST(Placement, WalkThereAndBackReturns) {
                      uniform(1, 3 * i + 2) - 0.5};
         const auto start = query.closest_point(p);
         ASSERT_TRUE(start);
-        const Walk there = walk(sphere, *start, Vec3(0.3, 1, -0.2), 0.1);
-        const Walk back = walk(sphere, there.end, -there.direction, 0.1);
+        const StraightestGeodesic there = trace_geodesic(sphere, *start, Vec3(0.3, 1, -0.2), 0.1);
+        const StraightestGeodesic back = trace_geodesic(sphere, there.end, -there.direction, 0.1);
         // Straightest lines are reversible. One that meets a vertex within rounding is not;
         // none of these does. 100 crossings of 1e-7 edge each give 1e-8 m.
         EXPECT_LT(glm::length(back.end.position - start->position), 1e-7) << i;
@@ -112,12 +112,12 @@ TEST(Placement, WalkThereAndBackReturns) {
 TEST(Placement, LinePastABorderGoesOnFlat) {
     const TriangleMesh sheet = make_sheet();
     const SurfaceQuery query(sheet);
-    const Placement place{{0.09, 0, 0}, {1, 0, 0}, {0, -1, 0}, Laying::wrap};
-    const LaidTrace laid = lay(query, make_trace(place, {{0, 0}, {0.005, 0.001}, {0.025, 0.01}}));
-    EXPECT_EQ(laid.missed, 1u);
-    EXPECT_FALSE(laid.samples[2].on_surface);
-    EXPECT_LT(glm::length(laid.samples[2].position - Vec3(0.115, -0.01, 0)), 5e-8);
-    EXPECT_NEAR(laid.samples[2].on.position.x, 0.1, 1e-8);
+    const Placement place{{0.09, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::wrap};
+    const SurfaceTrace mapped = map_to_surface(query, make_trace(place, {{0, 0}, {0.005, 0.001}, {0.025, 0.01}}));
+    EXPECT_EQ(mapped.missed, 1u);
+    EXPECT_FALSE(mapped.samples[2].on_surface);
+    EXPECT_LT(glm::length(mapped.samples[2].position - Vec3(0.115, -0.01, 0)), 5e-8);
+    EXPECT_NEAR(mapped.samples[2].on.position.x, 0.1, 1e-8);
 }
 
 TEST(Placement, WalkFromEveryVertexAlongEveryEdgeEnds) {
@@ -128,7 +128,7 @@ TEST(Placement, WalkFromEveryVertexAlongEveryEdgeEnds) {
             for (int other = 0; other < 3; ++other) {
                 if (other == k) continue;
                 const Vec3 d = sheet.position(t, other) - sheet.position(t, k);
-                const Walk w = walk(sheet, start, d, 1.0);  // always reaches the border
+                const StraightestGeodesic w = trace_geodesic(sheet, start, d, 1.0);  // always reaches the border
                 const Vec3 want = start.position + w.end.distance * glm::normalize(d);
                 EXPECT_GT(w.beyond, 0.7);
                 EXPECT_LT(glm::length(w.end.position - want), 1e-6);
@@ -139,20 +139,20 @@ TEST(Placement, WalkFromEveryVertexAlongEveryEdgeEnds) {
 TEST(Placement, ProjectTakesTheFirstSurfaceFromOutside) {
     const TriangleMesh sphere = make_sphere();
     const SurfaceQuery query(sphere);
-    const Placement place{{0, 0, 0}, {0, 1, 0}, {0, 0, -1}, Laying::project};  // seen from +x
+    const Placement place{{0, 0, 0}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::project};  // seen from +x
     const std::vector<Vec2> points = scattered(100, 0.03);
-    const LaidTrace laid = lay(query, make_trace(place, points));
-    EXPECT_EQ(laid.missed, 0u);
+    const SurfaceTrace mapped = map_to_surface(query, make_trace(place, points));
+    EXPECT_EQ(mapped.missed, 0u);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vec3 p = laid.samples[i].position;
+        const Vec3 p = mapped.samples[i].position;
         EXPECT_NEAR(p.y, points[i].x, 1e-8);
         EXPECT_NEAR(p.z, -points[i].y, 1e-8);
         // On the facets: at most their sagitta below the sphere, steeper where it turns away.
         EXPECT_NEAR(p.x, std::sqrt(kSphereRadius * kSphereRadius - glm::dot(points[i], points[i])),
                     5e-5);
     }
-    const LaidTrace off =
-        lay(query, make_trace(place, {{0.03, 0}, {0.049, 0}, {0.06, 0}, {0.08, 0}}));
+    const SurfaceTrace off =
+        map_to_surface(query, make_trace(place, {{0.03, 0}, {0.049, 0}, {0.06, 0}, {0.08, 0}}));
     EXPECT_EQ(off.missed, 2u);
     EXPECT_NEAR(off.samples[3].position.y, 0.08, 1e-12);
     EXPECT_NEAR(off.samples[3].position.x, off.samples[1].position.x, 1e-12);
@@ -162,17 +162,17 @@ TEST(Placement, HeldTuftReachesThePressedDepth) {
     const TriangleMesh sphere = make_sphere();
     const SurfaceQuery query(sphere);
     Trace trace =
-        make_trace({{0, -1, 0}, {1, 0, 0}, {0, 0, -1}, Laying::wrap}, scattered(40, 0.02));
+        make_trace({{0, -1, 0}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::wrap}, scattered(40, 0.02));
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         trace.samples[i].pressure = double(i % 5) / 4;
         trace.samples[i].tilt = {0.3 * uniform(3, i), -0.4 * uniform(4, i)};
     }
-    const HoldOptions options{
-        .tuft_length = 0.03, .working_depth = 0.01, .hover = 0.004, .steady = 0, .lead = {}};
+    const HolderOptions options{
+        .tuft_length = 0.03, .working_depth = 0.01, .hover = 0.004, .steady = 0, .tip_lag = {}};
     const HandPath path = hand_path(query, trace, options);
     ASSERT_EQ(path.poses.size(), trace.samples.size());
     for (std::size_t i = 0; i < path.poses.size(); ++i) {
-        const LaidSample& s = path.laid.samples[i];
+        const SurfaceSample& s = path.mapped.samples[i];
         const brush::Pose& pose = path.poses[i];
         const Vec3 tip = pose.position + options.tuft_length * pose.axis();
         const double want = s.pressure > 0 ? -s.pressure * options.working_depth : options.hover;
@@ -193,10 +193,10 @@ std::vector<double> tip_heights(const std::function<double(double)>& z, double s
     const SurfaceQuery query(m);
     std::vector<Vec2> points;
     for (int i = -200; i <= 200; ++i) points.push_back(scale * Vec2(1e-4 * i, 1.3e-5 * i));
-    const HoldOptions options{.tuft_length = 0.02 * scale, .working_depth = 0.01 * scale, .steady = 0.008 * scale, .lead = {}};
+    const HolderOptions options{.tuft_length = 0.02 * scale, .working_depth = 0.01 * scale, .steady = 0.008 * scale, .tip_lag = {}};
     std::vector<double> heights;
     for (const brush::Pose& pose :
-         hand_path(query, make_trace({{0, 0, scale * z(0)}, {1, 0, 0}, {0, -1, 0}, Laying::project}, points), options).poses)
+         hand_path(query, make_trace({{0, 0, scale * z(0)}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::project}, points), options).poses)
         heights.push_back((pose.position + options.tuft_length * pose.axis()).z / scale + 0.5 * options.working_depth / scale);
     return heights;
 }
@@ -229,9 +229,9 @@ TEST(Placement, SteadyHandDoesNotTrembleOnNoise) {
     const SurfaceQuery query(m);
     std::vector<Vec2> points;
     for (int i = -200; i <= 200; ++i) points.push_back(Vec2(1e-4 * i, 1.3e-5 * i));
-    const Trace trace = make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, Laying::drape}, points);
+    const Trace trace = make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, points);
     const auto unsteadiness = [&](double steady) {
-        const HoldOptions options{.steady = steady, .lead = {}};
+        const HolderOptions options{.steady = steady, .tip_lag = {}};
         double sum = 0, squares = 0;
         for (const brush::Pose& pose : hand_path(query, trace, options).poses) {
             const double z = (pose.position + options.tuft_length * pose.axis()).z;
@@ -256,8 +256,8 @@ TEST(Placement, SteadyHandKeepsItsHeightOnCurvedSurfaces) {
     std::vector<Vec2> points;
     for (int i = 0; i <= 400; ++i) points.push_back({1e-4 * i, 0});
     Trace trace =
-        make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, Laying::wrap}, points);
-    const HoldOptions options{.lead = {}};
+        make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::wrap}, points);
+    const HolderOptions options{.tip_lag = {}};
     const double shift = options.steady * options.steady / (200 * kCylinderRadius);
     for (const brush::Pose& pose : hand_path(query, trace, options).poses) {
         const double r = std::hypot(pose.position.x, pose.position.y);
@@ -271,8 +271,8 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     std::vector<Vec2> points;
     for (int i = 0; i <= 100; ++i) points.push_back({1e-4 * i, 0});
     Trace trace = make_trace({}, points);
-    const HoldOptions options{
-        .working_depth = 0.008, .lead = {{0.002, 0.001}, {0.006, 0.005}}, .lead_turn = 1e-3};
+    const HolderOptions options{
+        .working_depth = 0.008, .tip_lag = {{0.002, 0.001}, {0.006, 0.005}}, .tip_lag_turn = 1e-3};
     Trace led = lead_hand(trace, options);
     ASSERT_GT(led.samples.size(), trace.samples.size());
     std::size_t touch = led.samples.size() - trace.samples.size();
@@ -288,7 +288,7 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     }
     // On a circle a string of length l lags by asin(l/2R)-like angle: steady tractrix,
     // sin φ = l/R with the string tangent to the inner circle of radius sqrt(R² - l²).
-    const double radius = 0.01, l = options.lead_turn;
+    const double radius = 0.01, l = options.tip_lag_turn;
     points.clear();
     for (int i = 0; i <= 20000; ++i)
         points.push_back(radius * Vec2(std::cos(1e-3 * i), std::sin(1e-3 * i)));
@@ -309,7 +309,7 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     led = lead_hand(make_trace({}, {{0.01, 0.02}, {0.01, 0.02}}), options);
     EXPECT_EQ(led.samples[1].position, Vec3(0.01, 0.02, 0));
     // No lead: nothing moves.
-    led = lead_hand(trace, {.lead = {}});
+    led = lead_hand(trace, {.tip_lag = {}});
     EXPECT_EQ(led.samples[77].position, trace.samples[77].position);
 }
 
@@ -318,12 +318,12 @@ TEST(Placement, RefusesWhatCannotBeLaid) {
     const SurfaceQuery query(sheet);
     Trace trace = make_trace({}, {{0, 0}});
     trace.placement.down = {2, 0, 0};
-    EXPECT_THROW(lay(query, trace), Error);
+    EXPECT_THROW(map_to_surface(query, trace), Error);
     trace = make_trace({}, {{0, std::nan("")}});
-    EXPECT_THROW(lay(query, trace), Error);
+    EXPECT_THROW(map_to_surface(query, trace), Error);
     trace = make_trace({}, {{0, 0}});
     trace.flat = false;
-    EXPECT_THROW(lay(query, trace), Error);
+    EXPECT_THROW(map_to_surface(query, trace), Error);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "core/ease.h"
 #include "grids.h"
 #include "stroke/hand/hand.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/tractrix.h"
 #include "stroke/painting/painting.h"
 
@@ -62,14 +62,14 @@ struct Wall {
     Placement place;
 };
 
-Wall wall(Laying laying) {
-    return {make_cylinder(), {{kCylinderRadius, 0, 0.01}, glm::normalize(Vec3(0, 1, -0.3)), glm::normalize(Vec3(0, -0.3, -1)), laying}};
+Wall wall(SurfaceMapping mapping) {
+    return {make_cylinder(), {{kCylinderRadius, 0, 0.01}, glm::normalize(Vec3(0, 1, -0.3)), glm::normalize(Vec3(0, -0.3, -1)), mapping}};
 }
 
-HoldOptions options_on(const TriangleMesh& mesh) {
+HolderOptions options_on(const TriangleMesh& mesh) {
     const brush::Preset preset = brush::load_preset("mixed-medium");
-    HoldOptions o = hold_options(preset, mesh);
-    o.lead = drag_lead(preset);
+    HolderOptions o = holder_options(preset, mesh);
+    o.tip_lag = measure_tip_lag(preset);
     return o;
 }
 
@@ -79,13 +79,13 @@ std::span<const brush::Pose> own_poses(const HandPath& path, const Trace& trace)
 }
 
 TEST(Sampling, AHolderGoesOnAfterARestAsWithoutOne) {
-    for (const Laying laying : {Laying::wrap, Laying::drape, Laying::project}) {
-        const Wall w = wall(laying);
+    for (const SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::drape, SurfaceMapping::project}) {
+        const Wall w = wall(mapping);
         const SurfaceQuery query(w.mesh);
-        const HoldOptions options = options_on(w.mesh);
+        const HolderOptions options = options_on(w.mesh);
         for (const double rate : {100.0, 250.0, 1000.0})
             for (const double tremble : {0.0, 2e-5}) {
-                SCOPED_TRACE(std::string(laying_name(laying)) + ", " + std::to_string(rate) + " Hz, trembling by " + std::to_string(tremble));
+                SCOPED_TRACE(std::string(surface_mapping_name(mapping)) + ", " + std::to_string(rate) + " Hz, trembling by " + std::to_string(tremble));
                 const Motion rests{.rest = 0.5, .tremble = tremble};
                 const Trace with = sampled(rests, rate, w.place), without = sampled({}, rate, w.place);
                 const HandPath a = hand_path(query, with, options), b = hand_path(query, without, options);
@@ -102,10 +102,10 @@ TEST(Sampling, AHolderGoesOnAfterARestAsWithoutOne) {
 }
 
 TEST(Sampling, AHolderDoesTheSameAtEveryRate) {
-    for (const Laying laying : {Laying::wrap, Laying::drape, Laying::project}) {
-        const Wall w = wall(laying);
+    for (const SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::drape, SurfaceMapping::project}) {
+        const Wall w = wall(mapping);
         const SurfaceQuery query(w.mesh);
-        const HoldOptions options = options_on(w.mesh);
+        const HolderOptions options = options_on(w.mesh);
         const Trace fine = sampled({}, 1000, w.place);
         const HandPath finest = hand_path(query, fine, options);
         for (const double rate : {100.0, 250.0}) {
@@ -116,8 +116,8 @@ TEST(Sampling, AHolderDoesTheSameAtEveryRate) {
                 d.take(own_poses(path, trace)[i], own_poses(finest, fine)[i * std::size_t(1000 / rate)]);
             // 0.4 mm apart at 100 Hz: chords of a way of 30 mm radius, 0.7 µm off, from which the direction of the first
             // 0.75 mm, the pace of the press and the lean at the start are taken. 1.5 mm and 3.4 degrees by samples.
-            EXPECT_LT(d.metres, rate < 200 ? 5e-5 : 1.5e-5) << laying_name(laying) << ", " << rate;
-            EXPECT_LT(d.radians, rate < 200 ? 2e-3 : 5e-4) << laying_name(laying) << ", " << rate;
+            EXPECT_LT(d.metres, rate < 200 ? 5e-5 : 1.5e-5) << surface_mapping_name(mapping) << ", " << rate;
+            EXPECT_LT(d.radians, rate < 200 ? 2e-3 : 5e-4) << surface_mapping_name(mapping) << ", " << rate;
         }
     }
 }
@@ -144,7 +144,7 @@ Model bent_sheet() {
 }
 
 /// Film at every texel right of `from` metres on the unrolled sheet.
-std::vector<float> films(const Painting& p, double from) {
+std::vector<float> films(const Document& p, double from) {
     std::vector<float> films;
     const atlas::TexelMap& map = p.model().texels;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
@@ -169,11 +169,11 @@ TEST(Sampling, InkIsTheSameAtEveryRateAndPastARest) {
     const Model model = bent_sheet();
     const auto paint = [&](const Motion& motion, double rate, double from) {
         Stroke s;
-        s.trace = sampled(motion, rate, {{0.04 * std::sin(-0.4), 0.005, 0.04 * std::cos(-0.4)}, {1, 0, 0}, {0, -1, 0}, Laying::drape});
+        s.trace = sampled(motion, rate, {{0.04 * std::sin(-0.4), 0.005, 0.04 * std::cos(-0.4)}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape});
         for (TraceSample& sample : s.trace.samples) sample.pressure = 0.4;
         s.trace.brush = "mixed-medium";
         s.trace.ink = "carbon";
-        Painting painting(model);
+        Document painting(model);
         painting.paint(s);
         return films(painting, from);
     };
@@ -188,17 +188,17 @@ TEST(Sampling, InkIsTheSameAtEveryRateAndPastARest) {
 }
 
 /// Speeds of holder and hand over a trace, m/s, and what bounds the holder's; see `lead_hand`.
-void expect_bounded(const SurfaceQuery& query, const Trace& trace, const HoldOptions& options, double curvature) {
+void expect_bounded(const SurfaceQuery& query, const Trace& trace, const HolderOptions& options, double curvature) {
     const HandPath path = hand_path(query, trace, options);
-    const auto& samples = path.laid.samples;
+    const auto& samples = path.mapped.samples;
     double pace = kSlowestSetDown, fastest = 0;
     for (std::size_t i = 1; i < trace.samples.size(); ++i)
         pace = std::max(pace, glm::distance(trace.samples[i].position, trace.samples[i - 1].position) / (trace.samples[i].time - trace.samples[i - 1].time));
     for (std::size_t i = 1; i < path.poses.size(); ++i) {
         const double dt = path.poses[i].time - path.poses[i - 1].time;
-        const LaidSample &a = samples[i - 1], &b = samples[i];
-        const double lead = std::max(glm::length(a.lead), glm::length(b.lead)), length = options.tuft_length;
-        double most = (1 + lead / options.lead_turn + 2 * curvature * length + 1.5) * glm::distance(a.position, b.position) / dt +
+        const SurfaceSample &a = samples[i - 1], &b = samples[i];
+        const double lead = std::max(glm::length(a.tip_lag), glm::length(b.tip_lag)), length = options.tuft_length;
+        double most = (1 + lead / options.tip_lag_turn + 2 * curvature * length + 1.5) * glm::distance(a.position, b.position) / dt +
                       4 * (options.working_depth * std::abs(b.pressure - a.pressure) + length * glm::length(b.tilt - a.tilt)) / dt;
         if (a.pressure <= 0 || b.pressure <= 0) most += options.hover / kHoverTime + pace;
         // Pressing at one place is the program's own motion there.
@@ -216,7 +216,7 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
     const SurfaceQuery on_flat(flat), on_round(round);
     for (const char* name : {"mixed-medium", "wolf-small", "goat-large"}) {
         const brush::Preset preset = brush::load_preset(name);
-        LeanedLead leaned(preset);
+        TiltedTipLag leaned(preset);
         for (const double speed : {0.01, 0.04, 0.25})
             for (const char* press : {"at once", "slowly", "twice"})
                 for (const Vec2 tilt : {Vec2{0.02, 0.01}, Vec2{0, 0.5}}) {
@@ -229,11 +229,11 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
                                                  .pressure = 0.4 * (press[0] == 'a' ? 1 : press[0] == 's' ? up : up * gap), .tilt = tilt});
                     }
                     trace.samples.back().pressure = press[0] == 'a' ? 0.4 : 0;
-                    HoldOptions options = hold_options(preset, flat);
-                    options.lead = drag_lead(preset);
+                    HolderOptions options = holder_options(preset, flat);
+                    options.tip_lag = measure_tip_lag(preset);
                     options.leaned = [&](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
                     expect_bounded(on_flat, trace, options, 0);
-                    trace.placement = {{kCylinderRadius, 0, 0.01}, {0, 1, 0}, {0, 0, -1}, Laying::drape};
+                    trace.placement = {{kCylinderRadius, 0, 0.01}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::drape};
                     expect_bounded(on_round, trace, options, 1 / kCylinderRadius);
                 }
     }
@@ -286,7 +286,7 @@ TEST(Sampling, PosesThatArriveOneByOneDoTheSameAtEveryRate) {
         Settings settings;
         (string ? settings.stabilise : settings.smooth) = string ? 3e-3 : 1;
         const auto at = [&](int rate) {
-            SteadyHand hand;
+            GestureFilter hand;
             std::vector<brush::Pose> poses;
             for (int i = 0; i <= rate; ++i) {
                 const TraceSample s = busy(double(i) / rate);

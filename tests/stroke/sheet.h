@@ -5,7 +5,7 @@
 
 #include "stroke/painting/painting.h"
 
-/// A sheet and strokes over it, shared by the tests of this room.
+/// A sheet and strokes over it, shared by the tests of this module.
 namespace tuft::stroke {
 
 inline constexpr double kSide = 0.06;        // metres

@@ -30,14 +30,14 @@ Stroke dry(double seconds) {
     return s;
 }
 
-double in_hair(const Painting& painting, int plane) {
+double in_hair(const Document& painting, int plane) {
     const BrushInHand* brush = painting.held(kBrush);
     return brush ? brush->reservoir.pigment(plane) : 0;
 }
 
 TEST(WetInk, AStopAtAnyMomentLeavesEverythingAsItWas) {
     const Model model = sheet();
-    Painting painting(model, {.substrate = "bisque"}), undisturbed(model, {.substrate = "bisque"});
+    Document painting(model, {.substrate = "bisque"}), undisturbed(model, {.substrate = "bisque"});
     Stroke slow = wet_line("carbon", true);
     slow.trace.samples.back().time += 1;  // the hand rests, the film flows meanwhile
     for (const Stroke& entry : {wet_line("carbon"), slow, dry(1)}) {
@@ -63,7 +63,7 @@ TEST(WetInk, AStopAtAnyMomentLeavesEverythingAsItWas) {
 
 TEST(WetInk, KeepsEachPigmentThroughStrokePickUpFlowDryAndUndo) {
     const Model model = sheet();
-    Painting painting(model, {.substrate = "bisque"});
+    Document painting(model, {.substrate = "bisque"});
     painting.paint(wet_line("carbon"));
     const double carbon = painting.canvas().total(model.texels, 0) + in_hair(painting, 0);
     const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
@@ -94,7 +94,7 @@ TEST(WetInk, ReplaysToTheBitOnAnyNumberOfThreads) {
     std::vector<Stroke> journal;
     for (int i = 0; i < 2; ++i) {
         set_thread_count(i ? 3 : 1);
-        Painting painting(model, {.substrate = "bisque"});
+        Document painting(model, {.substrate = "bisque"});
         if (i == 0) {
             painting.paint(wet_line("carbon"));
             painting.paint(dry(1));
@@ -117,7 +117,7 @@ Stroke erasing(Stroke s) {
 
 TEST(WetInk, NothingStaysOfAStrokeThatTheSameStrokeErases) {
     const Model model = sheet();
-    Painting painting(model, {.substrate = "porcelain"});
+    Document painting(model, {.substrate = "porcelain"});
     Stroke s = wet_line("carbon");
     s.settings.spacing = 1;
     s.settings.dip = "each";  // with the same hair
@@ -140,7 +140,7 @@ TEST(WetInk, AnEraserThroughAWashLeavesItsEdgesAsDryOnesAre) {
     const Model model = sheet();
     std::vector<double> ink;
     for (const bool wet : {false, true}) {
-        Painting painting(model, {.substrate = "porcelain"});
+        Document painting(model, {.substrate = "porcelain"});
         Stroke s = wet_line("carbon");
         if (!wet) s.settings.film = "still";
         painting.paint(s);
@@ -158,7 +158,7 @@ TEST(WetInk, YellowThroughWetPurplePicksItUpAndNotWhenItIsDry) {
     const Model model = sheet();
     double picked[2];
     for (int i = 0; i < 2; ++i) {
-        Painting painting(model);
+        Document painting(model);
         painting.paint(wet_line("indigo"));
         if (i) painting.paint(dry(0));
         painting.paint(wet_line("gamboge", true));
@@ -177,7 +177,7 @@ TEST(WetInk, ADrippingTuftLeavesDripsOnAWallAndAFullOneDoesNot) {
     const Model model = sheet();
     double lowest[2];
     for (int i = 0; i < 2; ++i) {
-        Painting painting(model, {.substrate = "porcelain"});
+        Document painting(model, {.substrate = "porcelain"});
         Stroke line = wet_line("carbon"), dip = line;
         dip.action = Action::dip;
         dip.extent.amount = i ? 1.5 : 1;
@@ -205,7 +205,7 @@ TEST(WetInk, ADrippingTuftLeavesDripsOnAWallAndAFullOneDoesNot) {
 TEST(WetInk, StillInkIsAsItAlwaysWas) {
     // With all that is wet left out of the settings, nothing flows and no time passes.
     const Model model = sheet();
-    Painting painting(model);
+    Document painting(model);
     Stroke s = wet_line("carbon");
     s.settings.film = "still";
     painting.paint(s);

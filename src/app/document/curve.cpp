@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/ease.h"
-#include "stroke/hand/laying.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/surface_mapping.h"
+#include "stroke/hand/tip_lag.h"
 
 namespace tuft::app {
 namespace {
@@ -49,7 +49,7 @@ CurvePlace at_length(std::span<const CurvePlace> curve, double s) {
 std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<const CurvePlace> curve, const CurveHand& hand) {
     const double length = curve.back().along - curve.front().along, step = std::max(hand.settings.speed * kSample, length / kMostSamples);
     const auto n = static_cast<std::size_t>(std::max(2.0, std::ceil(length / step)));
-    std::vector<stroke::LaidSample> samples;
+    std::vector<stroke::SurfaceSample> samples;
     for (std::size_t i = 0; i <= n; ++i) {
         const double part = static_cast<double>(i) / static_cast<double>(n), s = curve.front().along + part * length;
         const double press = hand.pressure * at_length(curve, s).pressure * smooth_step(part / std::max(1e-3, hand.settings.taper_in)) *
@@ -59,9 +59,9 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
         const Vec3 way = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;
         const stroke::Axes axes = stroke::axes_across(place.normal, hand.right, hand.down);
         const Vec2 ahead{glm::dot(way, axes.right), glm::dot(way, axes.down)};
-        stroke::LaidSample sample{.position = place.position, .normal = place.normal, .right = axes.right, .down = axes.down,
+        stroke::SurfaceSample sample{.position = place.position, .normal = place.normal, .right = axes.right, .down = axes.down,
                                   .time = part * length / hand.settings.speed, .pressure = press, .tilt = hand.tilt};
-        if (press > 0 && glm::length(ahead) > 1e-9) sample.lead = stroke::lead_of(hand.hold, press, hand.tilt, glm::normalize(ahead));
+        if (press > 0 && glm::length(ahead) > 1e-9) sample.tip_lag = stroke::lead_of(hand.hold, press, hand.tilt, glm::normalize(ahead));
         if (const auto on = query.closest_point(place.position, 0.01)) {
             sample.on = *on;
             sample.on_surface = glm::dot(on->normal, place.normal) > 0 && glm::distance(on->position, place.position) < 1e-3;

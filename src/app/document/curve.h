@@ -41,7 +41,7 @@ std::vector<CurvePlace> lay_curve(const mesh::SurfaceQuery& query, std::span<con
 /// a lead, and what a lean adds to it, so that the ink lies on the curve; `pressure` of the hand, 0–1; `tilt` radians to the
 /// right and down of whoever looks with `right` and `down`.
 struct CurveHand {
-    stroke::HoldOptions hold;
+    stroke::HolderOptions hold;
     CurveSettings settings;
     double pressure = 0.5;
     Vec2 tilt{0};

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "app/document/painter.h"
+#include "app/document/paint_thread.h"
 #include "mesh/surface_query.h"
 
 namespace tuft::app {

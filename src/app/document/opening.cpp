@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/units.h"
-#include "io/looks.h"
+#include "io/appearance.h"
 #include "io/read_model.h"
 #include "io/restore.h"
 
@@ -34,13 +34,13 @@ constexpr Stage kStages[] = {
     {"normals", "Checking the mesh", {{0.95, 1}, {0.1, 0.11}, {0.1, 0.1}}},
     {"charts", "Cutting it into charts", {{1, 1}, {0.11, 0.3}, {0.1, 0.1}}},
     {"merge", "Cutting it into charts", {{1, 1}, {0.3, 0.5}, {0.1, 0.1}}},
-    {"cut to pack", "Laying the charts out", {{1, 1}, {0.5, 0.55}, {0.1, 0.1}}},
-    {"pack", "Laying the charts out", {{1, 1}, {0.55, 0.75}, {0.1, 0.1}}},
-    {"check", "Laying the charts out", {{1, 1}, {0.75, 0.76}, {0.1, 0.1}}},
+    {"cut to pack", "SurfaceMapping the charts out", {{1, 1}, {0.5, 0.55}, {0.1, 0.1}}},
+    {"pack", "SurfaceMapping the charts out", {{1, 1}, {0.55, 0.75}, {0.1, 0.1}}},
+    {"check", "SurfaceMapping the charts out", {{1, 1}, {0.75, 0.76}, {0.1, 0.1}}},
     {"texel map", "Placing the texels", {{1, 1}, {0.76, 0.85}, {0.1, 0.3}}},
     {"piece graph", "Placing the texels", {{1, 1}, {0.85, 0.9}, {0.3, 0.4}}},
     {"search tree", "Placing the texels", {{1, 1}, {0.9, 0.92}, {0.4, 0.45}}},
-    {"painting", "Painting the strokes", {{1, 1}, {0.92, 0.97}, {0.45, 0.95}}},
+    {"painting", "Document the strokes", {{1, 1}, {0.92, 0.97}, {0.45, 0.95}}},
     {"picture of the ink", "Placing the texels", {{1, 1}, {0.97, 1}, {0.95, 1}}},
 };
 
@@ -94,7 +94,7 @@ Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
 }
 
 // Strokes of a former project, its presets and ground, on the new model.
-void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn& progress) {
+void carry_strokes(const fs::path& former, PaintThread::Work& work, const ProgressFn& progress) {
     const io::Project project = io::Project::open(former, {.access = io::Access::read, .progress = progress});
     work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
     io::use_presets(project, *work.painting);
@@ -107,19 +107,19 @@ void carry_strokes(const fs::path& former, Painter::Work& work, const ProgressFn
     const mesh::SurfaceQuery before(mesh);
     const std::optional<stroke::ModelMotion> motion = stroke::find_motion(before, *work.model->query);
     const std::vector<stroke::StrokeFit> fits = stroke::compare_fit(strokes, length_of, before, *work.model->query, motion);
-    work.misfits = stroke::find_misfits(reports, fits);
-    work.fit = {stroke::describe(stroke::total_of(fits, work.misfits)) + "."};
+    work.mismatches = stroke::find_mismatches(reports, fits);
+    work.fit = {stroke::describe(stroke::total_of(fits, work.mismatches)) + "."};
     if (motion) work.fit.push_back("The revised model is the former one " + stroke::describe(*motion) + ".");
 }
 
 // In a file from now on, or in memory until there can be one.
-void keep(Painter::Work& work, const fs::path& file) {
+void keep(PaintThread::Work& work, const fs::path& file) {
     const std::string fault = work.keeper.start(file, work.source, work.frame, *work.painting);
     if (!fault.empty()) work.keeper.start_later(file, work.source, work.frame, fault, !work.painting->journal().empty());
 }
 
-Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
-    Painter::Work work;
+PaintThread::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
+    PaintThread::Work work;
     stroke::ModelOptions prepare;
     const auto fixed = io::metres_per_unit_of(in.path);
     prepare.repair.metres_per_unit = fixed.value_or(metres_per(options.frame.unit).value_or(kMillimetre));
@@ -130,7 +130,7 @@ Painter::Work prepare_model(Inspected in, const OpenOptions& options, const fs::
     work.frame = options.frame;
     if (!options.own_colours) mesh::drop_colours(in.soup);
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
-    work.painting = std::make_unique<stroke::Painting>(*work.model, stroke::PaintingOptions{.substrate = options.substrate});
+    work.painting = std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});
     if (!former.empty()) carry_strokes(former, work, progress);
     work.texture = std::make_unique<Texture>(*work.painting, progress);
     work.pixels = work.texture->pixels();
@@ -152,8 +152,8 @@ io::Project open_project(const fs::path& path, OpenAs as, const ProgressFn& prog
     return io::Project::open(path, {.access = io::Access::read, .progress = progress});
 }
 
-Painter::Work load_project(const fs::path& path, const fs::path& session, OpenAs as, const ProgressFn& progress) {
-    Painter::Work work;
+PaintThread::Work load_project(const fs::path& path, const fs::path& session, OpenAs as, const ProgressFn& progress) {
+    PaintThread::Work work;
     report(progress, "reading", 0);
     std::string why;
     io::Project project = open_project(path, as, progress, why);
@@ -163,7 +163,7 @@ Painter::Work load_project(const fs::path& path, const fs::path& session, OpenAs
     const ink::Substrate substrate = ink::parse_substrate(stored.substrate, path.string());
     work.model = std::make_unique<stroke::Model>(
         stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), progress));
-    work.painting = std::make_unique<stroke::Painting>(*work.model);
+    work.painting = std::make_unique<stroke::Document>(*work.model);
     work.painting->use_substrate(substrate);
     io::use_presets(project, *work.painting);
     io::restore_strokes(project, *work.painting, progress);

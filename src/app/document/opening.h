@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/document/painter.h"
+#include "app/document/paint_thread.h"
 #include "mesh/inspect.h"
 #include "mesh/polygon_soup.h"
 
@@ -61,10 +61,10 @@ class Opening {
     std::string phase() const;    ///< for a person, English
     double fraction() const;      ///< of the whole
 
-    /// Looks whether the step is done; results are taken once. The error is one line, "" if none.
+    /// Appearance whether the step is done; results are taken once. The error is one line, "" if none.
     struct Result {
         std::optional<Inspected> inspected;
-        std::optional<Painter::Work> work;
+        std::optional<PaintThread::Work> work;
         std::optional<InUse> in_use;  ///< and therefore not opened
         std::string error;
         bool done = false;

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "app/document/painter.h"
+#include "app/document/paint_thread.h"
 
 namespace tuft::app {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atlas/texels/piece_graph.h"
+#include "atlas/texels/cluster_graph.h"
 #include "ink/colour/srgb.h"
 
 namespace tuft::app {
@@ -33,7 +33,7 @@ void Thumbnails::look_from(const stroke::Model& model, const render::GlCamera& c
         }
 }
 
-bool Thumbnails::waiting(const stroke::Painting& painting) const {
+bool Thumbnails::waiting(const stroke::Document& painting) const {
     if (width_ == 0) return false;
     const auto& layers = painting.layers().layers;
     return !touched_.empty() || layers.size() != pictures_.size() ||
@@ -53,8 +53,8 @@ bool Thumbnails::paint(Thumbnail& picture, const ink::Canvas& canvas, const ink:
     const auto slot_again = [&](std::uint32_t slot, const std::vector<Pixel>& pixels) {
         any = true;
         const bool inked = canvas.touched(slot);
-        ink::TileLook look;
-        if (inked) look = ink::look_of_tile(canvas, slot, substrate);
+        ink::TileAppearance look;
+        if (inked) look = ink::shade_tile(canvas, slot, substrate);
         for (const Pixel& pixel : pixels)
             put(picture, pixel.at, inked ? ink::Rgb{look.colour[0][pixel.texel], look.colour[1][pixel.texel], look.colour[2][pixel.texel]} : substrate.reflectance, pixel.light);
     };
@@ -67,7 +67,7 @@ bool Thumbnails::paint(Thumbnail& picture, const ink::Canvas& canvas, const ink:
     return any;
 }
 
-std::vector<Thumbnail> Thumbnails::draw(stroke::Painting& painting) {
+std::vector<Thumbnail> Thumbnails::draw(stroke::Document& painting) {
     std::vector<Thumbnail> changed;
     std::erase_if(pictures_, [&](const auto& entry) { return !painting.layers().find(entry.first); });
     for (const stroke::LayerTexels& layer : painting.canvases()) {

@@ -30,9 +30,9 @@ class Thumbnails {
     /// All are drawn anew.
     void forget() { pictures_.clear(); }
     /// Whether there may be something to draw.
-    bool waiting(const stroke::Painting& painting) const;
+    bool waiting(const stroke::Document& painting) const;
     /// The pictures that changed since the last call.
-    std::vector<Thumbnail> draw(stroke::Painting& painting);
+    std::vector<Thumbnail> draw(stroke::Document& painting);
 
   private:
     struct Pixel {

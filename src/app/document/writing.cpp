@@ -36,7 +36,7 @@ std::vector<stroke::Trace*> pointers(std::vector<stroke::Trace>& traces) {
 }
 
 // Fills and washes are of the model and the palette, not of a drawing that is placed by hand.
-bool belongs_to_brush(const stroke::Care& care) {
+bool belongs_to_brush(const stroke::BrushAction& care) {
     return stroke::has_brush(care.action) || care.action == stroke::Action::dry;
 }
 
@@ -56,7 +56,7 @@ Writing read_writing(const std::filesystem::path& file) {
         throw Error(file.string(),
                     "its strokes lie in space already; only flat writing can be placed");
     const std::vector<stroke::Trace*> all = pointers(out.traces);
-    if (out.traces.front().placed) out.laying = out.traces.front().placement.laying;
+    if (out.traces.front().placed) out.mapping = out.traces.front().placement.mapping;
     stroke::arrange_parts(all);
     const Box box = stroke::extent_of(all);
     out.centre = Vec2(box.centre());
@@ -77,7 +77,7 @@ stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& quer
         return kDegree * rounded(stroke::turn_of(facing, upright, seen.right) / kDegree, kTurnStep);
     };
     stroke::Placement out;
-    if (w.laying == stroke::Laying::project) {
+    if (w.mapping == stroke::SurfaceMapping::project) {
         // Straight through the picture: as it is seen now it comes to lie.
         const Vec3 from = rounded_direction(eye), towards = glm::normalize(from),
                    upright = stroke::reading_right(from);
@@ -85,7 +85,7 @@ stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& quer
     } else {
         out = stroke::upright_placement(on->position, n, turned(n, stroke::upright_right(n)));
     }
-    out.laying = w.laying;
+    out.mapping = w.mapping;
     return out;
 }
 
@@ -96,15 +96,15 @@ double painted_scale(const Writing& w) {
 std::string place_words(const Writing& w, const stroke::Placement& p) {
     const Vec3 normal = glm::normalize(glm::cross(p.down, p.right));
     const Vec3 at = p.origin / kMillimetre;
-    const bool project = w.laying == stroke::Laying::project;
+    const bool project = w.mapping == stroke::SurfaceMapping::project;
     const Vec3 from = rounded_direction(normal),
                upright = project ? stroke::reading_right(from) : stroke::upright_right(normal);
     std::string words =
         fmt::format("--place {:.3f},{:.3f},{:.3f} --place-width {:.3f} --place-turn {:.2f}", at.x,
                     at.y, at.z, width_mm(w), stroke::turn_of(normal, upright, p.right) / kDegree);
     if (w.mirrored) words += " --place-mirror";
-    if (w.laying != stroke::Laying::drape)
-        words += " --laying " + std::string(stroke::laying_name(w.laying));
+    if (w.mapping != stroke::SurfaceMapping::drape)
+        words += " --laying " + std::string(stroke::surface_mapping_name(w.mapping));
     if (project) words += fmt::format(" --read-from {:.6f},{:.6f},{:.6f}", from.x, from.y, from.z);
     return words;
 }
@@ -119,8 +119,8 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
     std::vector<stroke::Trace> traces = w.traces;
     for (stroke::Trace& trace : traces) {
         std::erase_if(trace.before,
-                      [](const stroke::Care& care) { return !belongs_to_brush(care); });
-        trace.placement.laying = w.laying;
+                      [](const stroke::BrushAction& care) { return !belongs_to_brush(care); });
+        trace.placement.mapping = w.mapping;
         trace.layer.clear();
         trace.mask.clear();
         if (!w.own_width) trace.line_width = 0;
@@ -160,7 +160,7 @@ std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query
         if ((n - 1) % step != 0) thin.samples.push_back(trace.samples.back());
     }
     stroke::transform_trace(thin, w.centre, painted_scale(w), w.mirrored);
-    const std::vector<stroke::LaidSample> laid = stroke::lay(query, thin).samples;
+    const std::vector<stroke::SurfaceSample> laid = stroke::map_to_surface(query, thin).samples;
     std::vector<std::vector<GhostPoint>> lines;
     for (std::size_t i = 0, next = 0; i < laid.size(); ++i) {
         while (next < starts.size() && starts[next] == i) {

@@ -20,7 +20,7 @@ struct Writing {
     double scale = 1;
     double turn = 0;        ///< radians, clockwise as seen
     bool mirrored = false;  ///< flipped from left to right
-    stroke::Laying laying = stroke::Laying::drape;
+    stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
     bool own_ink = false;   ///< brush and ink as the file names them
     bool own_width = true;  ///< lines as wide as the drawing has them, where it has widths
 

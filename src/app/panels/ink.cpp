@@ -93,7 +93,7 @@ void care(Session& s) {
     const float half = part_of_row(s, 2);
     const auto act = [&](stroke::Action action, double depth = 1, double side = 0) {
         bring_in_colour(s);
-        s.painter->post(CareForBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
+        s.painter->post(ActOnBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
     };
     if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half)) act(stroke::Action::dip, s.dip_depth, s.dip_side);
     ImGui::SameLine();
@@ -141,9 +141,9 @@ void ink_section(Session& s) {
     ImGui::PopStyleVar(2);
     ui.toggle("Wet ink", s.wet, "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.wet || s.last.wet) {
-        if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0)) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
+        if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0)) s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
         ImGui::SameLine();
-        if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1))) s.painter->post(CareForBrush{.action = stroke::Action::dry, .brush = s.brush});
+        if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1))) s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush});
     }
     ui.toggle("Don't reload", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
     if (s.carry) care(s);
@@ -238,7 +238,7 @@ void colours_panel(Session& s, float top, float bottom, float left) {
     }
     ui.heading("Material");
     std::string material = s.looks.substrate;
-    if (ui.combo("Shown on", material, s.substrates)) s.painter->post(ShowOn{material});
+    if (ui.combo("Shown on", material, s.substrates)) s.painter->post(PreviewSubstrate{material});
     if (material != s.looks.painted_on) ImGui::TextDisabled("%s %s", ui.tr("painted on"), ui.tr(s.looks.painted_on.c_str()));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     if (ui.primary_button("Back to the tools", part_of_row(s, 1))) s.show_colours = false;

@@ -60,7 +60,7 @@ void atlas_marks(const Session& s, const std::optional<Vec2>& cursor);
 /// Makes a mask under a name that is free, with the chosen one if that is asked for.
 void make_mask(Session& s, stroke::Mask mask);
 /// Strokes that do not touch the revised model.
-void misfit_dialog(Session& s);
+void mismatch_dialog(Session& s);
 /// The movement that takes a place of the surface with its normal to another.
 RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint& to);
 

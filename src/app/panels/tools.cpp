@@ -122,7 +122,7 @@ void brush_rack(Session& s) {
 // is what the pen does now.
 void pen_curve(Session& s) {
     Ui& ui = s.ui;
-    HandSettings& h = s.hand;
+    PointerSettings& h = s.hand;
     const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ui.px(96));
     ImGui::InvisibleButton("pen curve", size);
     ui.mark("Pen curve");
@@ -165,7 +165,7 @@ void pen_curve(Session& s) {
 
 void hand_section(Session& s) {
     Ui& ui = s.ui;
-    if (!ui.section("Hand")) return;
+    if (!ui.section("PointerInput")) return;
     ui.slider("Pressure", s.hand.pressure, 0.02, 1, "%.2f", "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
     ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length", kMillimetre);
     if (ui.button(s.more_hand ? "Less" : "More...", nullptr, 80)) s.more_hand = !s.more_hand;
@@ -234,15 +234,15 @@ void writing_section(Session& s) {
     if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", "Wheel over the model", kMillimetre)) w.scale = width / w.width;
     ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
     ui.toggle("Mirrored", w.mirrored);
-    const std::tuple<stroke::Laying, const char*, const char*> layings[] = {
-        {stroke::Laying::drape, "Drape", "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
-        {stroke::Laying::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
-        {stroke::Laying::project, "Straight", "Straight through the picture plane"}};
+    const std::tuple<stroke::SurfaceMapping, const char*, const char*> layings[] = {
+        {stroke::SurfaceMapping::drape, "Drape", "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
+        {stroke::SurfaceMapping::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
+        {stroke::SurfaceMapping::project, "Straight", "Straight through the picture plane"}};
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
     for (const auto& [laying, name, hint] : layings) {
-        if (laying != stroke::Laying::drape) ImGui::SameLine();
-        if (ui.choice(name, w.laying == laying, hint, third)) w.laying = laying;
+        if (laying != stroke::SurfaceMapping::drape) ImGui::SameLine();
+        if (ui.choice(name, w.mapping == laying, hint, third)) w.mapping = laying;
     }
     ImGui::PopStyleVar();
     const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });

@@ -56,7 +56,7 @@ std::uint8_t code_of(float micrometres) {
 }
 
 // Micrometres of liquid on and in the surface, of all layers.
-std::array<float, atlas::kTileTexels> liquid_of(const stroke::Painting& painting, std::uint32_t slot) {
+std::array<float, atlas::kTileTexels> liquid_of(const stroke::Document& painting, std::uint32_t slot) {
     std::array<float, atlas::kTileTexels> wet{};
     for (const stroke::LayerTexels& layer : painting.canvases())
         for (const ink::Liquid where : {ink::Liquid::film, ink::Liquid::pores})
@@ -67,13 +67,13 @@ std::array<float, atlas::kTileTexels> liquid_of(const stroke::Painting& painting
 
 }  // namespace
 
-void Texture::show_wetness(bool on, const stroke::Painting& painting) {
+void Texture::show_wetness(bool on, const stroke::Document& painting) {
     if (wetness_ == on) return;
     wetness_ = on;
     refresh_heights(painting.stack().touched_slots(), painting);
 }
 
-Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
+Texture::Texture(const stroke::Document& painting, const ProgressFn& progress) {
     const stroke::Model& model = painting.model();
     report(progress, "picture of the ink", 0);
     const ink::ComposeOptions options = painting.compose_options();
@@ -85,7 +85,7 @@ Texture::Texture(const stroke::Painting& painting, const ProgressFn& progress) {
     report(progress, "picture of the ink", 1);
 }
 
-void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
+void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Document& painting) {
     const atlas::TexelMap& map = painting.model().texels;
     const ink::Stack stack = painting.stack();
     const std::size_t size = colour_.size;
@@ -93,11 +93,11 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
         const std::size_t tile = map.tile_of_slot[slot];
         const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
         const bool inked = stack.touched(slot);
-        const ink::TileLook look = inked ? ink::look_of_tile(stack, slot, painting.substrate()) : ink::TileLook{};
+        const ink::TileAppearance look = inked ? ink::shade_tile(stack, slot, painting.substrate()) : ink::TileAppearance{};
         const std::array<float, atlas::kTileTexels> wet = wetness_ ? liquid_of(painting, slot) : std::array<float, atlas::kTileTexels>{};
         for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
             const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
-            if (x < size && y < size && map.tiles[slot].piece[t] != atlas::kNoPiece)
+            if (x < size && y < size && map.tiles[slot].cluster[t] != atlas::kNoCluster)
                 height_[y * size + x] = code_of(wetness_ ? wet[t] : look.height[t]);
         }
     }
@@ -105,7 +105,7 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
 }
 
 // Gutter texels that take something from the slot take it now.
-void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot, const stroke::Painting& painting) const {
+void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot, const stroke::Document& painting) const {
     const atlas::TexelMap& map = painting.model().texels;
     const ink::GutterPlan& plan = *painting.compose_options().seams;
     const std::size_t size = colour_.size;
@@ -123,7 +123,7 @@ void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32
     }
 }
 
-void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Painting& painting) {
+void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Document& painting) {
     veil_.clear();
     if (!mask) return;
     const atlas::TexelMap& map = painting.model().texels;
@@ -134,14 +134,14 @@ void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Painting& 
         const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const std::size_t x = x0 + static_cast<std::size_t>(t % atlas::kTile), y = y0 + static_cast<std::size_t>(t / atlas::kTile);
-            if (x < size && y < size && map.tiles[slot].piece[static_cast<std::size_t>(t)] != atlas::kNoPiece)
+            if (x < size && y < size && map.tiles[slot].cluster[static_cast<std::size_t>(t)] != atlas::kNoCluster)
                 veil_[y * size + x] = static_cast<std::uint8_t>(255 - mask->coverage(slot, t));
         }
     }
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) continue_over_seams(veil_, slot, painting);
 }
 
-std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::Painting& painting) {
+std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::Document& painting) {
     const atlas::TexelMap& map = painting.model().texels;
     const auto per_side = static_cast<int>(map.tiles_per_side), most = per_side * atlas::kTile;
     std::vector<std::array<int, 2>> inked;
@@ -158,7 +158,7 @@ std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::P
                 if (dx * dx + dy * dy > kRimTexels * kRimTexels || x < 0 || y < 0 || x >= most || y >= most) continue;
                 const std::uint32_t slot = map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
                 const auto t = static_cast<std::size_t>(y % atlas::kTile * atlas::kTile + x % atlas::kTile);
-                if (slot == kNone || map.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+                if (slot == kNone || map.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
                 std::uint8_t& mark = marks[slot][t];
                 if (mark == kNotMarked) mark = kRim;
             }
@@ -176,7 +176,7 @@ std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::P
     return tiles;
 }
 
-void Texture::refresh_all(const stroke::Painting& painting) {
+void Texture::refresh_all(const stroke::Document& painting) {
     colour_ = ink::compose_srgb8(painting.stack(), painting.model().texels, painting.substrate(), painting.compose_options());
     refresh_heights(painting.stack().touched_slots(), painting);
 }
@@ -230,7 +230,7 @@ render::MapPixels Texture::pixels() const {
     return map;
 }
 
-std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> slots, const stroke::Painting& painting) {
+std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> slots, const stroke::Document& painting) {
     std::vector<render::TilePixels> tiles;
     if (slots.empty()) return tiles;
     const stroke::Model& model = painting.model();
@@ -270,7 +270,7 @@ const std::vector<render::GlBox>& Texture::boxes_of(std::uint32_t index, const a
         for (int x = std::max(0, x0 - kReach); x < std::min(most, x0 + atlas::kTile + kReach); ++x) {
             const std::uint32_t slot = map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
             const int t = y % atlas::kTile * atlas::kTile + x % atlas::kTile;
-            if (slot == kNone || map.tiles[slot].piece[static_cast<std::size_t>(t)] == atlas::kNoPiece) continue;
+            if (slot == kNone || map.tiles[slot].cluster[static_cast<std::size_t>(t)] == atlas::kNoCluster) continue;
             const Vec3f lo = map.position(slot, t) - 2 * texel, hi = map.position(slot, t) + 2 * texel;
             const auto near = std::ranges::find_if(boxes, [&](const render::GlBox& b) {
                 const Vec3f size = glm::max(b.hi, hi) - glm::min(b.lo, lo);

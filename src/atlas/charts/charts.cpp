@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 
-#include "atlas/charts/asked_seams.h"
+#include "atlas/charts/requested_seams.h"
 #include "atlas/charts/developable.h"
-#include "atlas/charts/meter.h"
+#include "atlas/charts/phase_progress.h"
 #include "atlas/charts/straighten.h"
 #include "atlas/charts/tasks.h"
 #include "atlas/flatten/hull.h"
@@ -103,18 +103,18 @@ std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const
 
 /// Lays the piece flat; false when that stretches it too much.
 bool flatten_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& piece,
-                   const ChartOptions& options, MeterPart meter, FlatChart& flat) {
+                   const ChartOptions& options, TaskProgress phase, FlatChart& flat) {
     flat.mesh = make_chart(mesh, cut.glued, piece.triangles, cut.unit, cut.place);
     ArapOptions arap = trial_arap(options);
     const double step = static_cast<double>(piece.triangles.size()) / arap.iterations;
-    arap.on_step = [&] { meter.advance(step); };
+    arap.on_step = [&] { phase.advance(step); };
     flat.uv = flatten(flat.mesh, arap);
     if (flat.uv.empty()) return false;
     const FlatCheck check = check_flat(flat.mesh, flat.uv, options.gap);
     flat.worst = check.linf;
     flat.l2 = check.l2;
     if (flat.mesh.faces.size() > 1 && !good(check, options, piece.depth)) return false;
-    meter.finish();
+    phase.finish();
     return true;
 }
 
@@ -124,7 +124,7 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
     double all = 0;
     for (const Piece& p : pieces) all += static_cast<double>(p.triangles.size());
     // Pieces that are cut are laid flat again: as much more as is usual.
-    Meter meter(progress, "flatten", 1.3 * all);
+    PhaseProgress phase(progress, "flatten", 1.3 * all);
     while (!pieces.empty()) {
         std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
             return a.triangles.size() > b.triangles.size();
@@ -133,7 +133,7 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
         std::vector<std::vector<Piece>> parts(pieces.size());
         const auto size = [&](std::size_t i) { return static_cast<double>(pieces[i].triangles.size()); };
         run_tasks_within(pieces.size(), flattened_at_once(mesh.n_triangles()), size, [&](std::size_t i) {
-            const MeterPart part(meter, static_cast<double>(pieces[i].triangles.size()));
+            const TaskProgress part(phase, static_cast<double>(pieces[i].triangles.size()));
             if (flatten_piece(mesh, cut, pieces[i], options, part, flat[i])) return;
             flat[i] = {};
             parts[i] = cut_piece(mesh, cut, pieces[i]);  // changes seams inside the piece only
@@ -235,7 +235,7 @@ CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& opti
                         const ProgressFn& progress) {
     CutMesh cut;
     cut.twin = twin_half_edges(mesh);
-    cut_asked_seams(mesh, options.seams, cut.twin);
+    cut_requested_seams(mesh, options.seams, cut.twin);
     cut.glued = cut.twin;
     cut.place.resize(mesh.n_triangles());
     cut.unit = std::max(std::sqrt(mesh::surface_area(mesh)), 1e-30);

@@ -7,7 +7,7 @@
 #include "atlas/atlas.h"
 #include "atlas/charts/chart_mesh.h"
 #include "atlas/charts/half_edges.h"
-#include "atlas/charts/refusals.h"
+#include "atlas/charts/rejected_changes.h"
 #include "atlas/flatten/flatten.h"
 #include "core/progress.h"
 
@@ -24,7 +24,7 @@ struct ChartOptions {
     double grown = 0.3;     ///< part of the surface that a chart may grow to as seams move
     std::uint32_t triangles = 200000;  ///< of a chart, at most: what laying it flat costs grows
                                        ///< faster than they do
-    AskedSeams seams;       ///< no chart crosses these
+    RequestedSeams seams;       ///< no chart crosses these
     double gap = 0;         ///< that parts of a chart's border keep from each other, over the unit
 };
 
@@ -32,7 +32,7 @@ struct ChartOptions {
 ArapOptions trial_arap(const ChartOptions& options);
 
 /// Triangles of a mesh that is glued in blocks and whose seams are moved in one round, where it gains much.
-inline constexpr std::size_t kDearMesh = 500000;
+inline constexpr std::size_t kBlockwiseThreshold = 500000;
 
 /// A chart and its UVs, over the same unit; every triangle has positive area and the
 /// border does not cross itself.
@@ -50,7 +50,7 @@ struct CutMesh {
     std::vector<std::uint32_t> glued;  ///< the same, kNone at seams
     std::vector<FlatChart> charts;
     std::uint32_t versions = 0;  ///< that charts had so far
-    Refusals refused;
+    RejectedChanges rejected;
     std::vector<std::uint32_t> place;  ///< [n_triangles] room for `make_chart`
 };
 

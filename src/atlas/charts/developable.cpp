@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "atlas/charts/charts.h"
-#include "atlas/charts/meter.h"
+#include "atlas/charts/phase_progress.h"
 #include "atlas/charts/tasks.h"
 
 namespace tuft::atlas {
@@ -64,14 +64,14 @@ std::vector<std::uint8_t> developable_seams(const Patch& patch, std::span<const 
 std::vector<std::uint8_t> small_chart_seams(const mesh::TriangleMesh& mesh,
                                             std::span<const std::uint32_t> twin, double unit,
                                             GluingLimits limits, const ProgressFn& progress) {
-    if (mesh.n_triangles() < kDearMesh) return {};
+    if (mesh.n_triangles() < kBlockwiseThreshold) return {};
     limits.triangles = std::min(limits.triangles, kSmallChart);
     std::vector<Triangles> blocks = compact_blocks(mesh);
-    Meter meter(progress, "small charts", static_cast<double>(mesh.n_triangles()));
+    PhaseProgress phase(progress, "small charts", static_cast<double>(mesh.n_triangles()));
     std::vector<std::uint8_t> seam(twin.size(), 1);
     run_tasks(blocks.size(), [&](std::size_t i) {
         const auto size = static_cast<double>(blocks[i].size());
-        MeterPart part(meter, size);
+        TaskProgress part(phase, size);
         const Patch patch = make_patch(mesh, twin, std::move(blocks[i]), unit);
         const std::vector<std::uint8_t> own = developable_seams(patch, {}, limits, {});
         for (std::size_t h = 0; h < own.size(); ++h)

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "atlas/charts/meter.h"
+#include "atlas/charts/phase_progress.h"
 #include "atlas/charts/seam_graph.h"
 #include "atlas/charts/tasks.h"
 #include "atlas/flatten/carry_uvs.h"
@@ -110,7 +110,7 @@ class Merger {
     }
 
     void run(const ProgressFn& progress) {
-        Meter meter(progress, "merge", kUsualWork * double(mesh_.n_triangles()));
+        PhaseProgress phase(progress, "merge", kUsualWork * double(mesh_.n_triangles()));
         for (int round = 0; round < 200; ++round) {
             std::vector<Trial> trials = next_trials();
             if (trials.empty()) break;
@@ -120,7 +120,7 @@ class Merger {
             run_tasks_within(order.size(), flattened_at_once(mesh_.n_triangles()), size,
                              [&](std::size_t i) {
                                  Trial& t = trials[order[i]];
-                                 MeterPart part(meter, double(n_triangles(t)));
+                                 TaskProgress part(phase, double(n_triangles(t)));
                                  attempt(t, part);
                                  part.finish();
                              });
@@ -149,7 +149,7 @@ class Merger {
         std::vector<Trial> all;
         for (const SeamGraph::Chain& c : chains) {
             if (c.chart_a == c.chart_b || c.closed || refused_[c.id]) continue;
-            if (Refusals::count(cut_.refused.merged, change(c.id, c.chart_a, c.chart_b)) > 0) {
+            if (RejectedChanges::count(cut_.rejected.merged, change(c.id, c.chart_a, c.chart_b)) > 0) {
                 refused_[c.id] = 1;
                 continue;
             }
@@ -202,13 +202,13 @@ class Merger {
     }
 
     /// Flattens the two charts as one from where they lie now.
-    void attempt(Trial& t, MeterPart& part) {
+    void attempt(Trial& t, TaskProgress& part) {
         const FlatChart& a = cut_.charts[chart_at_[t.a]];
         const FlatChart& b = cut_.charts[chart_at_[t.b]];
         const auto [motion, misfit] = fit_sides(a, b, cut_.twin, t);
         double length = 0;
         for (std::size_t i = 0; i < t.n_chain; ++i) length += patch_.length[t.halves[i]];
-        if (misfit > merge_.largest_misfit * length) return;
+        if (misfit > merge_.largest_gap * length) return;
 
         std::vector<std::uint32_t> triangles(a.mesh.triangles.size() + b.mesh.triangles.size());
         std::merge(a.mesh.triangles.begin(), a.mesh.triangles.end(), b.mesh.triangles.begin(),
@@ -251,7 +251,7 @@ class Merger {
         t.merged = !misshapen(form_of(t.flat), parts, 1);
     }
 
-    /// Whether a chart of two parts that is being laid flat will have to be refused: nearly all its
+    /// Whether a chart of two parts that is being laid flat will have to be rejected: nearly all its
     /// motion is in the first steps.
     bool in_vain(const FlatChart& chart, const std::array<Form, 2>& parts, int steps) const {
         if (chart.mesh.faces.size() <= kDear) return false;
@@ -269,7 +269,7 @@ class Merger {
         return whole.length > slack * std::max(merge_.longest, kAsLong * longer);
     }
 
-    Refusals::Change change(std::uint32_t chain, std::uint32_t a, std::uint32_t b) const {
+    RejectedChanges::Change change(std::uint32_t chain, std::uint32_t a, std::uint32_t b) const {
         std::uint32_t first = kNone;
         for (const std::uint32_t h : graph_.half_edges(chain)) first = std::min(first, h);
         const auto [v, w] =
@@ -284,7 +284,7 @@ class Merger {
         if (!t.merged || !budget_.allows(before, now)) {
             set_glued(t, false);
             refused_[t.chain] = 1;
-            ++cut_.refused.merged[change(t.chain, t.a, t.b)];
+            ++cut_.rejected.merged[change(t.chain, t.a, t.b)];
             return;
         }
         const std::uint32_t ca = chart_at_[t.a], cb = chart_at_[t.b];

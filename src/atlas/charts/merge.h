@@ -9,7 +9,7 @@ struct MergeOptions {
     double largest_at_last = 0.3;  ///< the same once seams do not move any more
     double least_fill = 0.75;      ///< its area over that of its convex hull, or that of its parts
     double longest = 1.0;          ///< long side of its smallest rectangle, over the unit
-    double largest_misfit = 0.15;  ///< mean distance of the two sides of the chain, over its length
+    double largest_gap = 0.15;  ///< mean distance of the two sides of the chain, over its length
 };
 
 /// Merges neighbouring charts wherever the merged chart still lies flat within `options`,

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "atlas/charts/meter.h"
+#include "atlas/charts/phase_progress.h"
 #include "atlas/charts/seam_paths.h"
 #include "atlas/charts/tasks.h"
 #include "atlas/flatten/carry_uvs.h"
@@ -28,7 +28,7 @@ struct Trial {
     std::array<std::uint32_t, 2> chart{};             // left and right of the chain
     std::array<std::vector<std::uint32_t>, 2> swept;  // triangles that left each
     std::array<FlatChart, 2> flat;
-    Refusals::Change change{};
+    RejectedChanges::Change change{};
     bool good = false;
 
     int n_charts() const { return chart[0] == chart[1] ? 1 : 2; }
@@ -40,7 +40,7 @@ class Mover {
         : mesh_(mesh),
           cut_(cut),
           options_(options),
-          least_value_(mesh.n_triangles() < kDearMesh ? kLeastValue : kLeastValueDear),
+          least_value_(mesh.n_triangles() < kBlockwiseThreshold ? kLeastValue : kLeastValueDear),
           budget_(cut, options.l2_all),
           patch_(whole_patch(mesh, cut)),
           paths_(patch_, seam_flags(cut), chart_of(mesh, cut)) {
@@ -48,7 +48,7 @@ class Mover {
     }
 
     bool run(const ProgressFn& progress) {
-        Meter meter(progress, "move seams", kMostWork * double(mesh_.n_triangles()));
+        PhaseProgress phase(progress, "move seams", kMostWork * double(mesh_.n_triangles()));
         bool moved = false;
         for (double work = 0; work < kMostWork * double(mesh_.n_triangles());) {
             std::vector<Trial> trials = next_trials();
@@ -61,7 +61,7 @@ class Mover {
             run_tasks_within(trials.size(), flattened_at_once(mesh_.n_triangles()), size,
                              [&](std::size_t i) {
                                  Trial& t = trials[i];
-                                 MeterPart part(meter, double(n_triangles(t)));
+                                 TaskProgress part(phase, double(n_triangles(t)));
                                  t.good = true;
                                  // The chart that grows is the one that may not lie flat.
                                  const int first = t.swept[0].size() > t.swept[1].size();
@@ -114,13 +114,13 @@ class Mover {
     struct Candidate {
         Trial trial;
         std::vector<std::uint32_t> chain;
-        int* refused = nullptr;  // reaches that were tried in vain
-        Refusals::Change around;
+        int* rejected = nullptr;  // reaches that were tried in vain
+        RejectedChanges::Change around;
     };
 
     void search(Candidate& c, PathSearch& search) const {
         if (const auto known = found_.find(c.around);
-            known != found_.end() && known->second.refused == *c.refused) {
+            known != found_.end() && known->second.rejected == *c.rejected) {
             c.trial.move = known->second.move;
             return;
         }
@@ -128,8 +128,8 @@ class Mover {
         for (const std::uint32_t g : c.chain) length += patch_.length[g];
         const double work = double(n_triangles(c.trial)) / double(mesh_.n_triangles());
         const double least = std::max(kLeastSaved * length, least_value_ * work);
-        for (; *c.refused < kReaches; ++*c.refused) {
-            c.trial.move = paths_.shorten(c.chain, kReach[*c.refused], Corners::move, search);
+        for (; *c.rejected < kReaches; ++*c.rejected) {
+            c.trial.move = paths_.shorten(c.chain, kReach[*c.rejected], Corners::move, search);
             if (c.trial.move.saved > least && !refused_.contains(places(c.trial.move))) break;
         }
     }
@@ -149,7 +149,7 @@ class Mover {
             c.trial.chart = {paths_.charts()[h / 3], paths_.charts()[patch_.twin[h] / 3]};
             c.trial.change = {h, cut_.charts[c.trial.chart[0]].version,
                               cut_.charts[c.trial.chart[1]].version};
-            c.refused = &cut_.refused.moved[c.trial.change];
+            c.rejected = &cut_.rejected.moved[c.trial.change];
             c.around = {h, newest[c.trial.chart[0]], newest[c.trial.chart[1]]};
             candidates.push_back(std::move(c));
         }
@@ -158,11 +158,11 @@ class Mover {
         run_tasks_by_worker(candidates.size(), [&](std::size_t i, std::size_t worker) {
             search(candidates[i], searches_[worker]);
         });
-        std::map<Refusals::Change, Found> found;
+        std::map<RejectedChanges::Change, Found> found;
         std::vector<Trial> all;
         for (Candidate& c : candidates) {
-            if (*c.refused == kReaches) continue;
-            found[c.around] = {*c.refused, c.trial.move};
+            if (*c.rejected == kReaches) continue;
+            found[c.around] = {*c.rejected, c.trial.move};
             all.push_back(std::move(c.trial));
         }
         found_ = std::move(found);
@@ -297,7 +297,7 @@ class Mover {
         paths_.move(t.move);
         glue(t.move.chain, true);
         glue(t.move.path, false);
-        ++cut_.refused.moved[t.change];
+        ++cut_.rejected.moved[t.change];
     }
 
     const mesh::TriangleMesh& mesh_;
@@ -310,10 +310,10 @@ class Mover {
     std::vector<PathSearch> searches_;  // of each thread
 
     struct Found {
-        int refused = 0;  // how often before
+        int rejected = 0;  // how often before
         SeamMove move;
     };
-    std::map<Refusals::Change, Found> found_;       // in the last round
+    std::map<RejectedChanges::Change, Found> found_;       // in the last round
     std::set<std::vector<std::uint32_t>> refused_;  // moves of large charts
 };
 

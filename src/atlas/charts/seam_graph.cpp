@@ -312,7 +312,7 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
     // What breaks a limit now may keep it once the charts have grown: try again while any glued.
     for (bool glued = true; glued && !start.empty();) {
         glued = false;
-        std::vector<Entry> refused;
+        std::vector<Entry> rejected;
         // Those known from the start are sorted once and read in their order; only what comes back
         // goes through the heap, which stays small.
         std::sort(start.begin(), start.end());
@@ -330,7 +330,7 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
             if (!seam_[c] || chain_parent_[c] != c || version_[c] != top.version) continue;
             const double now = cost(c, limits);
             if (now == kNever) {
-                refused.push_back({now, c, top.version});
+                rejected.push_back({now, c, top.version});
                 continue;
             }
             if (top.cost == kNever || now > top.cost * (1 + 1e-9)) {
@@ -346,7 +346,7 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
                     queue.push({cost(j, limits), j, version_[j]});
         }
         start.clear();
-        for (const Entry& e : refused) {
+        for (const Entry& e : rejected) {
             if (!seam_[e.chain] || chain_parent_[e.chain] != e.chain) continue;
             if (chart_of(half_[e.chain] / 3) == chart_of(patch_.twin[half_[e.chain]] / 3)) continue;
             start.push_back({cost(e.chain, limits), e.chain, version_[e.chain]});

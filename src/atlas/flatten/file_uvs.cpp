@@ -179,7 +179,7 @@ std::string lay_pages(Atlas& atlas, const Charts& charts) {
     return "";
 }
 
-/// Gives slivers that rounding took the room of some back.
+/// Gives slivers that rounding took the module of some back.
 void snap_charts(const mesh::TriangleMesh& mesh, Atlas& atlas, const Charts& charts) {
     std::vector<std::uint32_t> glued = twin_half_edges(mesh);
     const std::vector<std::uint8_t> seam = uv_seams(glued, atlas.corner_uvs);

@@ -7,7 +7,7 @@
 
 #include "atlas/charts/chart_mesh.h"
 
-/// Laying a disk flat with as little stretch as possible.
+/// SurfaceMapping a disk flat with as little stretch as possible.
 namespace tuft::atlas {
 
 /// Energies below are per area of the chart: the mean of (σ₁ − 1)² + (σ₂ − 1)².

@@ -6,7 +6,7 @@
 
 #include "atlas/atlas.h"
 
-/// What a set of UVs covers: texels, and the room between charts.
+/// What a set of UVs covers: texels, and the module between charts.
 namespace tuft::atlas {
 
 /// Half-edges across which the UVs do not agree at both ends, and borders. [3n]

@@ -56,7 +56,7 @@ void take(Bits& cells, std::uint32_t row, double a, double b) {
 }
 
 /// All cells that a polygon touches, from the corner of its box on; `p` in cells.
-Bits touched_cells(std::span<const Vec2> p, std::uint32_t width, std::uint32_t height) {
+Bits contact_cells(std::span<const Vec2> p, std::uint32_t width, std::uint32_t height) {
     Bits cells(width, height);
     // A bit where the border passes a row's middle: the parity of those before is "inside".
     Bits passed(width + 1, height);
@@ -207,7 +207,7 @@ std::vector<Mask> make_masks(const Shape& shape, double scale, double angle, dou
     const Vec2 side = (hi - lo) / cell;
     const auto width = static_cast<std::uint32_t>(side.x) + 1;
     const auto height = static_cast<std::uint32_t>(side.y) + 1;
-    const Bits cells = touched_cells(p, width, height);
+    const Bits cells = contact_cells(p, width, height);
     const std::vector<Run> rows = runs_of(cells);
     std::vector<Mask> masks;
     masks.push_back(finished(rows, width, height));

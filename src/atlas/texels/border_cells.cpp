@@ -83,8 +83,8 @@ void find_beside(const TexelMap& map, std::uint32_t chart, const Vec2& uv, const
             if (glm::dot(d, d) > kSearch * kSearch) continue;
             const TexelRef ref = texel_ref(map, x, y);
             if (!ref.valid()) continue;
-            const std::uint8_t piece = map.tiles[ref.slot].piece[ref.texel];
-            if (map.piece_chart[map.piece_start[ref.slot] + piece] != chart) continue;
+            const std::uint8_t cluster = map.tiles[ref.slot].cluster[ref.texel];
+            if (map.cluster_chart[map.cluster_start[ref.slot] + cluster] != chart) continue;
             const Vec3 v = Vec3(map.position(ref.slot, ref.texel)) - position;
             const double reach = kSearch * static_cast<double>(map.reach[ref.slot]);
             if (glm::dot(v, v) > reach * reach) continue;

@@ -160,8 +160,8 @@ void collect(const TexelMap& map, std::uint32_t chart, const Vec2& centre, doubl
         for (std::int64_t x = x0; x <= x1; ++x) {
             const TexelRef ref = texel_ref(map, x, y);
             if (!ref.valid()) continue;
-            const std::uint8_t piece = map.tiles[ref.slot].piece[ref.texel];
-            if (map.piece_chart[map.piece_start[ref.slot] + piece] != chart) continue;
+            const std::uint8_t cluster = map.tiles[ref.slot].cluster[ref.texel];
+            if (map.cluster_chart[map.cluster_start[ref.slot] + cluster] != chart) continue;
             const Vec2 d = place(Vec2(double(x) + 0.5, double(y) + 0.5)) - target;
             const double q = 1 - glm::dot(d, d) / (radius * radius);
             if (q <= 0) continue;

@@ -52,7 +52,7 @@ bool worth_a_level(const ChartSizes& sizes, std::uint32_t size) {
 
 std::uint32_t chart_of(const TexelMap& map, const TexelRef& ref) {
     if (!ref.valid()) return kNone;
-    return map.piece_chart[map.piece_start[ref.slot] + map.tiles[ref.slot].piece[ref.texel]];
+    return map.cluster_chart[map.cluster_start[ref.slot] + map.tiles[ref.slot].cluster[ref.texel]];
 }
 
 /// Means of the four texels below each covered texel of `map`.
@@ -62,12 +62,12 @@ void shrink(const TexelMap& below, std::span<const float> from, const TexelMap& 
         for (std::size_t i = begin * kTileTexels; i < end * kTileTexels; ++i) {
             const auto slot = static_cast<std::uint32_t>(i / kTileTexels);
             const int texel = static_cast<int>(i % kTileTexels);
-            if (map.tiles[slot].piece[texel] == kNoPiece) continue;
+            if (map.tiles[slot].cluster[texel] == kNoCluster) continue;
             const std::uint32_t tile = map.tile_of_slot[slot];
             const std::size_t x = std::size_t{tile % map.tiles_per_side} * kTile + texel % kTile;
             const std::size_t y = std::size_t{tile / map.tiles_per_side} * kTile + texel / kTile;
             const std::uint32_t chart =
-                map.piece_chart[map.piece_start[slot] + map.tiles[slot].piece[texel]];
+                map.cluster_chart[map.cluster_start[slot] + map.tiles[slot].cluster[texel]];
             std::array<bool, 4> own{};
             for (int k = 0; k < 4; ++k) {
                 const std::uint32_t c = chart_of(

@@ -99,8 +99,8 @@ TexelRef nearest_texel(const TexelMap& map, std::uint32_t chart, const Vec2& uv,
             if (distance > best_distance || (best.valid() && distance == best_distance)) continue;
             const TexelRef ref = texel_ref(map, x, y);
             if (!ref.valid()) continue;
-            const std::uint8_t piece = map.tiles[ref.slot].piece[ref.texel];
-            if (map.piece_chart[map.piece_start[ref.slot] + piece] != chart) continue;
+            const std::uint8_t cluster = map.tiles[ref.slot].cluster[ref.texel];
+            if (map.cluster_chart[map.cluster_start[ref.slot] + cluster] != chart) continue;
             const double reach = map.reach[ref.slot] * std::max(1.0, max_distance);
             const Vec3 gap = Vec3(map.position(ref.slot, ref.texel)) - position;
             if (glm::dot(gap, gap) > reach * reach) continue;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "atlas/texels/piece_graph.h"
+#include "atlas/texels/cluster_graph.h"
 
 namespace tuft::atlas {
 namespace {
@@ -39,8 +39,8 @@ TexelRef texel_near(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
         for (std::int64_t dx = -search; dx <= search; ++dx) {
             const TexelRef ref = texel_ref(map, x + dx, y + dy);
             if (!ref.valid()) continue;
-            const std::uint8_t piece = map.tiles[ref.slot].piece[ref.texel];
-            if (map.piece_chart[map.piece_start[ref.slot] + piece] !=
+            const std::uint8_t cluster = map.tiles[ref.slot].cluster[ref.texel];
+            if (map.cluster_chart[map.cluster_start[ref.slot] + cluster] !=
                 atlas.triangle_chart[triangle])
                 continue;
             const Vec3 d = Vec3(map.position(ref.slot, ref.texel)) - p;

@@ -191,15 +191,15 @@ bool hang_together(const TexelShape& shape, int a, int b, float reach) {
     return dx * dx + dy * dy + dz * dz <= reach * reach;
 }
 
-/// Grows the piece `piece` from `seed` over unassigned texels of the same chart in the same square of
+/// Grows the cluster `cluster` from `seed` over unassigned texels of the same chart in the same square of
 /// `side` × `side` texels.
-void grow_piece(const TexelShape& shape, TexelTile& tile,
+void grow_cluster(const TexelShape& shape, TexelTile& tile,
                 const std::array<std::uint32_t, kTileTexels>& chart, float reach, int seed,
-                std::uint8_t piece, float min_cos, int side) {
+                std::uint8_t cluster, float min_cos, int side) {
     std::array<std::uint8_t, kTileTexels> open;
     int n_open = 0;
     const float nx = shape.nx[seed], ny = shape.ny[seed], nz = shape.nz[seed];
-    tile.piece[seed] = piece;
+    tile.cluster[seed] = cluster;
     open[n_open++] = static_cast<std::uint8_t>(seed);
     while (n_open > 0) {
         const int a = open[--n_open];
@@ -207,11 +207,11 @@ void grow_piece(const TexelShape& shape, TexelTile& tile,
         for (int by = std::max(ay - 1, 0); by <= std::min(ay + 1, kTile - 1); ++by) {
             for (int bx = std::max(ax - 1, 0); bx <= std::min(ax + 1, kTile - 1); ++bx) {
                 const int b = by * kTile + bx;
-                if (tile.piece[b] != kNoPiece || chart[b] != chart[seed]) continue;
+                if (tile.cluster[b] != kNoCluster || chart[b] != chart[seed]) continue;
                 if (((bx ^ seed % kTile) | (by ^ seed / kTile)) & ~(side - 1)) continue;
                 const float c = shape.nx[b] * nx + shape.ny[b] * ny + shape.nz[b] * nz;
                 if (c < min_cos || !hang_together(shape, a, b, reach)) continue;
-                tile.piece[b] = piece;
+                tile.cluster[b] = cluster;
                 open[n_open++] = static_cast<std::uint8_t>(b);
             }
         }
@@ -233,22 +233,22 @@ bool bends(const TexelShape& shape, const std::array<std::uint32_t, kTileTexels>
     return false;
 }
 
-/// Splits the tile's texels (those with a chart) into pieces; returns the chart of each.
+/// Splits the tile's texels (those with a chart) into clusters; returns the chart of each.
 /// A tile so rough that it would need more than 254 is split by charts and gaps alone;
 /// texels beyond that (one-texel charts side by side) are given up.
-std::vector<std::uint32_t> split_into_pieces(const TexelShape& shape, TexelTile& tile,
+std::vector<std::uint32_t> split_into_clusters(const TexelShape& shape, TexelTile& tile,
                                              const std::array<std::uint32_t, kTileTexels>& chart,
                                              float reach) {
     const int side = bends(shape, chart) ? kTile / 2 : kTile;
     for (const float min_cos : {kPieceCos, -2.0f}) {
         std::vector<std::uint32_t> charts;
-        tile.piece.fill(kNoPiece);
+        tile.cluster.fill(kNoCluster);
         bool all = true;
         for (int t = 0; t < kTileTexels; ++t) {
-            if (chart[t] == kNone || tile.piece[t] != kNoPiece) continue;
-            all = charts.size() < kNoPiece;
+            if (chart[t] == kNone || tile.cluster[t] != kNoCluster) continue;
+            all = charts.size() < kNoCluster;
             if (!all) break;
-            grow_piece(shape, tile, chart, reach, t, static_cast<std::uint8_t>(charts.size()), min_cos, side);
+            grow_cluster(shape, tile, chart, reach, t, static_cast<std::uint8_t>(charts.size()), min_cos, side);
             charts.push_back(chart[t]);
         }
         if (all || min_cos < -1) return charts;
@@ -256,7 +256,7 @@ std::vector<std::uint32_t> split_into_pieces(const TexelShape& shape, TexelTile&
     return {};
 }
 
-/// Fills one tile from the triangle of each of its texels; returns the charts of its pieces.
+/// Fills one tile from the triangle of each of its texels; returns the charts of its clusters.
 std::vector<std::uint32_t> fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                                      std::uint32_t tile_index, std::uint32_t tiles_per_side,
                                      const std::uint32_t* ids, TexelShape& shape, TexelTile& tile,
@@ -278,7 +278,7 @@ std::vector<std::uint32_t> fill_tile(const mesh::TriangleMesh& mesh, const Atlas
     }
     // Mean diagonal of a texel, with room for stretch that varies inside the tile.
     reach = n > 0 ? static_cast<float>(3 * side / n) : 0;
-    return split_into_pieces(shape, tile, chart, reach);
+    return split_into_clusters(shape, tile, chart, reach);
 }
 
 double mean_texel_size(const TexelMap& map) {
@@ -287,7 +287,7 @@ double mean_texel_size(const TexelMap& map) {
     for (const TexelTile& tile : map.tiles) {
         for (int t = 0; t < kTileTexels; ++t) {
             area += tile.area[t];
-            n += tile.piece[t] != kNoPiece;
+            n += tile.cluster[t] != kNoCluster;
         }
     }
     return n > 0 ? std::sqrt(area / static_cast<double>(n)) : 0;
@@ -360,10 +360,10 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
         }
     });
     if (!(map.texel_size > 0)) map.texel_size = mean_texel_size(map);
-    map.piece_start.assign(1, 0);
+    map.cluster_start.assign(1, 0);
     for (const auto& c : charts) {
-        map.piece_chart.insert(map.piece_chart.end(), c.begin(), c.end());
-        map.piece_start.push_back(static_cast<std::uint32_t>(map.piece_chart.size()));
+        map.cluster_chart.insert(map.cluster_chart.end(), c.begin(), c.end());
+        map.cluster_start.push_back(static_cast<std::uint32_t>(map.cluster_chart.size()));
     }
     for (const auto& b : boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
     bands = {};

@@ -14,15 +14,15 @@ namespace tuft::atlas {
 
 inline constexpr int kTile = 16;  ///< texels along the side of a tile
 inline constexpr int kTileTexels = kTile * kTile;
-inline constexpr std::uint8_t kNoPiece = 255;
+inline constexpr std::uint8_t kNoCluster = 255;
 
 /// What ink asks of the texels of one occupied tile, texel t = row * 16 + column.
-/// Texels outside every chart have piece == kNoPiece and zero area.
+/// Texels outside every chart have cluster == kNoCluster and zero area.
 struct TexelTile {
     /// m² of surface the texel stands for; beside seams those of both charts share it (border_cells.h)
     alignas(64) std::array<float, kTileTexels> area;
     alignas(64)
-        std::array<std::uint8_t, kTileTexels> piece;  ///< index of the texel's piece in this tile
+        std::array<std::uint8_t, kTileTexels> cluster;  ///< index of the texel's cluster in this tile
 };
 
 /// Where the texels of one tile lie, structure of arrays. Texels outside every chart: anything.
@@ -34,7 +34,7 @@ struct TexelShape {
 /// How positions and normals are kept.
 enum class TexelStore : std::uint8_t {
     automatic,  ///< packed for atlases beyond 4096² texels
-    floats,     ///< `TexelShape`: 29 bytes a texel with its area and piece
+    floats,     ///< `TexelShape`: 29 bytes a texel with its area and cluster
     packed,     ///< `PackedShape`: 15 bytes, and 4e-4 texels less exact
 };
 
@@ -43,7 +43,7 @@ inline bool is_packed(TexelStore store, std::uint32_t size) {
     return store == TexelStore::packed || (store == TexelStore::automatic && size > 4096);
 }
 
-/// The same in 16-bit numbers: position = lo + step (x, y, z) in the box of the texel's piece,
+/// The same in 16-bit numbers: position = lo + step (x, y, z) in the box of the texel's cluster,
 /// normal by the octahedral map (Cigolle et al. 2014): (nu, nv) = 32767.5 (1 + (x, y)/(|x|+|y|+|z|)),
 /// the lower half folded over the diagonals; within 6.5e-5 rad.
 struct PackedShape {
@@ -66,11 +66,11 @@ struct TexelMap {
     std::vector<TexelTile> tiles;             ///< [n_slots]
     std::vector<TexelShape> shapes;           ///< [n_slots], or empty when packed
     std::vector<PackedShape> packed;          ///< [n_slots], or empty
-    std::vector<PackedBox> boxes;             ///< [n_pieces] when packed
+    std::vector<PackedBox> boxes;             ///< [n_clusters] when packed
     std::vector<float> reach;                 ///< [n_slots] metres: neighbouring texels further
                                               ///< apart than this do not hang together
-    std::vector<std::uint32_t> piece_start;   ///< [n_slots + 1] pieces, counted slot by slot
-    std::vector<std::uint32_t> piece_chart;   ///< [n_pieces]
+    std::vector<std::uint32_t> cluster_start;   ///< [n_slots + 1] clusters, counted slot by slot
+    std::vector<std::uint32_t> cluster_chart;   ///< [n_clusters]
 
     std::size_t n_slots() const { return tiles.size(); }
     Vec3f position(std::uint32_t slot, int texel) const;
@@ -81,7 +81,7 @@ struct TexelMap {
 /// when packed.
 const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& room);
 
-/// Packs a tile whose pieces are known; `boxes` [n_pieces of the tile] are made to fit.
+/// Packs a tile whose clusters are known; `boxes` [n_clusters of the tile] are made to fit.
 PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span<PackedBox> boxes);
 
 /// A texel of the map.
@@ -98,16 +98,16 @@ inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
     if (x < 0 || y < 0 || x >= map.size || y >= map.size) return {};
     const std::uint32_t slot = map.slot_of_tile[(y / kTile) * map.tiles_per_side + x / kTile];
     const auto texel = static_cast<std::uint8_t>((y % kTile) * kTile + x % kTile);
-    if (slot == kNone || map.tiles[slot].piece[texel] == kNoPiece) return {};
+    if (slot == kNone || map.tiles[slot].cluster[texel] == kNoCluster) return {};
     return {slot, texel};
 }
 
 /// Builds the map: a texel is covered when its centre lies in a triangle of the atlas (corners snapped to 1/4096
 /// texel; a centre on a shared edge belongs to one side, and where triangles overlap to the one with the lowest index).
-/// Its piece is the set of texels of the same chart and tile that hang together with it and whose normals are within
+/// Its cluster is the set of texels of the same chart and tile that hang together with it and whose normals are within
 /// 35° of the first; where normals of the tile stray further than 30° from their mean, of the same quarter of it. The
 /// same bits for any number of threads; about 1 s at 4096² on two threads, memory for occupied tiles only. Tiles and
-/// pieces do not depend on `store`, nor do areas, but for a thousandth beside seams.
+/// clusters do not depend on `store`, nor do areas, but for a thousandth beside seams.
 TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                          const ProgressFn& progress = {},
                          TexelStore store = TexelStore::automatic);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kSteps = 65535;
 constexpr float kHalf = 0.5f * kSteps;
-// Beyond this many pieces their boxes are looked up texel by texel.
+// Beyond this many clusters their boxes are looked up texel by texel.
 constexpr std::size_t kFewPieces = 6;
 
 float fold(float a, float b) {
@@ -62,12 +62,12 @@ TUFT_CLONES void unpack_normals(const PackedShape& p, TexelShape& s) {
 }
 
 TUFT_CLONES void unpack_axis(const std::uint16_t* __restrict q,
-                             const std::uint8_t* __restrict piece, std::uint8_t which, float lo,
+                             const std::uint8_t* __restrict cluster, std::uint8_t which, float lo,
                              float step, float* __restrict p) {
 #pragma omp simd
     for (int t = 0; t < kTileTexels; ++t) {
         const float at = lo + step * static_cast<float>(int{q[t]});
-        p[t] = piece[t] == which ? at : p[t];
+        p[t] = cluster[t] == which ? at : p[t];
     }
 }
 
@@ -86,7 +86,7 @@ Vec3f unpack_position(const PackedShape& p, const PackedBox& box, int t) {
 }  // namespace
 
 PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span<PackedBox> boxes) {
-    std::array<Vec3f, kNoPiece> hi;
+    std::array<Vec3f, kNoCluster> hi;
     const float inf = std::numeric_limits<float>::infinity();
     for (std::size_t k = 0; k < boxes.size(); ++k) {
         boxes[k].lo = Vec3f(inf);
@@ -94,8 +94,8 @@ PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span
     }
     const auto at = [&](int t) { return Vec3f(shape.px[t], shape.py[t], shape.pz[t]); };
     for (int t = 0; t < kTileTexels; ++t) {
-        const std::uint8_t k = tile.piece[t];
-        if (k == kNoPiece) continue;
+        const std::uint8_t k = tile.cluster[t];
+        if (k == kNoCluster) continue;
         boxes[k].lo = glm::min(boxes[k].lo, at(t));
         hi[k] = glm::max(hi[k], at(t));
     }
@@ -105,8 +105,8 @@ PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span
     }
     PackedShape p{};
     for (int t = 0; t < kTileTexels; ++t) {
-        const std::uint8_t k = tile.piece[t];
-        if (k == kNoPiece) continue;
+        const std::uint8_t k = tile.cluster[t];
+        if (k == kNoCluster) continue;
         const float per_step = boxes[k].step > 0 ? 1 / boxes[k].step : 0;
         const Vec3f q = glm::clamp((at(t) - boxes[k].lo) * per_step + 0.5f, 0.0f, kSteps);
         p.x[t] = static_cast<std::uint16_t>(q.x);
@@ -122,8 +122,8 @@ PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span
 const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& room) {
     if (map.packed.empty()) return map.shapes[slot];
     const PackedShape& p = map.packed[slot];
-    const std::uint32_t first = map.piece_start[slot];
-    const std::size_t n = map.piece_start[slot + 1] - first;
+    const std::uint32_t first = map.cluster_start[slot];
+    const std::size_t n = map.cluster_start[slot + 1] - first;
     unpack_normals(p, room);
     if (n == 1) {
         const PackedBox& box = map.boxes[first];
@@ -132,11 +132,11 @@ const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& 
         unpack_axis(p.z.data(), box.lo.z, box.step, room.pz.data());
         return room;
     }
-    const auto& piece = map.tiles[slot].piece;
+    const auto& cluster = map.tiles[slot].cluster;
     if (n > kFewPieces) {
         for (int t = 0; t < kTileTexels; ++t) {
-            if (piece[t] == kNoPiece) continue;
-            const Vec3f at = unpack_position(p, map.boxes[first + piece[t]], t);
+            if (cluster[t] == kNoCluster) continue;
+            const Vec3f at = unpack_position(p, map.boxes[first + cluster[t]], t);
             room.px[t] = at.x;
             room.py[t] = at.y;
             room.pz[t] = at.z;
@@ -146,9 +146,9 @@ const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& 
     for (std::size_t k = 0; k < n; ++k) {
         const PackedBox& box = map.boxes[first + k];
         const auto which = static_cast<std::uint8_t>(k);
-        unpack_axis(p.x.data(), piece.data(), which, box.lo.x, box.step, room.px.data());
-        unpack_axis(p.y.data(), piece.data(), which, box.lo.y, box.step, room.py.data());
-        unpack_axis(p.z.data(), piece.data(), which, box.lo.z, box.step, room.pz.data());
+        unpack_axis(p.x.data(), cluster.data(), which, box.lo.x, box.step, room.px.data());
+        unpack_axis(p.y.data(), cluster.data(), which, box.lo.y, box.step, room.py.data());
+        unpack_axis(p.z.data(), cluster.data(), which, box.lo.z, box.step, room.pz.data());
     }
     return room;
 }
@@ -158,9 +158,9 @@ Vec3f TexelMap::position(std::uint32_t slot, int texel) const {
         const TexelShape& s = shapes[slot];
         return {s.px[texel], s.py[texel], s.pz[texel]};
     }
-    const std::uint8_t k = tiles[slot].piece[texel];
-    if (k == kNoPiece) return Vec3f{0};
-    return unpack_position(packed[slot], boxes[piece_start[slot] + k], texel);
+    const std::uint8_t k = tiles[slot].cluster[texel];
+    if (k == kNoCluster) return Vec3f{0};
+    return unpack_position(packed[slot], boxes[cluster_start[slot] + k], texel);
 }
 
 Vec3f TexelMap::normal(std::uint32_t slot, int texel) const {

@@ -28,11 +28,11 @@ void write_tile(AtlasMap<T>& image, const atlas::TexelMap& map, std::uint32_t sl
                         y0 = tile / map.tiles_per_side * kSide;
     const std::uint32_t columns = std::min<std::uint32_t>(kSide, image.size - x0);
     const std::uint32_t rows = std::min<std::uint32_t>(kSide, image.size - y0);
-    const auto& piece = map.tiles[slot].piece;
+    const auto& cluster = map.tiles[slot].cluster;
     for (std::uint32_t row = 0; row < rows; ++row) {
         T* to = &image.texels[(std::size_t{y0 + row} * image.size + x0) * C];
         for (std::uint32_t column = 0; column < columns; ++column, to += C)
-            if (piece[row * kSide + column] != atlas::kNoPiece)
+            if (cluster[row * kSide + column] != atlas::kNoCluster)
                 std::memcpy(to, out[row * kSide + column].data(), C * sizeof(T));
     }
 }
@@ -69,7 +69,7 @@ void fill_gutter(AtlasMap<T>& image, const atlas::TexelMap& map, std::uint32_t t
                                  x / kSide];
             valid[(y - y0 + radius) * side + x - x0 + radius] =
                 slot != kNone &&
-                map.tiles[slot].piece[y % kSide * kSide + x % kSide] != atlas::kNoPiece;
+                map.tiles[slot].cluster[y % kSide * kSide + x % kSide] != atlas::kNoCluster;
         }
     }
     for (int y = y0; y < std::min(size, y0 + kSide); ++y) {
@@ -195,7 +195,7 @@ AtlasMap<T> compose(std::span<const std::uint32_t> slots, const atlas::TexelMap&
 
 /// Slots whose colour is not the substrate's.
 std::vector<std::uint32_t> coloured_slots(const Stack& stack) {
-    if (!stack.has_ground()) return stack.touched_slots();
+    if (!stack.has_base_colour()) return stack.touched_slots();
     std::vector<std::uint32_t> all(stack.ground->tiles.size());
     std::iota(all.begin(), all.end(), 0u);
     return all;
@@ -212,7 +212,7 @@ float film_on(const Stack& stack, std::uint32_t slot, int texel) {
     return sum;
 }
 
-TileOut<std::uint8_t, 3> srgb8_of(const TileLook& look) {
+TileOut<std::uint8_t, 3> srgb8_of(const TileAppearance& look) {
     TileOut<std::uint8_t, 3> out;
     for (int t = 0; t < kN; ++t)
         for (int b = 0; b < 3; ++b) out[t][b] = code_of_linear(look.colour[b][t]);
@@ -227,7 +227,7 @@ AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& 
     for (int b = 0; b < 3; ++b) background[b] = code_of_linear(substrate.reflectance[b]);
     return compose<std::uint8_t, 3>(
         coloured_slots(stack), map, background, options,
-        [&](std::uint32_t slot) { return srgb8_of(look_of_tile(stack, slot, substrate)); },
+        [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate)); },
         SrgbCode{});
 }
 
@@ -236,7 +236,7 @@ void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t>
                    const ComposeOptions& options) {
     refresh<std::uint8_t, 3>(
         image, slots, map, options,
-        [&](std::uint32_t slot) { return srgb8_of(look_of_tile(stack, slot, substrate)); },
+        [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate)); },
         SrgbCode{});
 }
 
@@ -245,7 +245,7 @@ AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map,
     return compose<float, 3>(
         coloured_slots(stack), map, substrate.reflectance, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(stack, slot, substrate);
+            const TileAppearance look = shade_tile(stack, slot, substrate);
             TileOut<float, 3> out;
             for (int t = 0; t < kN; ++t)
                 for (int b = 0; b < 3; ++b) out[t][b] = look.colour[b][t];
@@ -259,7 +259,7 @@ AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
     return compose<float, 1>(
         stack.touched_slots(), map, {0.0f}, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(stack, slot, Substrate{}, false);
+            const TileAppearance look = shade_tile(stack, slot, Substrate{}, false);
             TileOut<float, 1> out;
             for (int t = 0; t < kN; ++t) out[t][0] = look.height[t];
             return out;
@@ -272,7 +272,7 @@ AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map
     return compose<float, 1>(
         stack.touched_slots(), map, {substrate.roughness}, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(stack, slot, substrate, false);
+            const TileAppearance look = shade_tile(stack, slot, substrate, false);
             TileOut<float, 1> out;
             for (int t = 0; t < kN; ++t) out[t][0] = look.roughness[t];
             return out;
@@ -310,7 +310,7 @@ AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& m
     return compose<std::uint8_t, 3>(
         stack.touched_slots(), map, background, options,
         [&](std::uint32_t slot) {
-            const TileLook look = look_of_tile(stack, slot, substrate, false);
+            const TileAppearance look = shade_tile(stack, slot, substrate, false);
             TileOut<std::uint8_t, 3> out;
             for (int t = 0; t < kN; ++t) {
                 // Ink hides the substrate's metal as it hides its microfacets.

@@ -115,7 +115,7 @@ struct Reflectances {
 };
 
 /// Lays one film over the reflectances `r` of what is below it; with `absorbs_only` its S is 0.
-void lay_film(Reflectances& r, TileLook& look, const TileFilm& film,
+void lay_film(Reflectances& r, TileAppearance& look, const TileFilm& film,
               std::span<const Pigment> pigments, bool absorbs_only = false) {
     alignas(64) Texels k, s, part, thickness{}, rough{}, height{};
     part.fill(film.opacity);
@@ -174,7 +174,7 @@ TileLayer layer_of(const Canvas& canvas, std::uint32_t slot, float opacity, Blen
 }
 
 /// Reflectances and look of the bare substrate, below the boundary.
-void begin_look(Reflectances& r, TileLook& look, const Substrate& substrate) {
+void begin_look(Reflectances& r, TileAppearance& look, const Substrate& substrate) {
     constexpr Interface kInterface{};
     look.height.fill(0);
     look.roughness.fill(substrate.roughness);
@@ -214,7 +214,7 @@ struct GroundColour {
     alignas(64) std::array<Texels, 3> bare, lack;
 };
 
-std::array<Texels, 3> linear_colour(const Ground::Tile& tile) {
+std::array<Texels, 3> linear_colour(const BaseColour::Tile& tile) {
     const std::array<float, 256>& decoded = linear_of_code();
     std::array<Texels, 3> colour;
     for (int c = 0; c < 3; ++c)
@@ -223,7 +223,7 @@ std::array<Texels, 3> linear_colour(const Ground::Tile& tile) {
 }
 
 /// Adds what the bands lack of the ground's colour as far as the ground is seen.
-void make_up(TileLook& look, const GroundColour& ground) {
+void make_up(TileAppearance& look, const GroundColour& ground) {
     alignas(64) Texels colour{}, bare{}, all, own;
     for (int c = 0; c < 3; ++c) {
         add_scaled(colour.data(), look.colour[c].data(), 1);
@@ -237,7 +237,7 @@ void make_up(TileLook& look, const GroundColour& ground) {
 }
 
 /// Reflectances of the ground's colours, below the boundary.
-void lay_ground(Reflectances& r, GroundColour& ground, const Ground::Tile& tile, const Substrate& substrate) {
+void lay_ground(Reflectances& r, GroundColour& ground, const BaseColour::Tile& tile, const Substrate& substrate) {
     constexpr Interface kInterface{};
     alignas(64) const std::array<Texels, 3> colour = linear_colour(tile);
     for (Texels& bare : ground.bare) bare.fill(0);
@@ -254,7 +254,7 @@ void lay_ground(Reflectances& r, GroundColour& ground, const Ground::Tile& tile,
 }
 
 /// Colour and gloss under the boundary of glaze and water.
-void end_look(Reflectances& r, TileLook& look, const Plane* water, const Substrate& substrate) {
+void end_look(Reflectances& r, TileAppearance& look, const Plane* water, const Substrate& substrate) {
     constexpr Interface kInterface{};
     const auto k2 = static_cast<float>(kInterface.k2);
     alignas(64) Texels wet{};
@@ -274,7 +274,7 @@ void end_look(Reflectances& r, TileLook& look, const Plane* water, const Substra
     into_gamut(look.colour[0].data(), look.colour[1].data(), look.colour[2].data());
 }
 
-void lay_layer(Reflectances& r, TileLook& look, const TileLayer& layer) {
+void lay_layer(Reflectances& r, TileAppearance& look, const TileLayer& layer) {
     const std::span<const TileFilm> films(layer.films.data(), layer.n_films);
     const auto lay_films_over = [&](Reflectances& to) {
         for (const TileFilm& film : films)
@@ -304,10 +304,10 @@ void lay_layer(Reflectances& r, TileLook& look, const TileLayer& layer) {
 
 }  // namespace
 
-TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
+TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water,
                        std::span<const Pigment> pigments, const Substrate& substrate,
                        bool with_colour) {
-    TileLook look;
+    TileAppearance look;
     Reflectances r(with_colour);
     begin_look(r, look, substrate);
     for (const TileFilm& film : films)
@@ -316,17 +316,17 @@ TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
     return look;
 }
 
-TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
+TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
                       bool with_colour) {
     const TileLayer layer = layer_of(canvas, slot, 1);
-    return look_of_films(std::span(layer.films.data(), layer.n_films), layer.water, layer.pigments,
+    return shade_films(std::span(layer.films.data(), layer.n_films), layer.water, layer.pigments,
                          substrate, with_colour);
 }
 
-TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
+TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
                       bool with_colour) {
-    TileLook look;
-    const Ground::Tile* tile = with_colour && stack.has_ground() ? &stack.ground->tiles[slot] : nullptr;
+    TileAppearance look;
+    const BaseColour::Tile* tile = with_colour && stack.has_base_colour() ? &stack.ground->tiles[slot] : nullptr;
     Reflectances r(with_colour && (!tile || stack.touched(slot)));
     begin_look(r, look, substrate);
     GroundColour ground;

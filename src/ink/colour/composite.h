@@ -9,14 +9,14 @@
 #include "core/progress.h"
 #include "ink/canvas.h"
 #include "ink/colour/blend.h"
-#include "ink/colour/ground.h"
+#include "ink/colour/base_colour.h"
 #include "ink/colour/srgb.h"
 
 /// From pigment amounts to what is seen.
 namespace tuft::ink {
 
 /// Colour and surface of one tile, planar, texel t = row * 16 + column.
-struct alignas(64) TileLook {
+struct alignas(64) TileAppearance {
     std::array<std::array<float, atlas::kTileTexels>, 3> colour;  ///< linear sRGB, in [0, 1]
     std::array<float, atlas::kTileTexels> height;     ///< micrometres above the substrate
     std::array<float, atlas::kTileTexels> roughness;  ///< glTF perceptual roughness
@@ -49,13 +49,13 @@ struct TileFilm {
 /// roughness goes from the substrate's to the films' own, back to the substrate's under its
 /// glaze, and to that of a wet surface. Agrees with the scalar
 /// formulas to 2e-6; same bits on every instruction set. About 0.3 µs per film and band.
-TileLook look_of_films(std::span<const TileFilm> films, const Plane* water,
+TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water,
                        std::span<const Pigment> pigments, const Substrate& substrate,
                        bool with_colour = true);
 
 /// The look of what the canvas holds in a slot: its films from the soaked one to the open one,
 /// and the liquid on top.
-TileLook look_of_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
+TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
                       bool with_colour = true);
 
 /// Colour of one film of an ink, `film` units thick (0: as a full brush leaves it), over a
@@ -73,12 +73,12 @@ struct LayerView {
 struct Stack {
     std::vector<LayerView> layers;
     /// Colours of the surface below them in place of the substrate's reflectance; null or empty: that.
-    const Ground* ground = nullptr;
+    const BaseColour* ground = nullptr;
 
     Stack(const Canvas& canvas) : layers{{&canvas}} {}
     explicit Stack(std::vector<LayerView> views) : layers(std::move(views)) {}
 
-    bool has_ground() const { return ground && !ground->empty(); }
+    bool has_base_colour() const { return ground && !ground->empty(); }
     bool touched(std::uint32_t slot) const;
     std::vector<std::uint32_t> touched_slots() const;  ///< of any layer, ascending
 };
@@ -97,7 +97,7 @@ struct Stack {
 /// Over a ground the substrate's reflectance is, texel by texel, the smooth one of the ground's
 /// colour. What its bands lack of a deep colour (`bands_of_rgb`) is added in the proportion in
 /// which the ground is seen, so that bare texels have the ground's colour exactly.
-TileLook look_of_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
+TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
                       bool with_colour = true);
 
 /// A map over the whole atlas, rows from v = 0 upwards, channels interleaved.

@@ -28,7 +28,7 @@ inline constexpr double kSameColour = 0.2;
 inline constexpr double kWorthThickness = 0.5;
 
 /// Linear sRGB of one dry film of `ink` on `substrate`, `film` units thick (0: as a full brush
-/// leaves it), in [0, 1]. Equals what `look_of_films` shows for the amounts film · fraction.
+/// leaves it), in [0, 1]. Equals what `shade_films` shows for the amounts film · fraction.
 Rgb colour_on(const Ink& ink, const Substrate& substrate, double film = 0);
 
 struct MatchOptions {

@@ -10,7 +10,7 @@
 
 #include "ink/colour/spectrum.h"
 
-/// Reading and writing preset files; only the room's own sources see this.
+/// Reading and writing preset files; only the module's own sources see this.
 namespace tuft::ink::preset {
 
 /// A table of a preset file, with errors that name file and line.

@@ -2,7 +2,7 @@
 
 #include <array>
 
-/// Colour as the ink room computes it: a few spectral bands inside, linear sRGB outside.
+/// Colour as the ink module computes it: a few spectral bands inside, linear sRGB outside.
 namespace tuft::ink {
 
 /// Chosen by `tests/ink/fit_bands.cpp`: against sums over 41 wavelengths the colours of 20,000

@@ -135,7 +135,7 @@ Amounts blot(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks&
         for (const std::uint32_t slot : slots)
             for (int t = 0; t < kN && canvas.touched(slot); ++t)
                 if (const atlas::TexelRef ref{slot, static_cast<std::uint8_t>(t)};
-                    map.tiles[slot].piece[t] != atlas::kNoPiece && (!free || free(slot, t)) && blotting.goes(ref))
+                    map.tiles[slot].cluster[t] != atlas::kNoCluster && (!free || free(slot, t)) && blotting.goes(ref))
                     rim.push_back(ref);
         for (std::size_t i = 0; i < rim.size(); ++i) {
             const auto [slot, texel] = rim[i];

@@ -58,7 +58,7 @@ TUFT_CLONES double store(float* __restrict w, float* __restrict film, const floa
 
 }  // namespace
 
-NodeMixes mixes_within(const Reservoir& tuft, const NodeTouch& nodes, double target, double area) {
+NodeMixes mixes_within(const Reservoir& tuft, const NodeContact& nodes, double target, double area) {
     NodeMixes mixes = mixes_at(tuft, nodes);
     for (int p = 0; p < kMaxPigments; ++p) {
         const double most = static_cast<double>(*std::max_element(mixes[p].begin(), mixes[p].end()));
@@ -73,10 +73,10 @@ NodeMixes mixes_within(const Reservoir& tuft, const NodeTouch& nodes, double tar
     return mixes;
 }
 
-void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const Tents& tents,
+void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const HatBasis& hats,
                    std::span<const float, kN> area, double ds, const DepositParams& params, const NodeMixes& mixes,
                    NodeContents& given) {
-    if (tents.count == 0 || !(params.target > 0) || !(ds > 0)) return;
+    if (hats.count == 0 || !(params.target > 0) || !(ds > 0)) return;
     alignas(64) Texels goal, all{}, sum{}, part, film;
     alignas(64) std::array<Texels, kMaxPigments> mix, dw;
     film_goals(goal, coverage, params);
@@ -85,22 +85,22 @@ void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, kN
     for (int p = 0; p < kMaxPigments; ++p) {
         const Plane* w = canvas.plane(slot, p);
         if (w) add(all.data(), w->data());
-        for (int k = 0; k < tents.count; ++k) used[p] = used[p] || mixes[p][tents.node[k]] > 0;
+        for (int k = 0; k < hats.count; ++k) used[p] = used[p] || mixes[p][hats.node[k]] > 0;
         if (!used[p]) continue;
-        interpolate(mix[p], tents, mixes[p]);
+        interpolate(mix[p], hats, mixes[p]);
         static constexpr Texels kNone{};
         increments(dw[p].data(), sum.data(), mix[p].data(), goal.data(), w ? w->data() : kNone.data(), rate);
     }
     if (std::none_of(sum.begin(), sum.end(), [](float v) { return v > 0; })) return;
     within_room(part.data(), sum.data(), all.data(), params.capacity);
     std::array<double, kNodes> shares;
-    MixtureGiven mixture(given, mixes, tents);
+    MixtureGiven mixture(given, mixes, hats);
     for (int p = 0; p < kMaxPigments; ++p) {
         if (!used[p]) continue;
         const double stored =
             store(canvas.touch(slot, p).data(), film.data(), dw[p].data(), part.data(), mix[p].data(), area.data());
-        tent_sums(shares, tents, film.data(), area);
-        for (int k = 0; k < tents.count; ++k) shares[k] *= static_cast<double>(mixes[p][tents.node[k]]);
+        integrate_hats(shares, hats, film.data(), area);
+        for (int k = 0; k < hats.count; ++k) shares[k] *= static_cast<double>(mixes[p][hats.node[k]]);
         mixture.pigment(p, stored, shares);
     }
     mixture.water();

@@ -220,7 +220,7 @@ double rinse(Reservoir& tuft) {
     return left;
 }
 
-Content take(Reservoir& tuft, double amount, const Touch& touch) {
+Content take(Reservoir& tuft, double amount, const ContactCells& touch) {
     Content taken{};
     const double left = tuft.remaining();
     if (!(left > 0) || !(amount > 0)) return taken;
@@ -250,7 +250,7 @@ Content take(Reservoir& tuft, double amount, const Touch& touch) {
     return taken;
 }
 
-double room_left(const Reservoir& tuft, const Touch& touch) {
+double room_left(const Reservoir& tuft, const ContactCells& touch) {
     double sum = 0;
     each_touched(tuft, touch, [&](std::size_t i, double) {
         sum += std::max(0.0, tuft.room[i] - sum_of(tuft.content[i]));
@@ -258,7 +258,7 @@ double room_left(const Reservoir& tuft, const Touch& touch) {
     return sum;
 }
 
-void absorb(Reservoir& tuft, const Content& lifted, const Touch& touch) {
+void absorb(Reservoir& tuft, const Content& lifted, const ContactCells& touch) {
     const double amount = sum_of(lifted);
     if (!(amount > 0)) return;
     double lacking = amount;
@@ -282,8 +282,8 @@ void absorb(Reservoir& tuft, const Content& lifted, const Touch& touch) {
     }
 }
 
-Mix mix_at(const Reservoir& tuft, const Touch& touch) { return mix_over(tuft, touch); }
-double saturation_at(const Reservoir& tuft, const Touch& touch) { return saturation_over(tuft, touch); }
+Mix mix_at(const Reservoir& tuft, const ContactCells& touch) { return mix_over(tuft, touch); }
+double saturation_at(const Reservoir& tuft, const ContactCells& touch) { return saturation_over(tuft, touch); }
 
 void flow(Reservoir& tuft, double dt, FlowTo to) {
     if (tuft.links.empty() || !(dt > 0)) return;
@@ -337,7 +337,7 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
     const double asked = ink.film * contact.width;
     double target = ink.film * std::min(1.0, 0.85 + 0.3 * k);
     if (asked > 0) target *= std::max(-std::expm1(-offered / asked), kThread * contact.by_hair);
-    if (contact.area > 0) target = std::min(target, std::max(0.0, left - contact.owed) / contact.area);
+    if (contact.area > 0) target = std::min(target, std::max(0.0, left - contact.pending) / contact.area);
     out.target = static_cast<float>(target);
     return out;
 }

@@ -57,7 +57,7 @@ struct Reservoir {
 };
 
 /// Which cells touch the surface: parts that sum to one, [bundles * cells]; empty: all alike.
-using Touch = std::vector<float>;
+using ContactCells = std::vector<float>;
 
 /// An empty tuft that holds `millilitres`. Throws `Error` for a layout that is none.
 Reservoir make_reservoir(double millilitres, ReservoirLayout layout = {});
@@ -92,19 +92,19 @@ double rinse(Reservoir& tuft);
 
 /// Takes `amount` (film·m², at most what is left) from the cells that touch, of each its own
 /// mixture; what they lack comes from all others in proportion. Returns what was taken, by plane.
-Reservoir::Content take(Reservoir& tuft, double amount, const Touch& touch = {});
+Reservoir::Content take(Reservoir& tuft, double amount, const ContactCells& touch = {});
 
 /// Room left in the cells that touch, film·m²: what they may take up from the surface.
-double room_left(const Reservoir& tuft, const Touch& touch = {});
+double room_left(const Reservoir& tuft, const ContactCells& touch = {});
 
 /// Takes up `lifted` (film·m² by plane) from the surface into the cells that touch; what they
 /// have no room for goes on to the others, in proportion to theirs. Nothing is lost: beyond the capacity the touching
 /// cells hold it all the same, so ask `room_left` before.
-void absorb(Reservoir& tuft, const Reservoir::Content& lifted, const Touch& touch = {});
+void absorb(Reservoir& tuft, const Reservoir::Content& lifted, const ContactCells& touch = {});
 
 /// Mixture and saturation (0–1) that the surface meets: means over the touching cells.
-Mix mix_at(const Reservoir& tuft, const Touch& touch);
-double saturation_at(const Reservoir& tuft, const Touch& touch);
+Mix mix_at(const Reservoir& tuft, const ContactCells& touch);
+double saturation_at(const Reservoir& tuft, const ContactCells& touch);
 
 /// How far `flow` goes.
 enum class FlowTo { whole_step, now };
@@ -148,9 +148,9 @@ struct StampContact {
     double moment_factor = 1;  ///< k = |M| / M_max of the tuft, 0–1
     double width = 0;          ///< metres across the motion, gaps between hairs left out
     double area = 0;           ///< m² of the contact patch
-    double owed = 0;           ///< film·m² of what the tuft still holds that is laid down already
+    double pending = 0;           ///< film·m² of what the tuft still holds that is laid down already
     double by_hair = 0;        ///< 0–1: how much single hairs touch, which leave a film of their own thickness or none
-    std::span<const float> touch = {};  ///< as `Touch`; empty: the whole tuft alike
+    std::span<const float> touch = {};  ///< as `ContactCells`; empty: the whole tuft alike
 };
 
 /// Film the stamp tends to. The tuft offers η k' Z / l ink per metre of travel (l =

@@ -16,7 +16,7 @@ constexpr double kHalfFull = 0.5;  // saturation from which hair is wet outside 
 constexpr double kSkinTime = 0.3;  // seconds
 constexpr double kExchangeLength = 4e-3, kExchangeTime = 0.5;  // metres, seconds
 constexpr double kGentle = 0.3;       // of the exchange under firm pressure
-constexpr double kMostGiven = 0.999;  // of the skin: rounding may not take more than there is
+constexpr double kMostGiven = 0.999;  // of the liquid: rounding may not take more than there is
 
 using Texels = std::array<float, kN>;
 
@@ -58,7 +58,7 @@ TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage,
         const float n = smaller(lack + coverage[t] * p.pour, film[t] * touched);
         const float part = coverage[t] * exchange[t];
         const float x = part * smaller(w[t], film[t] - n);
-        const float over = positive(w[t] - larger(goal[t], p.deposit.target)) * part * p.thirst;
+        const float over = positive(w[t] - larger(goal[t], p.deposit.target)) * part * p.uptake;
         const float lift = smaller(over, smaller(p.room, w[t] - x));
         out.down[t] = n + x;
         out.up[t] = x + lift;
@@ -75,7 +75,7 @@ TUFT_CLONES void lifted_part(float* __restrict up, const float* __restrict total
     for (int t = 0; t < kN; ++t) up[t] = total[t] > 0 ? up[t] / larger(total[t], pigments[t]) : 0;
 }
 
-/// down becomes the part that leaves of what the skin can give.
+/// down becomes the part that leaves of what the liquid can give.
 TUFT_CLONES void given_part(float* __restrict part, const float* __restrict down,
                             const float* __restrict film) {
     for (int t = 0; t < kN; ++t) part[t] = film[t] > 0 ? down[t] / film[t] : 0;
@@ -132,34 +132,34 @@ void ask_for(const Plane* plane) {
 /// What a tile's nodes gave and took, before it is made to agree with what was stored.
 struct Booked {
     std::array<double, kNodes> part{};  ///< m² that gave all that lay over it
-    /// By the surface's planes, of each the tents; water: all liquid.
+    /// By the surface's planes, of each the hats; water: all liquid.
     std::array<std::array<double, kNodes>, Reservoir::kPlanes> taken{};
     Reservoir::Content stored{};  ///< likewise, given less taken
 };
 
 /// Deals the stored change of each plane out to the nodes: what they took, and the rest by what
 /// lies over them, where the sums differ by the rounding of the texels.
-void settle(const Booked& b, const Tents& tents, const TransferParams& params,
+void settle(const Booked& b, const HatBasis& hats, const TransferParams& params,
             NodeContents& given) {
     double all = 0;
-    for (int k = 0; k < tents.count; ++k) all += b.part[k] + b.taken[kWater][k];
+    for (int k = 0; k < hats.count; ++k) all += b.part[k] + b.taken[kWater][k];
     Reservoir::Content stored = b.stored;
     for (int p = 0; p < kMaxPigments; ++p)
         stored[kWater] -= stored[p];  // the liquid counts its pigments
     for (int p = 0; p < Reservoir::kPlanes; ++p) {
         std::array<double, kNodes> net;
         double sum = 0;
-        for (int k = 0; k < tents.count; ++k) {
+        for (int k = 0; k < hats.count; ++k) {
             double taken = b.taken[p][k];
             for (int q = 0; q < kMaxPigments && p == kWater; ++q) taken -= b.taken[q][k];
-            net[k] = b.part[k] * static_cast<double>(params.film[p][tents.node[k]]) - taken;
+            net[k] = b.part[k] * static_cast<double>(params.film[p][hats.node[k]]) - taken;
             sum += net[k];
         }
         const double left = stored[p] - sum;
-        for (int k = 0; k < tents.count; ++k) {
+        for (int k = 0; k < hats.count; ++k) {
             const double share =
-                all > 0 ? (b.part[k] + b.taken[kWater][k]) / all : 1.0 / tents.count;
-            given[tents.node[k]][p] += net[k] + left * share;
+                all > 0 ? (b.part[k] + b.taken[kWater][k]) / all : 1.0 / hats.count;
+            given[hats.node[k]][p] += net[k] + left * share;
         }
     }
 }
@@ -170,12 +170,12 @@ namespace {
 
 /// Where the hair has left the surface, what was on it spreads among the rest in line with it,
 /// which lacks some as it comes down: one film wets it all. What nobody lacks goes `back`.
-void pass_on(Skin& skin, NodeContents& back, const std::array<double, kNodes>& want, int across) {
+void pass_on(SurfaceLiquid& liquid, NodeContents& back, const std::array<double, kNodes>& want, int across) {
     constexpr double kSpare = 1.25;  // of what a node wants
     std::array<double, kAlong> lack{}, over{};
     double lacking = 0, loose = 0;
     for (int i = 0; i < kAlong; ++i) {
-        const double volume = skin.volume(i * kAcross + across), most = want[i * kAcross + across];
+        const double volume = liquid.volume(i * kAcross + across), most = want[i * kAcross + across];
         lacking += lack[i] = std::max(0.0, most - volume);
         loose += over[i] = std::max(0.0, volume - kSpare * most);
     }
@@ -184,17 +184,17 @@ void pass_on(Skin& skin, NodeContents& back, const std::array<double, kNodes>& w
     for (int i = 0; i < kAlong; ++i) {
         const int node = i * kAcross + across;
         if (!(over[i] > 0)) continue;
-        const double out = over[i] / skin.volume(node), stays = std::min(1.0, lacking / loose);
+        const double out = over[i] / liquid.volume(node), stays = std::min(1.0, lacking / loose);
         for (int p = 0; p < Reservoir::kPlanes; ++p) {
-            const double v = out * skin.content[node][p];
-            skin.content[node][p] -= v;
+            const double v = out * liquid.content[node][p];
+            liquid.content[node][p] -= v;
             sum[p] += stays * v;
             back[node][p] += v - stays * v;
         }
     }
     for (int i = 0; i < kAlong && lacking > 0; ++i)
         for (int p = 0; p < Reservoir::kPlanes; ++p)
-            skin.content[i * kAcross + across][p] += lack[i] / lacking * sum[p];
+            liquid.content[i * kAcross + across][p] += lack[i] / lacking * sum[p];
 }
 
 }  // namespace
@@ -204,23 +204,23 @@ std::array<double, kAlong> firmness(const NodeAreas& areas) {
     double widest = 0;
     for (int i = 0; i < kAlong; ++i) {
         for (int j = 0; j < kAcross; ++j) width[i] += areas[i * kAcross + j];
-        if (i == 0 || i == kAlong - 1) width[i] *= 2;  // of an outer row's tent half is there
+        if (i == 0 || i == kAlong - 1) width[i] *= 2;  // of an outer row's hat half is there
         widest = std::max(widest, width[i]);
     }
     for (double& w : width) w = widest > 0 ? w / widest : 1;
     return width;
 }
 
-double Skin::volume(int node) const {
+double SurfaceLiquid::volume(int node) const {
     return sum_of(content[node]);
 }
 
-void withdraw(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes) {
-    absorb(tuft, skin.content, nodes, touch);
-    skin.content = {};
+void withdraw(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, const NodeContact& nodes) {
+    absorb(tuft, liquid.content, nodes, touch);
+    liquid.content = {};
 }
 
-void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& nodes,
+void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, const NodeContact& nodes,
              const NodeAreas& areas, double dt, double pour) {
     const double filled = std::min(1.0, saturation_at(tuft, touch) / kHalfFull),
                  wet = filled * filled;
@@ -228,17 +228,17 @@ void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& n
     std::array<double, kNodes> want, lack;
     NodeContents back{};
     for (int node = 0; node < kNodes; ++node) want[node] = (kSkinFilm * wet + pour) * areas[node];
-    for (int across = 0; across < kAcross; ++across) pass_on(skin, back, want, across);
+    for (int across = 0; across < kAcross; ++across) pass_on(liquid, back, want, across);
     for (int node = 0; node < kNodes; ++node)
         for (int p = 0; p < Reservoir::kPlanes; ++p) {
-            const double v = part * skin.content[node][p];
-            skin.content[node][p] -= v;
+            const double v = part * liquid.content[node][p];
+            liquid.content[node][p] -= v;
             back[node][p] += v;
         }
     absorb(tuft, back, nodes, touch);
     double all = 0;
     for (int node = 0; node < kNodes; ++node) {
-        lack[node] = std::max(0.0, want[node] - skin.volume(node));
+        lack[node] = std::max(0.0, want[node] - liquid.volume(node));
         all += lack[node];
     }
     if (!(all > 0)) return;
@@ -246,10 +246,10 @@ void refresh(Skin& skin, Reservoir& tuft, const Touch& touch, const NodeTouch& n
     for (double& amount : lack) amount *= within;
     const NodeContents fresh = draw(tuft, lack, nodes, touch, filled >= 1 || pour > 0);
     for (int node = 0; node < kNodes; ++node)
-        for (int p = 0; p < Reservoir::kPlanes; ++p) skin.content[node][p] += fresh[node][p];
+        for (int p = 0; p < Reservoir::kPlanes; ++p) liquid.content[node][p] += fresh[node][p];
 }
 
-TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const Touch& touch,
+TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuft, const ContactCells& touch,
                                const NodeAreas& areas, const DepositParams& deposit, double ds,
                                double dt, double stress) {
     TransferParams out;
@@ -260,7 +260,7 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
     const std::array<double, kAlong> firm = firmness(areas);
     for (int node = 0; node < kNodes; ++node)
         out.exchange[node] = static_cast<float>(-std::expm1(-most * firm[node / kAcross]));
-    out.thirst = static_cast<float>(std::clamp(1 - saturation_at(tuft, touch), 0.0, 1.0));
+    out.uptake = static_cast<float>(std::clamp(1 - saturation_at(tuft, touch), 0.0, 1.0));
     double area = 0;
     for (const double a : areas) area += a;
     out.room = static_cast<float>(area > 0 ? room_left(tuft, touch) / area : 0);
@@ -268,26 +268,26 @@ TransferParams transfer_params(const Skin& skin, const Reservoir& tuft, const To
         if (!(areas[node] > 0)) continue;
         for (int p = 0; p < Reservoir::kPlanes; ++p)
             out.film[p][node] =
-                static_cast<float>(kMostGiven * std::max(0.0, skin.content[node][p]) / areas[node]);
+                static_cast<float>(kMostGiven * std::max(0.0, liquid.content[node][p]) / areas[node]);
     }
     return out;
 }
 
 void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
-              const TexelPlaces& places, const Tents& tents, std::span<const float, kN> area,
+              const TexelPlaces& places, const HatBasis& hats, std::span<const float, kN> area,
               double ds, const TransferParams& params, NodeContents& given) {
-    if (tents.count == 0) return;
+    if (hats.count == 0) return;
     ask_for(canvas.liquid(slot, Liquid::film));
     ask_for(canvas.liquid(slot, Liquid::pores));
     for (int p = 0; p < kMaxPigments; ++p) ask_for(canvas.plane(slot, p));
     std::array<float, kNodes> over{};  // film units of all planes
-    for (int k = 0; k < tents.count; ++k)
+    for (int k = 0; k < hats.count; ++k)
         for (int p = 0; p < Reservoir::kPlanes; ++p)
-            over[tents.node[k]] += params.film[p][tents.node[k]];
+            over[hats.node[k]] += params.film[p][hats.node[k]];
     alignas(64) Texels film, exchange, goal, total, pigments{}, part, up;
-    interpolate(film, tents, over);
-    interpolate(exchange, tents, params.exchange);
-    comb_at(part, places, params.rub);
+    interpolate(film, hats, over);
+    interpolate(exchange, hats, params.exchange);
+    furrow_depth_at(part, places, params.rub);
     scale(exchange.data(), part.data());
     film_goals(goal, coverage, params.deposit);
     Plane& w = canvas.touch_liquid(slot, Liquid::film);
@@ -300,23 +300,23 @@ void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
             params, rate);
     given_part(part.data(), v.down.data(), film.data());
     Booked booked;
-    tent_sums(booked.part, tents, part.data(), area);
-    tent_sums(booked.taken[kWater], tents, v.up.data(), area);
+    integrate_hats(booked.part, hats, part.data(), area);
+    integrate_hats(booked.taken[kWater], hats, v.up.data(), area);
     booked.stored[kWater] = move_liquid(w.data(), v.up.data(), v.down.data(), area.data());
     for (int p = 0; p < kMaxPigments; ++p)
         if (const Plane* here = canvas.plane(slot, p)) add(pigments.data(), here->data());
     lifted_part(v.up.data(), total.data(), pigments.data());
     for (int p = 0; p < kMaxPigments; ++p) {
         float most = 0;
-        for (int k = 0; k < tents.count; ++k) most = std::max(most, params.film[p][tents.node[k]]);
+        for (int k = 0; k < hats.count; ++k) most = std::max(most, params.film[p][hats.node[k]]);
         const bool there = canvas.plane(slot, p) != nullptr;
         if (!(most > 0) && !there) continue;
-        interpolate(film, tents, params.film[p]);
+        interpolate(film, hats, params.film[p]);
         booked.stored[p] = move_pigment(canvas.touch(slot, p).data(), up.data(), v.up.data(),
                                         part.data(), film.data(), area.data());
-        if (there) tent_sums(booked.taken[p], tents, up.data(), area);
+        if (there) integrate_hats(booked.taken[p], hats, up.data(), area);
     }
-    settle(booked, tents, params, given);
+    settle(booked, hats, params, given);
 }
 
 }  // namespace tuft::ink

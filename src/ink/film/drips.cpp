@@ -105,7 +105,7 @@ void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radi
     seen_slots_.clear();
 }
 
-/// By the edge of a tape.
+/// By the edge of a stencil edge.
 bool Drips::apart(const atlas::TexelRef& a, const atlas::TexelRef& b) const {
     return free_ && (free_(a.slot, a.texel) == 0) != (free_(b.slot, b.texel) == 0);
 }
@@ -115,7 +115,7 @@ atlas::TexelRef Drips::beside(const atlas::TexelRef& ref, int column, int row) c
     constexpr int n = atlas::kTile;
     if (column >= 0 && column < n && row >= 0 && row < n) {
         const auto texel = static_cast<std::uint8_t>(row * n + column);
-        return map_.tiles[ref.slot].piece[texel] == atlas::kNoPiece ? atlas::TexelRef{} : atlas::TexelRef{ref.slot, texel};
+        return map_.tiles[ref.slot].cluster[texel] == atlas::kNoCluster ? atlas::TexelRef{} : atlas::TexelRef{ref.slot, texel};
     }
     const std::uint32_t tile = map_.tile_of_slot[ref.slot];
     return atlas::texel_ref(map_, std::int64_t{tile % map_.tiles_per_side} * n + column,
@@ -153,7 +153,7 @@ class Drips::Run {
         const double grain = 1 + kGrainPart * (seed.grain - 1), radius = critical(bead, grain);
         const double starts = kStart * amount_of(kAtRest * radius, p_.bead_angle);
         d_.gather(bead.place, bead.at, kCatchment * reach);
-        const Ground ground = ground_of(bead, reach);
+        const BaseColour ground = target_model(bead, reach);
         const auto [inside, round] = amounts(bead, ground, reach);
         const double least = is_running(bead, ground, inside) ? std::sqrt(kMoving) : kAtRest, runs = amount_of(least * radius, p_.bead_angle);
         if (inside < runs && inside + round < starts) return;
@@ -241,13 +241,13 @@ class Drips::Run {
     }
 
     /// The film a bead stands on, from what lies round it: `hold` at most.
-    struct Ground {
+    struct BaseColour {
         double mean = 0;
         Vec3 slope{0};
         Trail trail;
     };
     /// `gather` has been as far as kRing.
-    Ground ground_of(const Bead& bead, double radius) const {
+    BaseColour target_model(const Bead& bead, double radius) const {
         double sum = 0, area = 0, square = 0;
         Vec3 moment{0}, middle{0};
         for (const Near& n : d_.disc_) {
@@ -266,11 +266,11 @@ class Drips::Run {
         return {mean, (moment - mean * middle) * (2 / square), trail};  // least squares on a full ring
     }
     /// What it leaves there when it goes: the ground, or its trail.
-    double rest(const Bead& bead, const Ground& ground, const Near& n) const {
+    double rest(const Bead& bead, const BaseColour& ground, const Near& n) const {
         return std::max(std::clamp(ground.mean + glm::dot(ground.slope, n.at - bead.at), 0.0, p_.hold), trail(n, ground.trail));
     }
     /// Above the ground within `radius`, and above hold round it.
-    std::pair<double, double> amounts(const Bead& bead, const Ground& ground, double radius) const {
+    std::pair<double, double> amounts(const Bead& bead, const BaseColour& ground, double radius) const {
         double inside = 0, round = 0;
         for (const Near& n : d_.disc_) {
             const auto w = static_cast<double>(liquid(n.ref));
@@ -281,11 +281,11 @@ class Drips::Run {
     }
     /// Whether what lies there was laid down as a cap, which one at rest is not any more, and hangs on a trail: a dot that
     /// was put on dry surface is held by the line all round it. `gather` has been there.
-    bool is_running(const Bead& bead, const Ground& ground, double amount) const {
+    bool is_running(const Bead& bead, const BaseColour& ground, double amount) const {
         const double radius = radius_of(amount, p_.bead_angle);
         return is_full(bead, ground, radius) && is_wet_behind(bead, radius);
     }
-    bool is_full(const Bead& bead, const Ground& ground, double radius) const {
+    bool is_full(const Bead& bead, const BaseColour& ground, double radius) const {
         const double cap = 0.5 * p_.bead_angle * radius / kFilmUnit;
         double sum = 0, area = 0;
         for (const Near& n : d_.disc_)
@@ -307,7 +307,7 @@ class Drips::Run {
         return wet > 0.5 * kThinnest * p_.trail * area;
     }
     /// All of the one and `part` of the other, where it is less than `thick`, go into the bead.
-    void draw_in(Bead& bead, const Ground& ground, double radius, double part, double thick) {
+    void draw_in(Bead& bead, const BaseColour& ground, double radius, double part, double thick) {
         for (const Near& n : d_.disc_) {
             const auto w = static_cast<double>(liquid(n.ref));
             if (n.distance < radius) take(bead, n, rest(bead, ground, n));
@@ -324,7 +324,7 @@ class Drips::Run {
             Bead other{.place = thickest->ref, .at = thickest->at};
             for (int i = 0; i < kShifts && centre(other, radius); ++i) {}
             d_.gather(other.place, other.at, kRing * radius);
-            const Ground ground = ground_of(other, kRim * radius);
+            const BaseColour ground = target_model(other, kRim * radius);
             for (const Near& n : d_.disc_)
                 if (n.distance < kRim * radius) take(bead, n, rest(other, ground, n));
             d_.gather(bead.place, bead.at, radius);

@@ -218,7 +218,7 @@ struct WetFilm::State : TileList {
             lanes.grain[1][lane] = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
             lanes.z[0][lane] = at(sources[index].relief, l.texel);
             lanes.z[1][lane] = at(sources[other].relief, l.other_texel);
-            crossing.add(l, tile.link_rooms[i], {here[0], there[0]}, {here[1], there[1]});
+            crossing.add(l, tile.link_areas[i], {here[0], there[0]}, {here[1], there[1]});
         }
         wet::seam_fluxes(std::span(crossing.lanes).first((crossing.size + kSide - 1) / kSide), step);
         for (std::size_t i = 0; i < crossing.size; ++i) {

@@ -129,7 +129,7 @@ void take_borders(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t
     }
 }
 
-Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const Ground& ground) {
+Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const BaseColour& ground) {
     Neighbourhood n;
     const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
     const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
@@ -175,7 +175,7 @@ std::uint16_t packed(double g) {
     return static_cast<std::uint16_t>(std::min(std::round(g / static_cast<double>(kConductanceUnit)), 65535.0));
 }
 
-/// Whether a block of 4 × 4 texels is all of one piece, away from seams and tape.
+/// Whether a block of 4 × 4 texels is all of one cluster, away from seams and stencil edge.
 bool whole(const Neighbourhood& n, int block, double least_area) {
     for (int i = 0; i < kBlock * kBlock; ++i) {
         const Spot& s = n.at(block % kBlocks * kBlock + i % kBlock, block / kBlocks * kBlock + i / kBlock);
@@ -209,7 +209,7 @@ double passing(std::uint8_t free_a, std::uint8_t free_b) {
     return low < kSliver && high - low > kSliver ? 0 : low / 255.0;
 }
 
-Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const Ground& ground) {
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const BaseColour& ground) {
     const Neighbourhood n = gather(map, seams, slot, ground);
     const double mean = map.texel_size * map.texel_size;
     Geometry g;

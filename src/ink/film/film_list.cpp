@@ -54,7 +54,7 @@ TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
     for (const atlas::SeamLink& l : seams.links) weights_.push_back(l.weight);
     taps_ = seams.taps;
     find_near();
-    find_rooms();
+    find_link_areas();
     find_beside();
     limit_links();
 }
@@ -107,7 +107,7 @@ void TileList::find_near() {
 }
 
 /// Of each texel its links share the area; a link takes the smaller of its ends' parts, so that both hold the same.
-void TileList::find_rooms() {
+void TileList::find_link_areas() {
     const double mean = map.texel_size * map.texel_size;
     std::vector<std::array<std::uint16_t, kTexels>> n_links(map.n_slots());
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
@@ -115,10 +115,10 @@ void TileList::find_rooms() {
     const auto part = [&](std::uint32_t slot, std::uint8_t texel) {
         return static_cast<double>(map.tiles[slot].area[texel]) / (mean * n_links[slot][texel]);
     };
-    link_rooms_.clear();
+    link_areas_.clear();
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (const atlas::SeamLink& l : links_of(slot))
-            link_rooms_.push_back(static_cast<float>(std::min(part(slot, l.texel), part(l.other_slot, l.other_texel))));
+            link_areas_.push_back(static_cast<float>(std::min(part(slot, l.texel), part(l.other_slot, l.other_texel))));
 }
 
 void TileList::set_unevenness(double unevenness) {
@@ -151,7 +151,7 @@ void TileList::look_anew() {
     close_taps();
 }
 
-/// Where a tape lies on a tap, nothing slopes that way: the texel itself takes the tap's place.
+/// Where a stencil edge lies on a tap, nothing slopes that way: the texel itself takes the tap's place.
 void TileList::close_taps() {
     seams.taps = taps_;
     if (!ground_.free) return;
@@ -247,7 +247,7 @@ void TileList::spread() {
         next[i].slot = wanted[i];
         next[i].links = links_of(wanted[i]);
         next[i].link_others = std::span<const std::uint16_t>(link_near_).subspan(seams.start[wanted[i]], next[i].links.size());
-        next[i].link_rooms = std::span<const float>(link_rooms_).subspan(seams.start[wanted[i]], next[i].links.size());
+        next[i].link_areas = std::span<const float>(link_areas_).subspan(seams.start[wanted[i]], next[i].links.size());
         next[i].taps = std::span(seams.taps).subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
         place_[wanted[i]] = static_cast<std::uint32_t>(i);
         mark_[wanted[i]] = 0;

@@ -44,7 +44,7 @@ struct Active {
     std::span<const Beyond> others;         ///< ascending slots
     std::span<const atlas::SeamLink> links;
     std::span<const std::uint16_t> link_others;  ///< of the links: places in `others`
-    std::span<const float> link_rooms;      ///< of the links: area over the mean that each may empty
+    std::span<const float> link_areas;      ///< of the links: area over the mean that each may empty
     std::span<const atlas::SeamTap> taps;
     Outcome outcome;
     float stiffness = 0;
@@ -79,9 +79,9 @@ struct TileList {
 
     /// For surfaces that let liquid flow more easily here than there (`ease_of_flow`). Costs when it changes.
     void set_unevenness(double unevenness);
-    /// The same for what is free of tape.
+    /// The same for what is free of stencil edge.
     void set_free(WetFilm::FreeFn free);
-    const Ground& ground() const { return ground_; }
+    const BaseColour& ground() const { return ground_; }
     /// Whether a tile has texels at a seam, or blocks of 4 × 4 texels beside some of the next
     /// tile's.
     bool beside_seam(std::uint32_t slot) const { return beside_[slot]; }
@@ -94,7 +94,7 @@ struct TileList {
     /// Whether other tiles may be reached than when it was last asked: whether `spread` would
     /// change the list.
     bool changed();
-    /// Looks at slots that something else wrote to, and takes them into the list.
+    /// Appearance at slots that something else wrote to, and takes them into the list.
     void look_at(const Canvas& canvas, std::span<const std::uint32_t> slots);
     /// Where beads may start: of each cube of a grain's length the place that gives way first, the
     /// lowest first, so that it does not matter how the surface lies in the atlas.
@@ -112,11 +112,11 @@ struct TileList {
   private:
     std::vector<float> weights_;        ///< of the links as they came
     std::vector<atlas::SeamTap> taps_;  ///< as they came
-    Ground ground_;
+    BaseColour ground_;
     std::vector<std::uint32_t> near_start_;  ///< [n_slots + 1]
     std::vector<Beyond> near_;          ///< over seams, by slot; places unknown
     std::vector<std::uint16_t> link_near_;   ///< of the links: which of the slot's `near_`
-    std::vector<float> link_rooms_;     ///< of the links
+    std::vector<float> link_areas_;     ///< of the links
     std::vector<Beyond> others_;        ///< of the list
     std::vector<std::uint8_t> beside_;  ///< [n_slots]
     std::vector<std::uint8_t> wanted_;  ///< of the list: scratch
@@ -126,7 +126,7 @@ struct TileList {
     void find_near();
     void look_anew();
     void limit_links();
-    void find_rooms();
+    void find_link_areas();
     void find_beside();
     void close_taps();
     std::span<const atlas::SeamLink> links_of(std::uint32_t slot) const;

@@ -58,19 +58,19 @@ struct alignas(64) Geometry {
     Field grain{};                         ///< pin of the place, over the mean
     /// Of texels and those round them, over kRoomUnit: area over the mean, less beside seams, where links take their part.
     std::array<std::uint16_t, kField> room{};
-    std::uint16_t blocks = 0;              ///< bits: blocks of 4 × 4 texels, row by row, of one piece, away from seams
+    std::uint16_t blocks = 0;              ///< bits: blocks of 4 × 4 texels, row by row, of one cluster, away from seams
 
     static constexpr int right_of(int column, int row) { return field_at(column, row) - kRow; }
     static constexpr int corner_of(int column, int row) { return field_at(column, row); }
 };
 /// What lets liquid flow less or more easily, from place to place.
-struct Ground {
+struct BaseColour {
     double unevenness = 0;
     WetFilm::FreeFn free;  ///< empty: all
 };
-/// Of what flows between two texels that are all free: so much; 0 over the edge of a tape.
+/// Of what flows between two texels that are all free: so much; 0 over the edge of a stencil edge.
 double passing(std::uint8_t free_a, std::uint8_t free_b);
-Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const Ground& ground);
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const BaseColour& ground);
 /// How easily liquid flows at a place, over the mean: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to
 /// 2.4 mm, −2 to 1.5. On a plane the flow in the large is that of the geometric mean, 1 (Dykhne 1971).
 double ease_of_flow(const Vec3& position, double unevenness);
@@ -93,7 +93,7 @@ struct Step {
     float flow = 0;        ///< D dt / A per film unit
     float levelling = 0;   ///< L dt / A per film unit above hold
     float limit = 0;       ///< of flow × thickness, so that nothing gets negative
-    float most = 0;        ///< of flow × thickness × conductance over the room at the face, instead; 0: `limit` holds
+    float most = 0;        ///< of flow × thickness × conductance over the module at the face, instead; 0: `limit` holds
     float most_of_link = 0;  ///< the same for links
     float threshold = 0, pin = 0;
     float mixing = 0;      ///< D_p dt / A

@@ -48,19 +48,19 @@ struct Ahead {
     struct Piece {
         const char *at, *end;
     };
-    std::array<Piece, 256> pieces;
+    std::array<Piece, 256> clusters;
     std::size_t n = 0, next = 0;
 
     void clear() { n = next = 0; }
     void add(const void* from, std::size_t begin, std::size_t end) {
         const char* at = static_cast<const char*>(from);
-        if (from && n < pieces.size()) pieces[n++] = {at + begin, at + end};
+        if (from && n < clusters.size()) clusters[n++] = {at + begin, at + end};
     }
     void fetch(int lines) {
         for (; lines > 0 && next < n; ++next) {
-            Piece& piece = pieces[next];
-            for (; piece.at < piece.end && lines > 0; piece.at += 64, --lines) __builtin_prefetch(piece.at, 0, kSecondCache);
-            if (piece.at < piece.end) return;
+            Piece& cluster = clusters[next];
+            for (; cluster.at < cluster.end && lines > 0; cluster.at += 64, --lines) __builtin_prefetch(cluster.at, 0, kSecondCache);
+            if (cluster.at < cluster.end) return;
         }
     }
 };

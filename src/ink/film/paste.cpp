@@ -93,10 +93,10 @@ double bump(double x) {
 }
 
 /// cos(π j / n), by turning step for step: the same on every machine.
-std::array<double, 2 * (kTines - 1)> make_wave() {
-    static_assert(kTines - 1 == 128);
+std::array<double, 2 * (kFirmnessSamples - 1)> make_wave() {
+    static_assert(kFirmnessSamples - 1 == 128);
     constexpr double kCos = 0.99969881869620422, kSin = 0.024541228522912288;  // of π / 128
-    std::array<double, 2 * (kTines - 1)> wave;
+    std::array<double, 2 * (kFirmnessSamples - 1)> wave;
     double c = 1, s = 0;
     for (double& w : wave) {
         w = c;
@@ -108,25 +108,25 @@ std::array<double, 2 * (kTines - 1)> make_wave() {
 }
 
 /// How much of the firmest bundle lies at each place, 0–1.
-std::array<double, kTines> pushed_by(std::span<const Tine> tines) {
-    std::array<double, kTines> out;
+std::array<double, kFirmnessSamples> pushed_by(std::span<const BundleFirmness> bundles) {
+    std::array<double, kFirmnessSamples> out;
     double firm = 0;
-    for (const Tine& tine : tines) firm += tine.weight;
+    for (const BundleFirmness& tine : bundles) firm += tine.weight;
     const double half = firm > 0 ? kTine / firm : 1;  // of the width: firm bundles lie 1 / firm apart
-    for (int i = 0; i < kTines; ++i) {
+    for (int i = 0; i < kFirmnessSamples; ++i) {
         double pushed = 0;
-        for (const Tine& tine : tines) pushed += tine.weight * bump((double(i) / (kTines - 1) - tine.at) / half);
+        for (const BundleFirmness& tine : bundles) pushed += tine.weight * bump((double(i) / (kFirmnessSamples - 1) - tine.at) / half);
         out[i] = std::min(pushed, 1.0);
     }
     return out;
 }
 
 /// Furrows and rims before they level, over the mean.
-std::array<double, kTines> ploughed(std::span<const Tine> tines, const CombOptions& o) {
-    std::array<double, kTines> film = pushed_by(tines);
-    const double rim = std::max(kRimWidth * o.film / o.width, 1.5 / kTines);
-    for (int i = 0; i < kTines; ++i) {
-        const double u = double(i) / (kTines - 1);
+std::array<double, kFirmnessSamples> ploughed(std::span<const BundleFirmness> bundles, const FurrowOptions& o) {
+    std::array<double, kFirmnessSamples> film = pushed_by(bundles);
+    const double rim = std::max(kRimWidth * o.film / o.width, 1.5 / kFirmnessSamples);
+    for (int i = 0; i < kFirmnessSamples; ++i) {
+        const double u = double(i) / (kFirmnessSamples - 1);
         film[i] = std::max(1 - o.depth * film[i], kLeastFilm) + o.rim * bump(std::min(u, 1 - u) / rim);
     }
     return film;
@@ -134,34 +134,34 @@ std::array<double, kTines> ploughed(std::span<const Tine> tines, const CombOptio
 
 }  // namespace
 
-Comb comb_of(std::span<const Tine> tines, const CombOptions& o) {
-    Comb out;
+FurrowDepths furrow_depths(std::span<const BundleFirmness> bundles, const FurrowOptions& o) {
+    FurrowDepths out;
     out.fill(1);
     if (!(o.yield > 0) || !(o.width > 0) || !(o.film > 0)) return out;
-    const std::array<double, kTines> film = ploughed(tines, o);
-    constexpr int kLast = kTines - 1;
+    const std::array<double, kFirmnessSamples> film = ploughed(bundles, o);
+    constexpr int kLast = kFirmnessSamples - 1;
     static const std::array<double, 2 * kLast> wave = make_wave();
     double mean = 0;
-    for (int i = 0; i < kTines; ++i) mean += (i == 0 || i == kLast ? 0.5 : 1.0) * film[i] / kLast;
-    std::array<double, kTines> levelled{};
+    for (int i = 0; i < kFirmnessSamples; ++i) mean += (i == 0 || i == kLast ? 0.5 : 1.0) * film[i] / kLast;
+    std::array<double, kFirmnessSamples> levelled{};
     for (int n = 1; n <= kModes; ++n) {
         double a = 0;
-        for (int i = 0; i < kTines; ++i) a += (i == 0 || i == kLast ? 1.0 : 2.0) * film[i] * wave[n * i % (2 * kLast)] / kLast;
+        for (int i = 0; i < kFirmnessSamples; ++i) a += (i == 0 || i == kLast ? 1.0 : 2.0) * film[i] * wave[n * i % (2 * kLast)] / kLast;
         const double k = 3.14159265358979324 * n / o.width;
         const double most = o.yield / (kTension * k * k * k * o.film) / o.film;  // over the mean film
         const double held = std::clamp(a / mean, -most, most);
-        for (int i = 0; i < kTines; ++i) levelled[i] += held * wave[n * i % (2 * kLast)];
+        for (int i = 0; i < kFirmnessSamples; ++i) levelled[i] += held * wave[n * i % (2 * kLast)];
     }
-    for (int i = 0; i < kTines; ++i) out[i] = static_cast<float>(std::max(1 + levelled[i], 0.0));
+    for (int i = 0; i < kFirmnessSamples; ++i) out[i] = static_cast<float>(std::max(1 + levelled[i], 0.0));
     return out;
 }
 
-Comb rub_of(std::span<const Tine> tines) {
-    const std::array<double, kTines> lies = pushed_by(tines);
+FurrowDepths rub_of(std::span<const BundleFirmness> bundles) {
+    const std::array<double, kFirmnessSamples> lies = pushed_by(bundles);
     double mean = 0;
-    for (const double l : lies) mean += l / kTines;
-    Comb out;
-    for (int i = 0; i < kTines; ++i) out[i] = static_cast<float>(mean > 0 ? 1 + kRub * (lies[i] / mean - 1) : 1);
+    for (const double l : lies) mean += l / kFirmnessSamples;
+    FurrowDepths out;
+    for (int i = 0; i < kFirmnessSamples; ++i) out[i] = static_cast<float>(mean > 0 ? 1 + kRub * (lies[i] / mean - 1) : 1);
     return out;
 }
 
@@ -218,19 +218,19 @@ bool bed_paste(Canvas& canvas, std::uint32_t slot, const Plane& height,
 }
 
 void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,
-               const Tents& tents, std::span<const float, kN> area, double ds, const PasteParams& params,
+               const HatBasis& hats, std::span<const float, kN> area, double ds, const PasteParams& params,
                const NodeMixes& mixes, const Plane& before, NodeContents& given, NodeContents& taken) {
-    if (tents.count == 0 || !(ds > 0)) return;
+    if (hats.count == 0 || !(ds > 0)) return;
     alignas(64) Texels full, strength{}, up, down, old;
     alignas(64) std::array<Texels, kMaxPigments> mix;
     std::array<bool, kMaxPigments> used{};
     for (int p = 0; p < kMaxPigments; ++p) {
-        for (int k = 0; k < tents.count; ++k) used[p] = used[p] || mixes[p][tents.node[k]] > 0;
+        for (int k = 0; k < hats.count; ++k) used[p] = used[p] || mixes[p][hats.node[k]] > 0;
         if (!used[p]) continue;
-        interpolate(mix[p], tents, mixes[p]);
+        interpolate(mix[p], hats, mixes[p]);
         add(strength.data(), mix[p].data());
     }
-    comb_at(full, places, params.comb);
+    furrow_depth_at(full, places, params.furrows);
     for (int t = 0; t < kN; ++t) full[t] *= static_cast<float>(params.target) * strength[t];
     const Plane here = open_pigment(canvas, slot);
     Volumes v;
@@ -239,7 +239,7 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
             static_cast<float>(params.exchange), static_cast<float>(params.room), static_cast<float>(params.capacity));
     part_of(v.up.data(), here.data());
     std::array<double, kNodes> shares;
-    MixtureGiven mixture(given, mixes, tents);
+    MixtureGiven mixture(given, mixes, hats);
     for (int p = 0; p < kMaxPigments; ++p) {
         const Plane* there = canvas.plane(slot, p);
         if (!used[p] && !there) continue;
@@ -249,14 +249,14 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         move(w.data(), up.data(), down.data(), v.up.data(), v.down.data(), mix[p].data(), strength.data());
         const double stored = change_sum(w.data(), old.data(), area.data());
         double lifted = 0;
-        if (there) tent_sums(shares, tents, up.data(), area);
+        if (there) integrate_hats(shares, hats, up.data(), area);
         else shares.fill(0);
-        for (int k = 0; k < tents.count; ++k) lifted += shares[k];
+        for (int k = 0; k < hats.count; ++k) lifted += shares[k];
         // What rounding makes of it: nothing may be given that does not come down.
         if (!used[p]) lifted = std::max(-stored, 0.0);
         const double laid = std::max(stored + lifted, 0.0);
-        deal(taken, p, laid - stored, shares, tents);
-        tent_sums(shares, tents, down.data(), area);
+        deal(taken, p, laid - stored, shares, hats);
+        integrate_hats(shares, hats, down.data(), area);
         mixture.pigment(p, laid, shares);
     }
     mixture.water();

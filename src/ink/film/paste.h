@@ -5,18 +5,18 @@
 #include <span>
 
 #include "ink/exchange/deposit.h"
-#include "ink/exchange/touch_nodes.h"
+#include "ink/exchange/contact_nodes.h"
 
 /// Ink that stands as it was put: thick paint, and the furrows that the hair leaves in it.
 namespace tuft::ink {
 
 /// A bundle of hair as it ploughs through paste or rubs in liquid.
-struct Tine {
+struct BundleFirmness {
     double at = 0;      ///< over the width, 0–1
     double weight = 1;  ///< how firmly it lies on the surface, over the firmest
 };
 
-struct CombOptions {
+struct FurrowOptions {
     double width = 8e-3;  ///< metres across the patch
     double film = 3e-4;   ///< metres of wet paste in the mean
     double yield = 400;   ///< Pa
@@ -32,11 +32,11 @@ struct CombOptions {
 ///
 /// in each mode of the cosine series over the width. Without yield stress the film is even. The
 /// mean is 1 whatever the options say: nothing is made or lost by furrows. About 30 µs.
-Comb comb_of(std::span<const Tine> tines, const CombOptions& options);
+FurrowDepths furrow_depths(std::span<const BundleFirmness> bundles, const FurrowOptions& options);
 
 /// How firmly the bundles rub across the patch, over the mean: 1 + 0.6 (n − 1), n what lies there of them over its
 /// mean.
-Comb rub_of(std::span<const Tine> tines);
+FurrowDepths rub_of(std::span<const BundleFirmness> bundles);
 
 /// Film units of a paste that stay on a wall: τ / ρ g.
 double standing_film(double yield);
@@ -52,10 +52,10 @@ struct PasteParams {
     double dig = 0.3;               ///< 0–1: part of the paste found there that the hair ploughs away
     double exchange = 0;            ///< 0–1: part of the paste that this touch renews
     double room = 0;                ///< film units that the hair can take
-    Comb comb{};
+    FurrowDepths furrows{};
 };
 
-/// One touch of one tile. With f the coverage, rounded towards the patch's edge, φ the comb at the
+/// One touch of one tile. With f the coverage, rounded towards the patch's edge, φ the furrows at the
 /// texel's place across the patch, B the paste that lay there when the stroke began and W that now,
 ///
 ///     n = ⟨B + f c φ − W⟩ r,   l = min(f ⟨W − (1 − dig) B − c φ⟩ r, room),   r = 1 − exp(−ds / s0)
@@ -68,7 +68,7 @@ struct PasteParams {
 /// difference is what was stored, plane by plane. Different slots may be done by different threads;
 /// same bits on every instruction set.
 void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
-               const TexelPlaces& places, const Tents& tents, std::span<const float, atlas::kTileTexels> area,
+               const TexelPlaces& places, const HatBasis& hats, std::span<const float, atlas::kTileTexels> area,
                double ds, const PasteParams& params, const NodeMixes& mixes, const Plane& before,
                NodeContents& given, NodeContents& taken);
 

@@ -109,7 +109,7 @@ bool read(Tile& tile, const Canvas& canvas, const atlas::TexelMap& map, const Ti
     bool any = false;
     for (int t = 0; t < kN; ++t) {
         tile.relief[t] = positive(tile.relief[t] - static_cast<float>(kPlain * 1e-6) / kHeightUnit);
-        const bool out = map.tiles[tile.slot].piece[t] == atlas::kNoPiece || (options.free && !options.free(tile.slot, t));
+        const bool out = map.tiles[tile.slot].cluster[t] == atlas::kNoCluster || (options.free && !options.free(tile.slot, t));
         const float area = out ? 0 : map.tiles[tile.slot].area[t];
         tile.area[t] = area;
         tile.inverse[t] = area > 0 ? 1 / area : 0;

@@ -19,7 +19,7 @@ struct PoolOptions {
     std::function<bool(std::uint32_t slot, int texel)> free = {};  ///< empty: all; nothing goes onto or off what is not
 };
 
-/// Micrometres of dry paint above the substrate, as `TileLook::height` without what is open.
+/// Micrometres of dry paint above the substrate, as `TileAppearance::height` without what is open.
 /// Less than kPlain does not count as relief: glazes lie over glazes as they were put.
 inline constexpr double kPlain = 30;  // micrometres
 Plane dry_relief(const Canvas& canvas, std::uint32_t slot);

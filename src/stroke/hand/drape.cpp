@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
-#include "stroke/hand/ground.h"
-#include "stroke/hand/laying.h"
+#include "stroke/hand/smoothed_surface.h"
+#include "stroke/hand/surface_mapping.h"
 
 namespace tuft::stroke {
 
@@ -19,16 +19,16 @@ constexpr int kRays = 180;        // headings in which lines are walked; between
 constexpr std::size_t kMostSteps = 20'000;
 
 /// One step of a straightest line: ahead on the osculating paraboloid, then onto the ground.
-Ground step(const SurfaceQuery& query, const Ground& from, double length, double radius) {
+BaseColour step(const SurfaceQuery& query, const BaseColour& from, double length, double radius) {
     const double k = from.found ? from.curvature[0] : 0, mixed = from.found ? from.curvature[1] : 0;
     const Vec3 side = glm::cross(from.normal, from.heading);
-    Ground guess = from;
+    BaseColour guess = from;
     guess.found = false;
     const double turn = k * length;
     guess.position += length * (1 - turn * turn / 6) * from.heading + 0.5 * turn * length * from.normal;
     guess.normal = glm::normalize(from.normal - length * (k * from.heading + mixed * side));
     guess.heading = into_plane(parallel_transport(from.heading, from.normal, guess.normal), guess.normal);
-    Ground next = feel(query, guess, radius);
+    BaseColour next = feel(query, guess, radius);
     if (!next.found) {  // past an edge: straight on
         next = from;
         next.found = false;
@@ -45,7 +45,7 @@ class Drape {
         const auto start = query.closest_point(place.origin);
         if (!start) throw Error("there is no surface to lay a stroke on");
         gap_ = start->distance;
-        Ground ground{start->position, start->normal, axes_across(start->normal, place.right, place.down).right,
+        BaseColour ground{start->position, start->normal, axes_across(start->normal, place.right, place.down).right,
                       {0, 0, 0}, true};
         for (int pass = 0; pass < 4; ++pass) ground = feel(query, ground, radius_);
         origin_ = ground;
@@ -57,20 +57,20 @@ class Drape {
     double radius() const { return radius_; }
 
     /// Place, normal and axes of a flat point on the ground; `on_surface` as felt there.
-    LaidSample at(const Vec2& flat) {
+    SurfaceSample at(const Vec2& flat) {
         const double length = glm::length(flat);
         const double angle = std::atan2(flat.y, flat.x) / (2 * std::numbers::pi) * kRays;
         const double left = std::floor(angle), u = angle - left;
         const double along = length / stride_;
         const auto ring = static_cast<std::size_t>(std::min(along, double(kMostSteps - 1)));
         const double v = along - double(ring);
-        LaidSample out;
+        SurfaceSample out;
         out.position = out.normal = out.right = out.down = Vec3(0);
         for (int r = 0; r < 2; ++r) {
             const int ray = ((static_cast<int>(left) + r) % kRays + kRays) % kRays;
             for (std::size_t s = 0; s < 2; ++s) {
                 const double weight = (r ? u : 1 - u) * (s ? v : 1 - v);
-                const Ground& g = node(ray, ring + s);
+                const BaseColour& g = node(ray, ring + s);
                 const double phi = 2 * std::numbers::pi * ray / kRays;
                 const Vec3 side = hand_ * glm::cross(g.heading, g.normal);
                 out.position += weight * g.position;
@@ -88,13 +88,13 @@ class Drape {
     }
 
   private:
-    const Ground& node(int ray, std::size_t ring) {
-        std::vector<Ground>& line = lines_[static_cast<std::size_t>(ray)];
+    const BaseColour& node(int ray, std::size_t ring) {
+        std::vector<BaseColour>& line = lines_[static_cast<std::size_t>(ray)];
         if (line.empty()) {
             const double phi = 2 * std::numbers::pi * ray / kRays;
-            Ground start = origin_;
+            BaseColour start = origin_;
             start.heading = std::cos(phi) * axes_.right + std::sin(phi) * axes_.down;
-            Ground turned = start;
+            BaseColour turned = start;
             turned.curvature = feel(query_, start, radius_).curvature;
             line.push_back(turned);
         }
@@ -107,9 +107,9 @@ class Drape {
 
     const SurfaceQuery& query_;
     double radius_, stride_, gap_ = 0, hand_ = 1;
-    Ground origin_;
+    BaseColour origin_;
     Axes axes_;
-    std::array<std::vector<Ground>, kRays> lines_;
+    std::array<std::vector<BaseColour>, kRays> lines_;
 };
 
 }  // namespace
@@ -118,15 +118,15 @@ double drape_radius(const mesh::TriangleMesh& mesh) {
     return std::min(0.008, 0.04 * mesh.bounds.diagonal());
 }
 
-LaidTrace lay_draped(const SurfaceQuery& query, const Trace& trace) {
+SurfaceTrace lay_draped(const SurfaceQuery& query, const Trace& trace) {
     Drape drape(query, trace.placement);
-    LaidTrace laid;
-    laid.origin_gap = drape.origin_gap();
-    laid.samples.reserve(trace.samples.size());
+    SurfaceTrace mapped;
+    mapped.origin_gap = drape.origin_gap();
+    mapped.samples.reserve(trace.samples.size());
     for (const TraceSample& s : trace.samples) {
         check_interrupt();
-        LaidSample out = drape.at(Vec2(s.position));
-        const LaidSample hand = hand_data(s);
+        SurfaceSample out = drape.at(Vec2(s.position));
+        const SurfaceSample hand = hand_data(s);
         out.time = hand.time;
         out.pressure = hand.pressure;
         out.tilt = hand.tilt;
@@ -138,10 +138,10 @@ LaidTrace lay_draped(const SurfaceQuery& query, const Trace& trace) {
             out.on = *query.closest_point(out.position);
             out.on_surface = false;
         }
-        laid.missed += !out.on_surface;
-        laid.samples.push_back(out);
+        mapped.missed += !out.on_surface;
+        mapped.samples.push_back(out);
     }
-    return laid;
+    return mapped;
 }
 
 }  // namespace tuft::stroke

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "ink/colour/pigments.h"
 #include "stroke/hand/long_lines.h"
-#include "stroke/hand/practise.h"
+#include "stroke/hand/fit_trajectory.h"
 
 namespace tuft::stroke {
 namespace {
@@ -41,7 +41,7 @@ Placement turned(const Vec3& origin, const Vec3& normal, const Vec3& right, doub
     return {.origin = origin,
             .right = std::cos(turn) * right - std::sin(turn) * down,
             .down = std::cos(turn) * down + std::sin(turn) * right,
-            .laying = Laying::drape};
+            .mapping = SurfaceMapping::drape};
 }
 
 }  // namespace
@@ -56,12 +56,12 @@ void transform_trace(Trace& trace, const Vec2& centre, double scale, bool mirror
         sample.position = scale * (sample.position - Vec3(centre, 0));
         sample.time *= scale;
     }
-    for (TapeEdge& edge : trace.tape)
+    for (StencilEdge& edge : trace.stencil)
         for (Vec2* end : {&edge.from, &edge.to}) *end = scale * (*end - centre);
     trace.line_width *= scale;
     if (!mirrored) return;
     for (TraceSample& sample : trace.samples) sample.position.x *= -1, sample.tilt.x *= -1;
-    for (TapeEdge& edge : trace.tape)
+    for (StencilEdge& edge : trace.stencil)
         edge = {Vec2(-edge.to.x, edge.to.y), Vec2(-edge.from.x, edge.from.y)};
 }
 
@@ -206,7 +206,7 @@ WidthMismatch press_to_widths(std::vector<Stroke>& entries, WidthTables& tables)
         mismatch = {s.trace.brush, std::min(mismatch.least, width), std::max(mismatch.most, width),
                     widths.least(), widths.most()};
     }
-    practise(drawn, tables);
+    fit_trajectory(drawn, tables);
     for (Stroke& s : entries) s.trace.line_width = 0;
     return mismatch;
 }

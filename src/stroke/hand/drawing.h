@@ -66,7 +66,7 @@ struct BrushFit {
 
 /// Where and how large a drawing comes to lie.
 struct DrawingPlace {
-    Placement placement;  ///< its origin comes under `centre`; its laying is not used
+    Placement placement;  ///< its origin comes under `centre`; its mapping is not used
     Vec2 centre{0};       ///< metres, frame of the drawing
     double scale = 1;
     bool mirrored = false;  ///< flipped from left to right
@@ -77,7 +77,7 @@ struct DrawingPlace {
 std::vector<Trace*> drawing_in(std::vector<Stroke>& entries, bool all);
 
 /// Places a drawing: transforms its traces (`transform_trace`) and gives them origin, right and
-/// down of the placement. Each trace keeps its laying.
+/// down of the placement. Each trace keeps its mapping.
 void place_drawing(std::span<Trace* const> drawing, const DrawingPlace& place);
 
 /// Replaces lines with a width that need more ink than their brush holds by pieces of them, each
@@ -100,7 +100,7 @@ struct WidthMismatch {
 };
 
 /// Sets the pressures of lines with a width so that they come out as wide (`draw_to_width`,
-/// `practise`). The entries then hold the hand's motion alone: their line widths are 0.
+/// `fit_trajectory`). The entries then hold the hand's motion alone: their line widths are 0.
 WidthMismatch press_to_widths(std::vector<Stroke>& entries, WidthTables& widths);
 
 }  // namespace tuft::stroke

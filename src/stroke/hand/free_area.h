@@ -38,7 +38,7 @@ struct FreeArea {
 
 /// The largest calm rectangle of a side.
 ///
-/// Looks at the model with a grid of 129² rays over its box. A ray is free that sees the surface,
+/// Appearance at the model with a grid of 129² rays over its box. A ray is free that sees the surface,
 /// less than 70° from facing it, without a step to its neighbours; at the inside, with walls around
 /// it in six of eight directions. Gaps of one or two rays, such as shut lines, do not count. A
 /// rectangle of `aspect` (width over height, held to 1/32–32) of free rays bends no more than a wide

@@ -45,7 +45,7 @@ Trace steady(Trace trace, const Settings& settings) {
     return press(std::move(trace), {.from = pressure_from(settings.pressure)});
 }
 
-brush::Pose steady(SteadyHand& state, const brush::Pose& pose, const Settings& settings) {
+brush::Pose steady(GestureFilter& state, const brush::Pose& pose, const Settings& settings) {
     brush::Pose out = pose;
     if (settings.smooth > 0) out = smooth(state.filter, out, hand_filter_options(settings.smooth));
     if (settings.stabilise > 0) out = pull(state.string, out, settings.stabilise);

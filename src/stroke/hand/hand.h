@@ -13,10 +13,10 @@ namespace tuft::stroke {
 Trace steady(Trace trace, const Settings& settings);
 
 /// Poses in space as they come. Filter and string only: a pose has its depth.
-struct SteadyHand {
+struct GestureFilter {
     HandFilter filter;
     String string;
 };
-brush::Pose steady(SteadyHand& state, const brush::Pose& pose, const Settings& settings);
+brush::Pose steady(GestureFilter& state, const brush::Pose& pose, const Settings& settings);
 
 }  // namespace tuft::stroke

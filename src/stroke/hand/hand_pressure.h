@@ -20,7 +20,7 @@ PressureFrom pressure_from(const std::string& name);
 ///     dq/dt = (1 / (1 + (v/still)²) − q) / dwell_time
 ///
 /// (the first factor for `speed`, the second for `dwell`), clamped to [0, 1]; the pressure
-/// follows the goal in `follow`, and reaches it from 0 in about 3 × `follow` after touch-down.
+/// follows the goal in `follow`, and reaches it from 0 in about 3 × `follow` after pen down.
 /// Speed is that of the samples under a low-pass of `speed_time`.
 struct PressureOptions {
     PressureFrom from = PressureFrom::speed_dwell;
@@ -43,7 +43,7 @@ struct PressureState {
     double pressure = 0;        ///< 0–1
 };
 
-/// The pressure of the next sample of a hand at `position` (metres). The first is 0: touch-down.
+/// The pressure of the next sample of a hand at `position` (metres). The first is 0: pen down.
 /// Steps of any length give the same curve to the order of (dt / follow).
 double press(PressureState& state, const Vec3& position, double time, const PressureOptions& options = {});
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "stroke/hand/ground.h"
+#include "stroke/hand/smoothed_surface.h"
 
 namespace tuft::stroke {
 
@@ -19,7 +19,7 @@ constexpr double kMostCells = 2e6;    // cells, or stations, of one path
 /// Means of the normals over even cells of path.
 class CellNormals {
   public:
-    CellNormals(std::span<const LaidSample> samples, std::span<const double> along, double cell)
+    CellNormals(std::span<const SurfaceSample> samples, std::span<const double> along, double cell)
         : cell_(cell), normals_(static_cast<std::size_t>(along.back() / cell) + 1, Vec3{0}) {
         for (std::size_t i = 0; i + 1 < samples.size(); ++i) add(samples[i], samples[i + 1], along[i], along[i + 1]);
         for (Vec3& n : normals_)
@@ -51,7 +51,7 @@ class CellNormals {
   private:
     std::size_t cell_at(double s) const { return std::min(static_cast<std::size_t>(s / cell_), normals_.size() - 1); }
 
-    void add(const LaidSample& a, const LaidSample& b, double from, double to) {
+    void add(const SurfaceSample& a, const SurfaceSample& b, double from, double to) {
         if (!(to > from)) return;
         for (std::size_t k = cell_at(from); k <= cell_at(to); ++k) {
             const double begin = std::max(from, static_cast<double>(k) * cell_);
@@ -69,7 +69,7 @@ class CellNormals {
 /// Levels at even stations of path, found as they are asked for.
 class Stations {
   public:
-    Stations(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples, std::span<const double> along,
+    Stations(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples, std::span<const double> along,
              std::span<const LevelledSurface> levelled, double radius)
         : query_(query), samples_(samples), along_(along), levelled_(levelled), radius_(radius) {
         const double n = std::clamp(std::ceil(along.back() * kStations / radius), 1.0, kMostCells);
@@ -112,7 +112,7 @@ class Stations {
     }
 
     const mesh::SurfaceQuery& query_;
-    std::span<const LaidSample> samples_;
+    std::span<const SurfaceSample> samples_;
     std::span<const double> along_;
     std::span<const LevelledSurface> levelled_;
     double radius_, apart_ = 0;
@@ -121,11 +121,11 @@ class Stations {
 
 }  // namespace
 
-std::vector<LevelledSurface> level_surface(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples,
+std::vector<LevelledSurface> level_surface(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
                                            std::span<const double> along, double radius) {
     std::vector<LevelledSurface> levelled;
     levelled.reserve(samples.size());
-    for (const LaidSample& s : samples) levelled.push_back({s.normal, 0});
+    for (const SurfaceSample& s : samples) levelled.push_back({s.normal, 0});
     if (radius <= 0 || samples.empty()) return levelled;
     const double length = along.back();
     if (length > 0) {

@@ -6,8 +6,8 @@
 
 #include "brush/sweep.h"
 #include "core/ease.h"
-#include "stroke/hand/hold.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/holder.h"
+#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/placement.h"
 #include "stroke/hand/tractrix.h"
 
@@ -53,11 +53,11 @@ const brush::Preset& WidthTables::preset(const std::string& brush) {
     return at != presets_.end() ? at->second : presets_.emplace(brush, brush::load_preset(brush)).first->second;
 }
 
-const HoldOptions& WidthTables::hold(const std::string& brush) {
+const HolderOptions& WidthTables::hold(const std::string& brush) {
     const auto at = holds_.find(brush);
     if (at != holds_.end()) return at->second;
-    HoldOptions options = hold_options(preset(brush));
-    options.lead = drag_lead(preset(brush));
+    HolderOptions options = holder_options(preset(brush));
+    options.tip_lag = measure_tip_lag(preset(brush));
     return holds_.emplace(brush, std::move(options)).first->second;
 }
 
@@ -97,8 +97,8 @@ void overlap(Trace& trace, double more) {
 double line_end(double width) { return kEnd * width; }
 
 void add_extent(Box& box, const Trace& trace) {
-    for (const TapeEdge& edge : trace.tape) box.add(Vec3(edge.from, 0)), box.add(Vec3(edge.to, 0));
-    if (!trace.tape.empty()) return;
+    for (const StencilEdge& edge : trace.stencil) box.add(Vec3(edge.from, 0)), box.add(Vec3(edge.to, 0));
+    if (!trace.stencil.empty()) return;
     const Vec3 beside = 0.5 * trace.line_width * Vec3(1, 1, 0);
     for (const TraceSample& sample : trace.samples) box.add(sample.position - beside), box.add(sample.position + beside);
 }

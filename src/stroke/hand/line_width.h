@@ -37,13 +37,13 @@ class WidthTables {
   public:
     const LineWidths& of(const std::string& brush);
     const brush::Preset& preset(const std::string& brush);
-    /// An upright holder over a plane that leads its line (`drag_lead`).
-    const HoldOptions& hold(const std::string& brush);
+    /// An upright holder over a plane that tip_lags its line (`measure_tip_lag`).
+    const HolderOptions& hold(const std::string& brush);
 
   private:
     std::map<std::string, brush::Preset> presets_;
     std::map<std::string, LineWidths> known_;
-    std::map<std::string, HoldOptions> holds_;
+    std::map<std::string, HolderOptions> holds_;
 };
 
 /// From one size of a brush that is chosen for a line to the next: few brushes for many widths.
@@ -55,7 +55,7 @@ inline constexpr double kBrushSizes = 1.25;
 /// what brushes have.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
-/// Adds what the ink of a line takes up to a box: its tape, or its samples, with half of its width beside them where it has one;
+/// Adds what the ink of a line takes up to a box: its stencil edge, or its samples, with half of its width beside them where it has one;
 /// metres, in its own frame.
 void add_extent(Box& box, const Trace& trace);
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stroke/hand/ground.h"
-#include "stroke/hand/hold.h"
-#include "stroke/hand/laying.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/smoothed_surface.h"
+#include "stroke/hand/holder.h"
+#include "stroke/hand/surface_mapping.h"
+#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/levelling.h"
 #include "stroke/hand/tractrix.h"
 
@@ -31,22 +31,22 @@ double working_depth(const brush::Preset& preset) {
     return 0.5 * preset.length;
 }
 
-HoldOptions hold_options(const brush::Preset& preset) {
+HolderOptions holder_options(const brush::Preset& preset) {
     return {.tuft_length = preset.length,
             .working_depth = working_depth(preset),
             .hover = 0.1 * preset.length,
             .steady = 0,
-            .lead = {},
-            .lead_turn = std::min(HoldOptions{}.lead_turn, 0.075 * preset.length)};  // a fine tuft turns sooner
+            .tip_lag = {},
+            .tip_lag_turn = std::min(HolderOptions{}.tip_lag_turn, 0.075 * preset.length)};  // a fine tuft turns sooner
 }
 
-HoldOptions hold_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {
-    HoldOptions options = hold_options(preset);
+HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {
+    HolderOptions options = holder_options(preset);
     options.steady = std::min(drape_radius(mesh), 0.4 * preset.length);  // a fine tuft feels finer ground
     return options;
 }
 
-brush::Pose hold_over(const Vec3& place, double height, const Held& held, const HoldOptions& options) {
+brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held, const HolderOptions& options) {
     const double lean = std::min(glm::length(held.tilt), options.max_tilt);
     const Vec2 tilt = lean > 0 ? held.tilt * (lean / glm::length(held.tilt)) : Vec2{0};
     const Vec3 up = glm::normalize(held.normal + std::tan(tilt.x) * held.right + std::tan(tilt.y) * held.down);
@@ -58,23 +58,23 @@ brush::Pose hold_over(const Vec3& place, double height, const Held& held, const 
     return pose;
 }
 
-std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const LaidSample> samples,
-                              const HoldOptions& options) {
+std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
+                              const HolderOptions& options) {
     std::vector<brush::Pose> poses;
     poses.reserve(samples.size());
     const std::vector<double> along = travelled(samples, kTremble * options.steady);
     const std::vector<LevelledSurface> levelled = level_surface(query, samples, along, options.steady);
     const std::vector<double> depths = tip_depths(samples, options);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const LaidSample& s = samples[i];
+        const SurfaceSample& s = samples[i];
         const LevelledSurface& ground = levelled[i];
         const Axes axes = axes_across(ground.normal, s.right, s.down);
-        const Vec3 ahead = s.lead.x * axes.right + s.lead.y * axes.down;
+        const Vec3 ahead = s.tip_lag.x * axes.right + s.tip_lag.y * axes.down;
         double height = ground.height;
         // A tuft that has not trailed yet touches where the hand is.
-        if (const double lead = glm::length(s.lead); along[i] < lead)
-            height += (1 - along[i] / lead) * rise(query, s.position, ahead, ground.normal, options.steady);
-        poses.push_back(hold_over(s.position + ahead, height, {ground.normal, axes.right, axes.down, depths[i], s.tilt, s.time}, options));
+        if (const double tip_lag = glm::length(s.tip_lag); along[i] < tip_lag)
+            height += (1 - along[i] / tip_lag) * rise(query, s.position, ahead, ground.normal, options.steady);
+        poses.push_back(pose_holder(s.position + ahead, height, {ground.normal, axes.right, axes.down, depths[i], s.tilt, s.time}, options));
     }
     return poses;
 }
@@ -88,7 +88,7 @@ std::vector<brush::Pose> spatial_poses(const Trace& trace) {
 }
 
 HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace,
-                   const HoldOptions& options) {
+                   const HolderOptions& options) {
     if (!trace.flat) return {{}, spatial_poses(trace), 0};
     // Laid is where the ink is to be: over a hollow, the surface ahead leans otherwise.
     const Trace led = lead_hand(trace, options);
@@ -100,10 +100,10 @@ HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace,
         const std::size_t own = std::clamp(i, path.set_down, led.samples.size() - 1) - path.set_down;
         ink.samples[i].position = trace.samples[own].position;
     }
-    path.laid = lay(query, ink);
+    path.mapped = map_to_surface(query, ink);
     for (std::size_t i = 0; i < ink.samples.size(); ++i)
-        path.laid.samples[i].lead = Vec2(lifted.samples[i].position - ink.samples[i].position);
-    path.poses = hold(query, path.laid.samples, options);
+        path.mapped.samples[i].tip_lag = Vec2(lifted.samples[i].position - ink.samples[i].position);
+    path.poses = hold(query, path.mapped.samples, options);
     return path;
 }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brush/splay.h"
+#include "brush/upright_hair.h"
 #include "brush/tuft.h"
 #include "footprint/cuts.h"
-#include "stroke/hand/hold.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/holder.h"
+#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/line_width.h"
 #include "stroke/hand/resample.h"
 
@@ -76,7 +76,7 @@ double PlaneInk::at(const Vec2& p) const {
                      std::lerp(value(i, j + 1), value(i + 1, j + 1), f.x), f.y);
 }
 
-PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HoldOptions& options,
+PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HolderOptions& options,
                    double step, double cell) {
     const Frame plane_frame;
     std::vector<brush::Pose> poses;
@@ -84,7 +84,7 @@ PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HoldOp
     const std::vector<double> depths = tip_depths<TraceSample>(led.samples, options);
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
         const TraceSample& s = led.samples[i];
-        poses.push_back(hold_over({s.position.x, -s.position.y, 0}, 0,
+        poses.push_back(pose_holder({s.position.x, -s.position.y, 0}, 0,
                                   {.depth = depths[i], .tilt = s.tilt, .time = s.time}, options));
     }
     brush::Tuft tuft = brush::make_tuft(preset);
@@ -101,7 +101,7 @@ PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HoldOp
         if (!state.touching) continue;
         std::vector<footprint::Trail> trails =
             footprint::trails(state, plane_frame, {}, preset.length, kSkinFilm);
-        footprint::cover_foot(trails, brush::foot_of(tuft, plane), plane_frame, kSkinFilm);
+        footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft, plane), plane_frame, kSkinFilm);
         outlines.clear();
         for (const footprint::Trail& trail : trails)
             if (footprint::Outline o =

@@ -6,13 +6,13 @@
 namespace tuft::stroke {
 namespace {
 
-std::vector<Care> actions_before(const Trace& trace, const std::vector<Stroke>& entries,
+std::vector<BrushAction> actions_before(const Trace& trace, const std::vector<Stroke>& entries,
                                  const EntryOptions& options) {
     const auto is_first = [&] {
         return std::none_of(entries.begin(), entries.end(),
                             [&](const Stroke& s) { return s.trace.brush == trace.brush; });
     };
-    std::vector<Care> actions;
+    std::vector<BrushAction> actions;
     if (!options.prepare.empty() && !trace.samples.empty() &&
         (options.settings.dip == "each" || is_first()))
         actions = options.prepare;
@@ -20,7 +20,7 @@ std::vector<Care> actions_before(const Trace& trace, const std::vector<Stroke>& 
     return actions;
 }
 
-Stroke action_entry(const Care& care, const Trace& trace, const Settings& settings) {
+Stroke action_entry(const BrushAction& care, const Trace& trace, const Settings& settings) {
     Stroke entry{.settings = settings,
                  .action = care.action,
                  .seconds = care.seconds,
@@ -48,7 +48,7 @@ void append_entries(std::vector<Stroke>& entries, std::vector<Trace> traces,
         const bool own = !trace.settings.empty();
         Settings settings = own ? settings_from_json(trace.settings) : options.settings;
         const std::string dip = settings.dip;
-        for (const Care& care : actions_before(trace, entries, options)) {
+        for (const BrushAction& care : actions_before(trace, entries, options)) {
             entries.push_back(action_entry(care, trace, settings));
             if (has_brush(care.action)) settings.dip = "carry";
         }

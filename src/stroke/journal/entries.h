@@ -15,7 +15,7 @@ struct EntryOptions {
     std::string other_ink = "carbon";  ///< of traces that name none
     std::string pressure =
         "none";  ///< as `Settings::pressure`, of flat traces with made-up pressures
-    std::vector<Care> prepare = {};  ///< done with each brush before its first stroke; with
+    std::vector<BrushAction> prepare = {};  ///< done with each brush before its first stroke; with
                                      ///< `settings.dip` "each" before every stroke
     bool erases = false;  ///< all strokes take ink away
 };

@@ -6,7 +6,7 @@
 #include "stroke/painting/fill.h"
 #include "stroke/painting/mask.h"
 
-/// The parts of a journal's entry as JSON; included by sources of this room only. Readers
+/// The parts of a journal's entry as JSON; included by sources of this module only. Readers
 /// throw `Error` for wrong types and values.
 namespace tuft::stroke {
 

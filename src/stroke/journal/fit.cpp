@@ -106,7 +106,7 @@ StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former,
                    const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
     StrokeFit fit{.stroke = stroke.id, .flat = true};
     const Trace trace = steady(stroke.trace, stroke.settings);
-    const LaidTrace was = lay(former, trace), now = lay(revised, trace);
+    const SurfaceTrace was = map_to_surface(former, trace), now = map_to_surface(revised, trace);
     std::vector<Place> places(trace.samples.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
         Place& place = places[i];
@@ -145,7 +145,7 @@ std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
     return fits;
 }
 
-std::string misfit_reason(const StrokeFit& fit) {
+std::string mismatch_reason(const StrokeFit& fit) {
     if (fit.way <= 0) return "";
     const auto percent = [&](double part) {
         return static_cast<int>(std::lround(100 * part / fit.way));
@@ -174,16 +174,16 @@ std::string misfit_reason(const StrokeFit& fit) {
     return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
-std::vector<Misfit> find_misfits(const std::vector<StrokeReport>& reports,
+std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& reports,
                                  const std::vector<StrokeFit>& fits) {
-    std::vector<Misfit> found;
+    std::vector<StrokeMismatch> found;
     for (const StrokeReport& report : reports) {
         const auto fit = std::find_if(fits.begin(), fits.end(), [&](const StrokeFit& f) {
             return f.stroke == report.stroke_id;
         });
         std::string reason;
         if (fit != fits.end() && (report.touched() || !fit->reached))
-            reason = misfit_reason(*fit);
+            reason = mismatch_reason(*fit);
         else if (!report.touched())
             reason = fmt::format("touches nothing, {:.1f} mm away", 1e3 * report.nearest);
         if (!reason.empty()) found.push_back({report.stroke_id, std::move(reason)});
@@ -191,8 +191,8 @@ std::vector<Misfit> find_misfits(const std::vector<StrokeReport>& reports,
     return found;
 }
 
-FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<Misfit>& misfits) {
-    FitTotal total{.strokes = fits.size(), .misfits = misfits.size()};
+FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMismatch>& mismatches) {
+    FitTotal total{.strokes = fits.size(), .mismatches = mismatches.size()};
     std::vector<double> moved, slid;
     double way = 0, missing = 0, stretched = 0;
     for (const StrokeFit& fit : fits) {
@@ -217,7 +217,7 @@ std::string describe(const FitTotal& t) {
         "{} of {} strokes no longer fit: they lie {:.1f} mm from where they lay ({:.1f} mm at "
         "most){}, {:.0f} % of their ink is missing, {:.0f} % of it is "
         "stretched or squeezed by more than a quarter",
-        t.misfits, t.strokes, 1e3 * t.moved, 1e3 * t.moved_most, on_model, 100 * t.missing,
+        t.mismatches, t.strokes, 1e3 * t.moved, 1e3 * t.moved_most, on_model, 100 * t.missing,
         100 * t.stretched);
 }
 

@@ -57,26 +57,26 @@ std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
 /// mm and by more than
 ///   1 % of its path: as wide as a fine brush's line, more than a mesh of other triangles moves it;
 /// - more than a tenth of its path longer or shorter by more than a quarter.
-std::string misfit_reason(const StrokeFit& fit);
+std::string mismatch_reason(const StrokeFit& fit);
 
 /// A stroke that does not fit another model any more.
-struct Misfit {
+struct StrokeMismatch {
     std::uint64_t stroke = 0;
     std::string reason;  ///< English, for people
 };
 /// Of a replay on the other model (its reports) and its fits, in the journal's order: strokes that
-/// touch nothing any more, and those for which `misfit_reason` has one.
-std::vector<Misfit> find_misfits(const std::vector<StrokeReport>& reports,
+/// touch nothing any more, and those for which `mismatch_reason` has one.
+std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& reports,
                                  const std::vector<StrokeFit>& fits);
 
 /// All strokes of a replay on another model together.
 struct FitTotal {
-    std::size_t strokes = 0, misfits = 0;
+    std::size_t strokes = 0, mismatches = 0;
     double moved = 0, moved_most = 0;   ///< metres: median over the strokes, longest
     std::optional<double> slid;         ///< metres: median over the strokes
     double missing = 0, stretched = 0;  ///< parts of the path of all ink, 0–1
 };
-FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<Misfit>& misfits);
+FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMismatch>& mismatches);
 
 /// In a sentence: "12 of 40 strokes no longer fit: they lie 20.0 mm from where they lay (31.2 mm at
 /// most), 4 % of their ink is missing, 0 % of it is stretched or squeezed by more than a quarter".

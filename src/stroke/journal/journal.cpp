@@ -29,7 +29,7 @@ constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", 
 
 nlohmann::json json_of(const Settings& s) {
     nlohmann::json j = {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
-            {"spacing", s.spacing},     {"lead", s.lead},           {"dip", s.dip},
+            {"spacing", s.spacing},     {"lead", s.compensate_tip_lag},           {"dip", s.dip},
             {"pressure", s.pressure},   {"smooth", s.smooth},       {"stabilise", s.stabilise},
             {"film", s.film},           {"down", {s.down.x, s.down.y, s.down.z}}};
     if (s.endless) j["endless"] = true;  // left out by default: entries stay as older versions wrote them
@@ -52,7 +52,7 @@ Settings settings_of(const nlohmann::json& j) {
         s.footprint = j.value("footprint", s.footprint);
         s.contact = j.value("contact", s.contact);
         s.spacing = j.value("spacing", s.spacing);
-        s.lead = j.value("lead", s.lead);
+        s.compensate_tip_lag = j.value("lead", s.compensate_tip_lag);
         s.dip = j.value("dip", s.dip);
         s.endless = j.value("endless", s.endless);
         s.pressure = j.value("pressure", s.pressure);
@@ -73,11 +73,11 @@ bool among(const std::string& word, std::initializer_list<const char*> words) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::vector<TapeEdge> tape_of(const nlohmann::json& j) {
+std::vector<StencilEdge> tape_of(const nlohmann::json& j) {
     const auto is_number = [](const nlohmann::json& x) { return x.is_number() && std::isfinite(x.get<double>()); };
-    if (!j.is_array() || j.size() % 4 != 0 || j.size() > 4 * kMostTape || !std::all_of(j.begin(), j.end(), is_number))
+    if (!j.is_array() || j.size() % 4 != 0 || j.size() > 4 * kMaxStencilEdges || !std::all_of(j.begin(), j.end(), is_number))
         throw Error("the tape of a journal's entry cannot be read");
-    std::vector<TapeEdge> tape;
+    std::vector<StencilEdge> tape;
     for (std::size_t i = 0; i < j.size(); i += 4)
         tape.push_back({{j[i].get<double>(), j[i + 1].get<double>()}, {j[i + 2].get<double>(), j[i + 3].get<double>()}});
     return tape;
@@ -122,7 +122,7 @@ void check_trace(const Trace& trace) {
         const double square = glm::dot(s.rotation, s.rotation);
         if (!(square > 1e-6 && square < 1e6)) refuse("a sample's rotation");
     }
-    for (const TapeEdge& e : trace.tape)
+    for (const StencilEdge& e : trace.stencil)
         if (!within(e.from) || !within(e.to)) refuse("an edge of tape");
 }
 
@@ -145,9 +145,9 @@ std::string entry_json(const Stroke& entry) {
     if (entry.mask != 0) j["mask"] = entry.mask;
     if (entry.action == Action::fill) j["fill"] = json_of(entry.fill);
     if (entry.trace.erases) j["tool"] = "eraser";
-    if (!entry.trace.tape.empty()) {
+    if (!entry.trace.stencil.empty()) {
         nlohmann::json& tape = j["tape"] = nlohmann::json::array();
-        for (const TapeEdge& e : entry.trace.tape)
+        for (const StencilEdge& e : entry.trace.stencil)
             for (const double x : {e.from.x, e.from.y, e.to.x, e.to.y}) tape.push_back(x);
     }
     if (entry.extent != Extent{}) {
@@ -184,8 +184,8 @@ void read_entry_json(const std::string& json, Stroke& entry) {
         if (*tool != "eraser" && *tool != "brush") throw Error("the tool of a stroke is brush or eraser, not " + excerpt(tool->dump(), 40));
         entry.trace.erases = *tool == "eraser";
     }
-    entry.trace.tape.clear();
-    if (const auto tape = j.find("tape"); tape != j.end()) entry.trace.tape = tape_of(*tape);
+    entry.trace.stencil.clear();
+    if (const auto tape = j.find("tape"); tape != j.end()) entry.trace.stencil = tape_of(*tape);
     entry.group = group_of(j);
     const auto action = j.find("action");
     if (action == j.end()) return;
@@ -224,7 +224,7 @@ void check_extent(const Extent& e, Action action) {
     if (!(std::abs(e.side) <= 1)) throw Error("the side of a dip or wipe is a part of the tuft's width, -1 to 1");
 }
 
-std::string care_text(const Care& care) {
+std::string action_text(const BrushAction& care) {
     std::string text = name_of(care.action);
     if (!care.ink.empty()) text += ":" + care.ink;
     const auto add = [&](const char* name, double value, double usual) {
@@ -239,8 +239,8 @@ std::string care_text(const Care& care) {
     return text;
 }
 
-Care care_of_text(const std::string& text) {
-    Care care;
+BrushAction action_of_text(const std::string& text) {
+    BrushAction care;
     std::size_t end = std::min(text.find(','), text.size());
     const std::string head = text.substr(0, end);
     const std::size_t colon = std::min(head.find(':'), head.size());

@@ -18,7 +18,7 @@ struct Settings {
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";      ///< exact | vertices
     double spacing = 1.0;               ///< texels between two stamps
-    bool lead = true;                   ///< flat traces: the hand runs ahead so that the ink lies on them
+    bool compensate_tip_lag = true;                   ///< flat traces: the hand runs ahead so that the ink lies on them
     std::string dip = "each";           ///< each: every stroke with a fresh full brush | carry: with
                                         ///< the hair and ink that the last one with it left
     bool endless = false;               ///< the ink that leaves the tuft is replaced at once, and what it takes up from
@@ -42,7 +42,7 @@ void check_settings(const Settings& settings);
 /// Throws `Error` for a time that ink cannot dry for.
 void check_seconds(double seconds);
 void check_extent(const Extent& extent, Action action);
-/// Throws `Error` for samples, a placement or tape that no hand can have made: numbers that are not finite, places
+/// Throws `Error` for samples, a placement or stencil edge that no hand can have made: numbers that are not finite, places
 /// beyond `kFarthest`, times beyond three years, pressures and tilts out of range, rotations and directions that
 /// are none.
 void check_trace(const Trace& trace);

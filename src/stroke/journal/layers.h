@@ -24,7 +24,7 @@ struct Layer {
     std::uint32_t id = kFirstLayer;   ///< unique in its painting, never used again
     std::string name = "Layer 1";     ///< unique among the layers that there are
     bool visible = true;
-    double opacity = 1;               ///< 0–1, see ink::look_of_tile
+    double opacity = 1;               ///< 0–1, see ink::shade_tile
     bool locked = false;              ///< takes no strokes from the hand
     ink::Blend blend = ink::Blend::normal;  ///< how its films meet what lies below
 

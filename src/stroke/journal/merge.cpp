@@ -205,7 +205,7 @@ EntryMark mark_of(const Stroke& entry) {
                             t.placement.right.x,  t.placement.right.y,  t.placement.right.z,
                             t.placement.down.x,   t.placement.down.y,   t.placement.down.z};
     h = hash_bytes(place, sizeof place, h);
-    const std::uint64_t rest[] = {t.seed, t.flat, static_cast<std::uint64_t>(t.placement.laying)};
+    const std::uint64_t rest[] = {t.seed, t.flat, static_cast<std::uint64_t>(t.placement.mapping)};
     h = hash_bytes(rest, sizeof rest, h);
     for (const std::string& text : {t.brush, t.ink, t.label, entry_json(entry)}) {
         const std::size_t size = text.size();

@@ -12,15 +12,15 @@
 namespace tuft::stroke {
 
 /// How flat pen data gets onto the model.
-enum class Laying {
+enum class SurfaceMapping {
     wrap,     ///< along the surface: (x, y) is walked as a geodesic from the placement's origin
     drape,    ///< the same on the surface without its narrow grooves, bumps and gaps
     project,  ///< along the placement's normal: first surface met by a ray from outside
 };
 
 /// "wrap", "drape", "project", and back; nothing for another name.
-std::string_view laying_name(Laying laying);
-std::optional<Laying> laying_named(std::string_view name);
+std::string_view surface_mapping_name(SurfaceMapping mapping);
+std::optional<SurfaceMapping> surface_mapping_named(std::string_view name);
 
 /// Where flat pen data lies: its origin near the surface and the direction of its
 /// x (to the right) and y axis (down, as pens and tablets give it), metres, model frame.
@@ -28,7 +28,7 @@ struct Placement {
     Vec3 origin{0};
     Vec3 right{1, 0, 0};
     Vec3 down{0, -1, 0};
-    Laying laying = Laying::wrap;
+    SurfaceMapping mapping = SurfaceMapping::wrap;
 };
 
 /// One sample of the hand.
@@ -68,7 +68,7 @@ struct Extent {
 };
 
 /// Something done with the brush between two strokes.
-struct Care {
+struct BrushAction {
     Action action = Action::dip;
     std::string ink;   ///< to dip into; empty: the ink of the stroke after it
     double seconds = 0;  ///< to dry for; 0: until all is dry
@@ -78,17 +78,17 @@ struct Care {
 
 /// A care in words, "ACTION[:INK][,depth=PART][,amount=PART][,side=PART]": "dip:cinnabar,depth=0.2",
 /// "wipe,amount=0.6"; and back, throwing `Error` for anything else.
-std::string care_text(const Care& care);
-Care care_of_text(const std::string& text);
+std::string action_text(const BrushAction& care);
+BrushAction action_of_text(const std::string& text);
 
-/// Part of a line of tape stuck on the surface, in the frame of a flat trace, metres. What may be painted lies to the
+/// Part of a line of stencil edge stuck on the surface, in the frame of a flat trace, metres. What may be painted lies to the
 /// side of `inward`, (from.y − to.y, to.x − from.x).
-struct TapeEdge {
+struct StencilEdge {
     Vec2 from{0}, to{0};
 
-    bool operator==(const TapeEdge&) const = default;
+    bool operator==(const StencilEdge&) const = default;
 };
-inline constexpr std::size_t kMostTape = 100'000;  ///< edges of one stroke
+inline constexpr std::size_t kMaxStencilEdges = 100'000;  ///< edges of one stroke
 
 /// One stroke from touch to lift.
 struct Trace {
@@ -105,8 +105,8 @@ struct Trace {
     std::string label;                   ///< free text for people: a character, a stroke's name
     bool pressed = true;                 ///< false: pressures were made up, the device gave none
     double line_width = 0;               ///< metres, as a drawing has it; 0: it says nothing
-    std::vector<TapeEdge> tape;          ///< flat: the hair lays no ink over it, wet ink creeps under; none: it may go anywhere
-    std::vector<Care> before;            ///< what a file wants done with the brush first
+    std::vector<StencilEdge> stencil;          ///< flat: the hair lays no ink over it, wet ink creeps under; none: it may go anywhere
+    std::vector<BrushAction> before;            ///< what a file wants done with the brush first
     std::string settings;                ///< as a file wants them, see `to_json` in journal.h; empty: as
                                          ///< the command line says
 };

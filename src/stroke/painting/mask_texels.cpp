@@ -25,14 +25,14 @@ MaskTexels by_texel(const Model& model, Fn&& coverage) {
         for (std::size_t slot = begin; slot < end; ++slot) {
             std::uint8_t lowest = 255;
             for (int t = 0; t < atlas::kTileTexels; ++t) {
-                if (map.tiles[slot].piece[t] == atlas::kNoPiece) continue;
+                if (map.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
                 const double c = std::clamp(static_cast<double>(coverage(static_cast<std::uint32_t>(slot), t)), 0.0, 1.0);
                 tiles[slot][t] = static_cast<std::uint8_t>(std::lround(255 * c));
                 lowest = std::min(lowest, tiles[slot][t]);
             }
             const std::uint8_t outside = lowest == 255 ? 255 : 0;
             for (int t = 0; t < atlas::kTileTexels; ++t)
-                if (map.tiles[slot].piece[t] == atlas::kNoPiece) tiles[slot][t] = outside;
+                if (map.tiles[slot].cluster[t] == atlas::kNoCluster) tiles[slot][t] = outside;
         }
     });
     MaskTexels out(map.n_slots());
@@ -100,7 +100,7 @@ MaskTexels by_chart(const Mask& mask, const Model& model) {
     }
     const atlas::TexelMap& map = model.texels;
     return by_texel(model, [&](std::uint32_t slot, int t) {
-        return wanted[map.piece_chart[map.piece_start[slot] + map.tiles[slot].piece[t]]];
+        return wanted[map.cluster_chart[map.cluster_start[slot] + map.tiles[slot].cluster[t]]];
     });
 }
 

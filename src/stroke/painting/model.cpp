@@ -10,8 +10,8 @@
 namespace tuft::stroke {
 namespace {
 
-// Bytes per texel of a full tile: area and piece number, one pigment plane and the copy kept
-// for undo, and a share of the piece graph; position and normal in floats or in 16 bits.
+// Bytes per texel of a full tile: area and cluster number, one pigment plane and the copy kept
+// for undo, and a share of the cluster graph; position and normal in floats or in 16 bits.
 constexpr double kBytesPerTexel = 5.0 + 4.0 + 4.0 + 1.0;
 constexpr double kFloatShape = 24.0, kPackedShape = 10.0;
 // Charts cover no more than this part of an atlas; the tiles they touch a little more.
@@ -35,8 +35,8 @@ void finish(Model& model, atlas::TexelStore texels, const ProgressFn& progress) 
     report(progress, "search tree", 1);
     model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress, texels);
     release_free_memory();
-    model.pieces = atlas::build_piece_graph(*model.mesh, model.atlas, model.texels, progress);
-    model.ground = ink::own_ground(*model.mesh, model.atlas, model.texels);
+    model.clusters = atlas::build_cluster_graph(*model.mesh, model.atlas, model.texels, progress);
+    model.ground = ink::base_colour_of(*model.mesh, model.atlas, model.texels);
     release_free_memory();
 }
 

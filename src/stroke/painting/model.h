@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "atlas/atlas.h"
-#include "atlas/texels/piece_graph.h"
+#include "atlas/texels/cluster_graph.h"
 #include "atlas/texels/texel_map.h"
 #include "footprint/stamp.h"
-#include "ink/colour/ground.h"
+#include "ink/colour/base_colour.h"
 #include "mesh/repair.h"
 #include "mesh/surface_query.h"
 
@@ -21,10 +21,10 @@ struct Model {
     atlas::AtlasReport atlas_report;
     std::unique_ptr<mesh::SurfaceQuery> query;
     atlas::TexelMap texels;
-    atlas::PieceGraph pieces;
-    ink::Ground ground;  ///< the mesh's own colours, or empty
+    atlas::ClusterGraph clusters;
+    ink::BaseColour ground;  ///< the mesh's own colours, or empty
 
-    footprint::Surface surface() const { return {*mesh, atlas, texels, pieces}; }
+    footprint::Surface surface() const { return {*mesh, atlas, texels, clusters}; }
 };
 
 struct ModelOptions {

@@ -10,42 +10,42 @@
 #include "stroke/session/session.h"
 
 namespace tuft::stroke {
-Painting::Painting(const Model& model, const PaintingOptions& options)
+Document::Document(const Model& model, const DocumentOptions& options)
     : model_(&model),
       options_(options),
       substrate_(ink::load_substrate(options.substrate)),
       canvas_(model.texels.n_slots()),
       plan_scratch_(std::make_unique<PlanScratchPool>()) {}
 
-Painting::~Painting() = default;
-Painting::Painting(Painting&&) noexcept = default;
-Painting& Painting::operator=(Painting&&) noexcept = default;
+Document::~Document() = default;
+Document::Document(Document&&) noexcept = default;
+Document& Document::operator=(Document&&) noexcept = default;
 
-void Painting::use_brush(const brush::Preset& preset) {
+void Document::use_brush(const brush::Preset& preset) {
     brushes_[preset.name] = preset;
     held_.erase(preset.name);
 }
-void Painting::use_ink(const ink::Ink& ink) { inks_[ink.name] = ink; }
+void Document::use_ink(const ink::Ink& ink) { inks_[ink.name] = ink; }
 
-const brush::Preset& Painting::brush(const std::string& name) {
+const brush::Preset& Document::brush(const std::string& name) {
     const auto found = brushes_.find(name);
     if (found != brushes_.end()) return found->second;
     return brushes_.emplace(name, brush::load_preset(name)).first->second;
 }
 
-const ink::Ink& Painting::ink(const std::string& name) {
+const ink::Ink& Document::ink(const std::string& name) {
     const auto found = inks_.find(name);
     if (found != inks_.end()) return found->second;
     return inks_.emplace(name, ink::ink_named(name, substrate_, canvas_.pigments())).first->second;
 }
 
-const BrushInHand* Painting::held(const std::string& brush) const {
+const BrushInHand* Document::held(const std::string& brush) const {
     const auto found = held_.find(brush);
     return found == held_.end() ? nullptr : &found->second;
 }
 
 // A brush that is not held is fresh; the entry says so, for replays that hold it.
-void Painting::settle(Stroke& entry) const {
+void Document::settle(Stroke& entry) const {
     if (entry.action == Action::layer && (entry.edit.what == LayerChange::add || entry.edit.what == LayerChange::duplicate) && entry.edit.layer.id == 0)
         entry.edit.layer.id = layers_.next_id;
     if (entry.action == Action::mask && !entry.mask_edit.remove && entry.mask_edit.mask.id == 0)
@@ -58,7 +58,7 @@ void Painting::settle(Stroke& entry) const {
 }
 
 // The brush an entry begins with.
-BrushInHand Painting::take_up(const Stroke& entry) {
+BrushInHand Document::take_up(const Stroke& entry) {
     brush::Preset preset = brush(entry.trace.brush);
     if (entry.settings.spine == "table") preset.spine = brush::SpineMethod::table;
     if (entry.trace.erases) {
@@ -91,7 +91,7 @@ BrushInHand Painting::take_up(const Stroke& entry) {
 }
 
 // The entry is done: the brush is as it is now, and undo knows what it and the tiles were.
-void Painting::put_down(std::uint64_t id, const std::string& brush, BrushInHand after, LayerTiles before) {
+void Document::put_down(std::uint64_t id, const std::string& brush, BrushInHand after, LayerTiles before) {
     Undo undo{.stroke_id = id, .brush = brush};
     undo.before.push_back(std::move(before));
     if (const auto found = held_.find(brush); found != held_.end()) {
@@ -102,7 +102,7 @@ void Painting::put_down(std::uint64_t id, const std::string& brush, BrushInHand 
     keep_undo(std::move(undo));
 }
 
-void Painting::keep_undo(Undo undo) {
+void Document::keep_undo(Undo undo) {
     for (const LayerTiles& of_layer : undo.before)
         for (const ink::TileSnapshot& tile : of_layer.tiles)
             undo.bytes += sizeof(ink::TileSnapshot) + tile.amounts.size() * sizeof(float);
@@ -117,7 +117,7 @@ void Painting::keep_undo(Undo undo) {
 }
 
 // Pigments of what is taken back are as if they had never been met: a replay meets the others in its own order.
-void Painting::forget_pigments(std::size_t n) {
+void Document::forget_pigments(std::size_t n) {
     known_pigments_ = n;
     if (n >= canvas_.pigments().size()) return;
     canvas_.forget_pigments(n);
@@ -125,7 +125,7 @@ void Painting::forget_pigments(std::size_t n) {
     if (palette_) palette_->canvas.forget_pigments(n);
 }
 
-void Painting::act(const Stroke& entry, const ProgressFn& progress) {
+void Document::act(const Stroke& entry, const ProgressFn& progress) {
     if (entry.action == Action::dry) return dry(entry, progress);
     if (entry.action == Action::layer) return edit_layers(entry);
     if (entry.action == Action::mask) return edit_masks(entry);
@@ -169,17 +169,17 @@ void check_width(const brush::Preset& preset, double texel) {
 
 }  // namespace
 
-void Painting::begin(Stroke stroke) {
+void Document::begin(Stroke stroke) {
     check_layer(stroke);
     begin_session(std::move(stroke));
 }
 
-void Painting::begin_session(Stroke stroke) {
+void Document::begin_session(Stroke stroke) {
     cancel();
     settle(stroke);
     BrushInHand brush = take_up(stroke);
     const ink::Ink& ink = stroke.trace.erases ? ink::Ink{} : this->ink(brush.dipped);
-    const Model& model = ground_of(stroke);
+    const Model& model = target_model(stroke);
     const ink::Substrate& substrate = substrate_of(stroke);
     const double texel = model.texels.texel_size;
     check_width(brush.tuft.preset, texel);
@@ -206,10 +206,10 @@ void Painting::begin_session(Stroke stroke) {
                                                             .record_forces = options_.record_forces});
 }
 
-void Painting::extend(std::span<const brush::Pose> poses) { session_->extend(poses); }
+void Document::extend(std::span<const brush::Pose> poses) { session_->extend(poses); }
 
 // Ends the stroke in work without a word to the journal.
-StrokeReport Painting::finish_session() {
+StrokeReport Document::finish_session() {
     SessionResult result = session_->finish();
     const Stroke& stroke = session_->stroke();
     LayerTiles before{stroke.layer, std::move(result.before)};
@@ -224,7 +224,7 @@ StrokeReport Painting::finish_session() {
     return std::move(result.report);
 }
 
-StrokeReport Painting::end() {
+StrokeReport Document::end() {
     Stroke stroke = session_->stroke();
     StrokeReport report = finish_session();
     report.stroke_id = journal_.append(std::move(stroke)).id;
@@ -232,7 +232,7 @@ StrokeReport Painting::end() {
     return report;
 }
 
-void Painting::cancel() {
+void Document::cancel() {
     if (!session_) return;
     ink::Canvas& canvas = this->canvas(session_->stroke().layer);
     for (const ink::TileSnapshot& tile : session_->take_snapshots()) canvas.restore(tile);
@@ -240,22 +240,22 @@ void Painting::cancel() {
     forget_pigments(known_pigments_);
 }
 
-HandPath Painting::path_of(const Stroke& stroke) {
+HandPath Document::path_of(const Stroke& stroke) {
     if (!stroke.trace.flat) return {{}, spatial_poses(stroke.trace), 0};
     const brush::Preset& preset = brush(stroke.trace.brush);
-    const mesh::SurfaceQuery& query = *ground_of(stroke).query;
-    HoldOptions options = hold_options(preset, query.mesh());
-    if (stroke.settings.lead) {
-        auto [lead, is_new] = leads_.try_emplace(preset.name);
-        if (is_new) lead->second = drag_lead(preset);
-        options.lead = lead->second;
-        LeanedLead& leaned = leaned_leads_.try_emplace(preset.name, preset).first->second;
+    const mesh::SurfaceQuery& query = *target_model(stroke).query;
+    HolderOptions options = holder_options(preset, query.mesh());
+    if (stroke.settings.compensate_tip_lag) {
+        auto [tip_lag, is_new] = tip_lags_.try_emplace(preset.name);
+        if (is_new) tip_lag->second = measure_tip_lag(preset);
+        options.tip_lag = tip_lag->second;
+        TiltedTipLag& leaned = tilted_tip_lags_.try_emplace(preset.name, preset).first->second;
         options.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
     }
     return hand_path(query, steady(stroke.trace, stroke.settings), options);
 }
 
-StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
+StrokeReport Document::draw(const Stroke& stroke, const ProgressFn& progress) {
     if (stroke.action != Action::stroke) {
         cancel();
         if (stroke.action == Action::fill) return lay_fill(stroke);
@@ -272,7 +272,7 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
         for (std::size_t i = 0; i < poses.size(); ++i)
             session_->advance(std::span(poses).subspan(i, 1), static_cast<double>(i + 1) / static_cast<double>(poses.size()));
         StrokeReport report = finish_session();
-        if (stroke.trace.flat) report.origin_inside = contact::depth_inside(*ground_of(stroke).query, stroke.trace.placement.origin);
+        if (stroke.trace.flat) report.origin_inside = contact::depth_inside(*target_model(stroke).query, stroke.trace.placement.origin);
         return report;
     } catch (...) {
         cancel();
@@ -280,7 +280,7 @@ StrokeReport Painting::draw(const Stroke& stroke, const ProgressFn& progress) {
     }
 }
 
-StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
+StrokeReport Document::paint(Stroke stroke, const ProgressFn& progress) {
     stroke.id = 0;  // none yet, whatever journal it comes from
     check_layer(stroke);
     settle(stroke);
@@ -296,17 +296,17 @@ StrokeReport Painting::paint(Stroke stroke, const ProgressFn& progress) {
     return report;
 }
 
-ink::ComposeOptions Painting::compose_options() const {
+ink::ComposeOptions Document::compose_options() const {
     if (!gutter_)
         gutter_ = std::make_unique<ink::GutterPlan>(
             ink::plan_gutter(*model_->mesh, model_->atlas, model_->texels));
     return {.gutter = model_->atlas.gutter, .seams = gutter_.get()};
 }
 
-Vec3 Painting::hand_force() const { return session_ ? session_->device_force() : Vec3{0}; }
-const brush::TuftState* Painting::tuft() const { return session_ ? &session_->tuft() : nullptr; }
+Vec3 Document::device_force() const { return session_ ? session_->device_force() : Vec3{0}; }
+const brush::TuftState* Document::tuft() const { return session_ ? &session_->tuft() : nullptr; }
 
-std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const ProgressFn& progress) {
+std::vector<StrokeReport> Document::replay(std::vector<Stroke> strokes, const ProgressFn& progress) {
     std::vector<StrokeReport> reports;
     const double all = std::max<double>(1.0, static_cast<double>(strokes.size()));
     for (std::size_t i = 0; i < strokes.size(); ++i) {
@@ -322,14 +322,14 @@ std::vector<StrokeReport> Painting::replay(std::vector<Stroke> strokes, const Pr
     return reports;
 }
 
-void Painting::adopt(std::vector<Stroke> strokes, ink::Canvas canvas) {
+void Document::adopt(std::vector<Stroke> strokes, ink::Canvas canvas) {
     const std::uint64_t last = strokes.empty() ? 0 : strokes.back().id;
     std::vector<LayerCanvas> canvases;
     canvases.push_back({kFirstLayer, std::move(canvas)});
     adopt(std::move(strokes), std::move(canvases), last);
 }
 
-bool Painting::undo() {
+bool Document::undo() {
     cancel();
     if (!journal_.can_undo()) return false;
     const std::uint64_t id = journal_.strokes().back().id;
@@ -359,14 +359,14 @@ bool Painting::undo() {
     return true;
 }
 
-bool Painting::redo() {
+bool Document::redo() {
     cancel();
     if (!journal_.redo()) return false;
     if (const Stroke& stroke = journal_.strokes().back(); !stroke.hidden) draw(stroke, {});
     return true;
 }
 
-void Painting::repaint_all() {
+void Document::repaint_all() {
     for (const LayerTexels& layer : canvases()) touch_look(layer.layer);
     canvas_.clear();
     upper_.clear();

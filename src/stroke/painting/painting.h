@@ -13,7 +13,7 @@
 #include "ink/colour/composite.h"
 #include "ink/colour/pigments.h"
 #include "ink/film/film.h"
-#include "stroke/hand/lead.h"
+#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/placement.h"
 #include "stroke/journal/journal.h"
 #include "stroke/painting/model.h"
@@ -23,7 +23,7 @@
 
 namespace tuft::stroke {
 
-struct PaintingOptions {
+struct DocumentOptions {
     std::string substrate = "porcelain";   ///< preset name; `use_substrate` takes any other
     std::size_t undo_bytes = std::size_t{256} << 20;  ///< kept copies of tiles; older strokes undo by replay
     bool record_forces = false;
@@ -41,7 +41,7 @@ struct Pick {
     mesh::SurfacePoint at;          ///< nearest to the point asked for
     atlas::TexelRef texel;
     std::vector<PickedFilm> films;  ///< of the layers to be seen, the lowest first, none empty
-    std::array<double, ink::kMaxPigments> amounts{};  ///< of them all, by plane of `Painting::canvas`
+    std::array<double, ink::kMaxPigments> amounts{};  ///< of them all, by plane of `Document::canvas`
     double liquid = 0;              ///< film units, on the surface and in it
 };
 
@@ -52,7 +52,7 @@ LayerTable layers_after(std::span<const Stroke> entries);
 MaskTable masks_after(std::span<const Stroke> entries);
 
 /// Whether texels stored after entry `stroke_id` show all these entries, but for changes of
-/// layers and masks since, so that `Painting::adopt` takes them.
+/// layers and masks since, so that `Document::adopt` takes them.
 bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id);
 
 /// Gives each stroke the layer that its trace names (or `name` where it names none; empty: the
@@ -65,21 +65,21 @@ void keep_to_named_masks(std::vector<Stroke>& strokes, const MaskTable& table, c
 
 class PlanScratchPool;
 class StrokeSession;
-class Painting;
+class Document;
 
 /// Draws what the palette of a painting looks like: all of it, or only these slots anew.
-void refresh(PalettePicture& picture, const Painting& painting);
-void refresh(PalettePicture& picture, const Painting& painting, std::span<const std::uint32_t> slots);
+void refresh(PalettePicture& picture, const Document& painting);
+void refresh(PalettePicture& picture, const Document& painting, std::span<const std::uint32_t> slots);
 
 /// A model being painted: its journal and the texels made from it. The model must
 /// outlive it. All strokes take one path, whether they come from a file, a project or a
 /// hand that moves right now: sample → resample → contact → brush → footprint → ink.
-class Painting {
+class Document {
   public:
-    explicit Painting(const Model& model, const PaintingOptions& options = {});
-    ~Painting();
-    Painting(Painting&&) noexcept;
-    Painting& operator=(Painting&&) noexcept;
+    explicit Document(const Model& model, const DocumentOptions& options = {});
+    ~Document();
+    Document(Document&&) noexcept;
+    Document& operator=(Document&&) noexcept;
 
     /// Presets that take the place of the shipped ones of the same name, for the strokes
     /// that are painted from now on (a project brings its own).
@@ -100,7 +100,7 @@ class Painting {
     /// fresh: its entry is kept in the journal as "each", so that a replay is the same.
     StrokeReport paint(Stroke stroke, const ProgressFn& progress = {});
 
-    /// The same in pieces for poses in space: `begin`, any number of `extend`, `end`.
+    /// The same in clusters for poses in space: `begin`, any number of `extend`, `end`.
     /// `stroke` brings the header; its samples may be empty. `cancel` takes it back instead.
     void begin(Stroke stroke);
     void extend(std::span<const brush::Pose> poses);
@@ -110,7 +110,7 @@ class Painting {
     /// The bent tuft at the last sample, for drawing it; empty between strokes.
     const brush::TuftState* tuft() const;
     /// What a haptic device shall give at the last sample, newtons; 0 between strokes.
-    Vec3 hand_force() const;
+    Vec3 device_force() const;
 
     /// The brush as the last entry with it left it; null when this painting does not hold it.
     const BrushInHand* held(const std::string& brush) const;
@@ -156,7 +156,7 @@ class Painting {
     void show_only(std::vector<std::uint32_t> layers);
     /// The masks now; entries with `Action::mask` change them. A stroke or fill that names one in
     /// `Stroke::mask` leaves everything outside it as it is. What it leaves wet does not flow over the
-    /// mask's edge either: the mask stays on the layer, as tape does, until something is painted there
+    /// mask's edge either: the mask stays on the layer, as stencil edge does, until something is painted there
     /// with another one or none.
     const MaskTable& masks() const { return masks_; }
     /// The mask on this model's texels; made at the first call and kept. Throws `Error` when there
@@ -182,13 +182,13 @@ class Painting {
 
     /// Hash of the texels of all layers; of one layer as its canvas has it.
     std::uint64_t hash() const;
-    /// What the maps show the ink on: what it was painted on, unless `show_on` said otherwise.
-    const ink::Substrate& substrate() const { return shown_on_ ? *shown_on_ : substrate_; }
+    /// What the maps show the ink on: what it was painted on, unless `preview_substrate` said otherwise.
+    const ink::Substrate& substrate() const { return previewed_substrate_ ? *previewed_substrate_ : substrate_; }
     const ink::Substrate& painted_on() const { return substrate_; }
     void use_substrate(const ink::Substrate& substrate) { substrate_ = substrate; }
     /// Shows the ink on another substrate; nothing is painted anew, no amount changes.
-    void show_on(std::optional<ink::Substrate> substrate);
-    bool shown_elsewhere() const { return shown_on_.has_value(); }
+    void preview_substrate(std::optional<ink::Substrate> substrate);
+    bool has_preview_substrate() const { return previewed_substrate_.has_value(); }
     /// Shows what was and will be painted with ink `name` as if it were `wanted`
     /// (ink/recolour.h). Amounts, and what replays paint, stay as they are.
     void recolour(const std::string& name, const ink::Ink& wanted);
@@ -199,7 +199,7 @@ class Painting {
     /// Slots whose look changed since the last call, ascending.
     std::vector<std::uint32_t> take_dirty();
 
-    friend void refresh(PalettePicture& picture, const Painting& painting, std::span<const std::uint32_t> slots);
+    friend void refresh(PalettePicture& picture, const Document& painting, std::span<const std::uint32_t> slots);
 
   private:
     struct Undo {
@@ -224,7 +224,7 @@ class Painting {
     const atlas::SeamLinks& seams();
     Palette& plate();
     void wash(const Stroke& entry);
-    const Model& ground_of(const Stroke& entry);
+    const Model& target_model(const Stroke& entry);
     const ink::Substrate& substrate_of(const Stroke& entry) const;
     Pick pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const;
     void edit_layers(const Stroke& entry);
@@ -249,9 +249,9 @@ class Painting {
     HandPath path_of(const Stroke& stroke);
 
     const Model* model_;
-    PaintingOptions options_;
+    DocumentOptions options_;
     ink::Substrate substrate_;
-    std::optional<ink::Substrate> shown_on_;
+    std::optional<ink::Substrate> previewed_substrate_;
     std::map<std::string, ink::Ink> recolours_;  ///< by the name of the ink painted with
     ink::Canvas canvas_;                              ///< of kFirstLayer
     std::map<std::uint32_t, ink::Canvas> upper_;      ///< of the other layers
@@ -265,8 +265,8 @@ class Painting {
     std::map<std::string, brush::Preset> brushes_;
     std::map<std::string, ink::Ink> inks_;
     std::map<std::string, BrushInHand> held_;
-    std::map<std::string, std::vector<Lead>> leads_;  ///< by brush
-    std::map<std::string, LeanedLead> leaned_leads_;     ///< by brush
+    std::map<std::string, std::vector<TipLag>> tip_lags_;  ///< by brush
+    std::map<std::string, TiltedTipLag> tilted_tip_lags_;     ///< by brush
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
     std::size_t known_pigments_ = 0;                  ///< by the entries of the journal

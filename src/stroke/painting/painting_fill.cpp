@@ -17,13 +17,13 @@ void pour(ink::Canvas& canvas, std::uint32_t slot, const ink::Coat& coat) {
 
 }  // namespace
 
-StrokeReport Painting::lay_fill(const Stroke& entry) {
+StrokeReport Document::lay_fill(const Stroke& entry) {
     check_fill(entry.fill);
     const Fill& fill = entry.fill;
     const ink::Mix first = mix_of(entry.trace.ink);
     const ink::Mix second = fill.to_ink.empty() ? first : mix_of(fill.to_ink);
     const bool on_palette = entry.layer == kPaletteLayer;
-    const Model& model = ground_of(entry);
+    const Model& model = target_model(entry);
     const std::vector<std::uint8_t> charts = charts_of(fill, model);
     ink::Canvas& canvas = this->canvas(entry.layer);
     const MaskTexels* mask = entry.mask && !on_palette ? &this->mask(entry.mask) : nullptr;
@@ -31,8 +31,8 @@ StrokeReport Painting::lay_fill(const Stroke& entry) {
 
     std::vector<std::uint32_t> slots;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
-        for (std::uint32_t k = map.piece_start[slot]; k < map.piece_start[slot + 1]; ++k)
-            if (charts[map.piece_chart[k]] && (slots.empty() || slots.back() != slot)) slots.push_back(slot);
+        for (std::uint32_t k = map.cluster_start[slot]; k < map.cluster_start[slot + 1]; ++k)
+            if (charts[map.cluster_chart[k]] && (slots.empty() || slots.back() != slot)) slots.push_back(slot);
     if (mask) std::erase_if(slots, [mask](std::uint32_t slot) { return mask->none(slot); });
     Undo undo{.stroke_id = entry.id};
     LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = entry.layer, .tiles = {}});
@@ -46,8 +46,8 @@ StrokeReport Painting::lay_fill(const Stroke& entry) {
         for (std::size_t i = begin; i < end; ++i) {
             const atlas::TexelTile& tile = map.tiles[slots[i]];
             for (int t = 0; t < atlas::kTileTexels; ++t) {
-                const std::uint8_t piece = tile.piece[t];
-                const bool in = piece != atlas::kNoPiece && charts[map.piece_chart[map.piece_start[slots[i]] + piece]];
+                const std::uint8_t cluster = tile.cluster[t];
+                const bool in = cluster != atlas::kNoCluster && charts[map.cluster_chart[map.cluster_start[slots[i]] + cluster]];
                 const double along = in ? along_gradient(fill, Vec3(map.position(slots[i], t))) : 0;
                 const double film = fill.gradient == Gradient::none
                                         ? fill.film

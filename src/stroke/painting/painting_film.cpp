@@ -9,13 +9,13 @@ constexpr double kDryLimit = 3600;  // seconds, in which all is dry
 
 }  // namespace
 
-const atlas::SeamLinks& Painting::seams() {
+const atlas::SeamLinks& Document::seams() {
     if (!seams_)
         seams_ = std::make_unique<atlas::SeamLinks>(atlas::build_seam_links(*model_->mesh, model_->atlas, model_->texels));
     return *seams_;
 }
 
-ink::WetFilm& Painting::film(std::uint32_t mask) {
+ink::WetFilm& Document::film(std::uint32_t mask) {
     if (!film_) film_ = std::make_unique<ink::WetFilm>(model_->texels, seams());
     if (mask == film_mask_) return *film_;
     ink::WetFilm::FreeFn free;
@@ -26,7 +26,7 @@ ink::WetFilm& Painting::film(std::uint32_t mask) {
 }
 
 /// The mask that was last painted through on a layer, of entries before this one.
-std::uint32_t Painting::tape_on(std::uint32_t layer, std::uint64_t before_id) const {
+std::uint32_t Document::tape_on(std::uint32_t layer, std::uint64_t before_id) const {
     std::map<std::uint32_t, std::uint32_t> masks;  // by layer
     for (const Stroke& s : journal_.strokes()) {
         if (before_id && s.id == before_id) break;
@@ -41,13 +41,13 @@ std::uint32_t Painting::tape_on(std::uint32_t layer, std::uint64_t before_id) co
     return masks_.find(mask) ? mask : 0;
 }
 
-void Painting::take_back(const std::vector<LayerTiles>& before) {
+void Document::take_back(const std::vector<LayerTiles>& before) {
     for (const LayerTiles& of_layer : before)
         for (const ink::TileSnapshot& tile : of_layer.tiles) canvas(of_layer.layer).restore(tile);
 }
 
 // Undo takes back the tiles; no brush has a part in it. All layers dry.
-void Painting::dry(const Stroke& entry, const ProgressFn& progress) {
+void Document::dry(const Stroke& entry, const ProgressFn& progress) {
     const ink::FilmParams params = ink::film_params(substrate_, entry.settings.down);
     Undo undo{.stroke_id = entry.id};
     for (const Layer& layer : layers_.layers) {

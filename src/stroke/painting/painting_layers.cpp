@@ -44,7 +44,7 @@ std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable ta
     return out;
 }
 
-ink::Canvas& Painting::canvas(std::uint32_t layer) {
+ink::Canvas& Document::canvas(std::uint32_t layer) {
     if (layer == kPaletteLayer) {
         ink::Canvas& canvas = plate().canvas;
         for (std::size_t p = canvas.pigments().size(); p < canvas_.pigments().size(); ++p)
@@ -59,14 +59,14 @@ ink::Canvas& Painting::canvas(std::uint32_t layer) {
     return canvas;
 }
 
-std::vector<LayerTexels> Painting::canvases() const {
+std::vector<LayerTexels> Document::canvases() const {
     std::vector<LayerTexels> all;
     for (const Layer& layer : layers_.layers)
         all.push_back({layer.id, layer.id == kFirstLayer ? &canvas_ : &upper_.at(layer.id)});
     return all;
 }
 
-std::vector<LayerTexels> Painting::shown_layers() const {
+std::vector<LayerTexels> Document::shown_layers() const {
     std::vector<LayerTexels> shown;
     for (const LayerTexels& texels : canvases()) {
         const Layer& layer = *layers_.find(texels.layer);
@@ -77,23 +77,23 @@ std::vector<LayerTexels> Painting::shown_layers() const {
     return shown;
 }
 
-ink::Stack Painting::stack() const {
+ink::Stack Document::stack() const {
     ink::Stack stack{std::vector<ink::LayerView>{}};
-    if (!shown_on_) stack.ground = &model_->ground;  // another substrate is seen whole
+    if (!previewed_substrate_) stack.ground = &model_->ground;  // another substrate is seen whole
     for (const LayerTexels& texels : shown_layers())
         stack.layers.push_back({texels.canvas, static_cast<float>(layers_.find(texels.layer)->opacity),
                                 layers_.find(texels.layer)->blend});
     return stack;
 }
 
-void Painting::show_only(std::vector<std::uint32_t> layers) {
+void Document::show_only(std::vector<std::uint32_t> layers) {
     for (const std::uint32_t layer : layers)
         if (!layers_.find(layer)) throw Error("there is no layer " + std::to_string(layer));
     shown_ = std::move(layers);
     for (const Layer& layer : layers_.layers) touch_look(layer.id);
 }
 
-std::uint64_t Painting::hash() const {
+std::uint64_t Document::hash() const {
     const std::vector<LayerTexels> texels = canvases();
     if (texels.size() == 1) return texels[0].canvas->hash();
     std::uint64_t h = 0;
@@ -105,13 +105,13 @@ std::uint64_t Painting::hash() const {
 }
 
 // All that the layer covers is to be drawn anew.
-void Painting::touch_look(std::uint32_t layer) {
+void Document::touch_look(std::uint32_t layer) {
     const ink::Canvas& canvas = layer == kFirstLayer ? canvas_ : upper_.at(layer);
     const std::vector<std::uint32_t> slots = canvas.touched_slots();
     changed_.insert(changed_.end(), slots.begin(), slots.end());
 }
 
-std::vector<std::uint32_t> Painting::take_dirty() {
+std::vector<std::uint32_t> Document::take_dirty() {
     std::vector<std::uint32_t> dirty = canvas_.take_dirty();
     if (upper_.empty() && changed_.empty()) return dirty;
     for (auto& [layer, canvas] : upper_) {
@@ -126,7 +126,7 @@ std::vector<std::uint32_t> Painting::take_dirty() {
 }
 
 // Before the hand begins: what it may not do. A replay may, since the lock came after it.
-void Painting::check_layer(const Stroke& entry) const {
+void Document::check_layer(const Stroke& entry) const {
     if (entry.action != Action::stroke && entry.action != Action::fill) return;
     if (entry.layer == kPaletteLayer) return;
     const Layer* layer = layers_.find(entry.layer);
@@ -136,7 +136,7 @@ void Painting::check_layer(const Stroke& entry) const {
         throw Error("layer '" + layer->name + "' is locked; unlock it or paint on another one");
 }
 
-void Painting::edit_layers(const Stroke& entry) {
+void Document::edit_layers(const Stroke& entry) {
     Undo undo{.stroke_id = entry.id, .layers = layers_};
     const std::uint32_t id = entry.edit.layer.id;
     if (entry.edit.what == LayerChange::merge) canvas(id);  // knows all pigments now
@@ -160,7 +160,7 @@ void Painting::edit_layers(const Stroke& entry) {
 }
 
 // Texels of a layer that ends.
-LayerCanvas Painting::take_texels(std::uint32_t id) {
+LayerCanvas Document::take_texels(std::uint32_t id) {
     touch_look(id);
     LayerCanvas taken{id, ink::Canvas(model_->texels.n_slots())};
     if (id == kFirstLayer) {
@@ -174,7 +174,7 @@ LayerCanvas Painting::take_texels(std::uint32_t id) {
 }
 
 // What the lower layer held where ink is laid on it.
-LayerTiles Painting::merge_texels(std::uint32_t into, const ink::Canvas& from) {
+LayerTiles Document::merge_texels(std::uint32_t into, const ink::Canvas& from) {
     ink::Canvas& lower = canvas(into);
     LayerTiles before{into, {}};
     for (const std::uint32_t slot : from.touched_slots()) before.tiles.push_back(lower.snapshot(slot));
@@ -183,7 +183,7 @@ LayerTiles Painting::merge_texels(std::uint32_t into, const ink::Canvas& from) {
 }
 
 // Another table; layers that it does not have go, with their texels.
-void Painting::set_layers(LayerTable table) {
+void Document::set_layers(LayerTable table) {
     const bool same_layers = table.layers.size() == layers_.layers.size();
     for (std::size_t i = 0; i < layers_.layers.size(); ++i) {
         const Layer& layer = layers_.layers[i];
@@ -196,7 +196,7 @@ void Painting::set_layers(LayerTable table) {
 }
 
 // The tiles, the table and the texels of layers as they were before.
-void Painting::take_back_layers(Undo& undo) {
+void Document::take_back_layers(Undo& undo) {
     for (const LayerTiles& before : undo.before) {
         if (before.tiles.empty()) continue;
         ink::Canvas& canvas = this->canvas(before.layer);
@@ -218,7 +218,7 @@ void Painting::take_back_layers(Undo& undo) {
     touch_look(id);
 }
 
-void Painting::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id) {
+void Document::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id) {
     for (const LayerCanvas& layer : canvases) {
         const Model& model = layer.layer == kPaletteLayer ? plate().model : *model_;
         if (layer.canvas.n_slots() != model.texels.n_slots())

@@ -21,7 +21,7 @@ void keep_to_named_masks(std::vector<Stroke>& strokes, const MaskTable& table, c
     }
 }
 
-const MaskTexels& Painting::mask(std::uint32_t id) {
+const MaskTexels& Document::mask(std::uint32_t id) {
     const Mask* mask = masks_.find(id);
     if (!mask) throw Error("there is no mask " + std::to_string(id));
     const auto found = mask_texels_.find(id);
@@ -29,7 +29,7 @@ const MaskTexels& Painting::mask(std::uint32_t id) {
     return mask_texels_.emplace(id, evaluate(*mask, masks_, *model_)).first->second;
 }
 
-void Painting::edit_masks(const Stroke& entry) {
+void Document::edit_masks(const Stroke& entry) {
     MaskTable table = masks_;
     apply(table, entry.mask_edit);
     // An id may come back with another mask after an undo.

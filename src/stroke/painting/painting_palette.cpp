@@ -7,29 +7,29 @@
 /// What a painting does with its palette.
 namespace tuft::stroke {
 
-Palette& Painting::plate() {
+Palette& Document::plate() {
     if (!palette_) palette_ = std::make_unique<Palette>();
     return *palette_;
 }
 
-const Model& Painting::ground_of(const Stroke& entry) {
+const Model& Document::target_model(const Stroke& entry) {
     return entry.layer == kPaletteLayer ? plate().model : *model_;
 }
 
-const ink::Substrate& Painting::substrate_of(const Stroke& entry) const {
+const ink::Substrate& Document::substrate_of(const Stroke& entry) const {
     return entry.layer == kPaletteLayer ? palette_->substrate : substrate_;
 }
 
-Pick Painting::pick_palette(const Vec3& point) {
+Pick Document::pick_palette(const Vec3& point) {
     const LayerTexels texels{kPaletteLayer, &canvas(kPaletteLayer)};
     return pick_at(point, plate().model, std::span(&texels, 1));
 }
 
-std::vector<std::uint32_t> Painting::take_palette_dirty() {
+std::vector<std::uint32_t> Document::take_palette_dirty() {
     return palette_ ? palette_->canvas.take_dirty() : std::vector<std::uint32_t>{};
 }
 
-std::vector<LayerTexels> Painting::all_canvases() const {
+std::vector<LayerTexels> Document::all_canvases() const {
     std::vector<LayerTexels> all = canvases();
     if (palette_ && !palette_->canvas.touched_slots().empty()) all.push_back({kPaletteLayer, &palette_->canvas});
     return all;
@@ -42,7 +42,7 @@ constexpr int kFirstRow = 16;  // of texels that the plate covers
 
 }  // namespace
 
-void refresh(PalettePicture& picture, const Painting& painting) {
+void refresh(PalettePicture& picture, const Document& painting) {
     const ink::Rgb bare = palette_substrate().reflectance;
     picture.rgb.resize(3 * static_cast<std::size_t>(picture.width * picture.height));
     for (std::size_t i = 0; i < picture.rgb.size(); ++i)
@@ -50,12 +50,12 @@ void refresh(PalettePicture& picture, const Painting& painting) {
     if (painting.palette()) refresh(picture, painting, painting.palette()->touched_slots());
 }
 
-void refresh(PalettePicture& picture, const Painting& painting, std::span<const std::uint32_t> slots) {
+void refresh(PalettePicture& picture, const Document& painting, std::span<const std::uint32_t> slots) {
     if (picture.rgb.empty()) return refresh(picture, painting);
     const Palette& palette = *painting.palette_;
     const atlas::TexelMap& map = palette.model.texels;
     for (const std::uint32_t slot : slots) {
-        const ink::TileLook look = ink::look_of_tile(palette.canvas, slot, palette.substrate);
+        const ink::TileAppearance look = ink::shade_tile(palette.canvas, slot, palette.substrate);
         const int tile = static_cast<int>(map.tile_of_slot[slot]), per_side = static_cast<int>(map.tiles_per_side);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const int x = tile % per_side * atlas::kTile + t % atlas::kTile - kFirstColumn;
@@ -68,7 +68,7 @@ void refresh(PalettePicture& picture, const Painting& painting, std::span<const 
     }
 }
 
-void Painting::wash(const Stroke& entry) {
+void Document::wash(const Stroke& entry) {
     Undo undo{.stroke_id = entry.id};
     ink::Canvas& canvas = this->canvas(kPaletteLayer);
     LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = kPaletteLayer, .tiles = {}});

@@ -1,14 +1,14 @@
 #include <algorithm>
 
-#include "atlas/texels/piece_graph.h"
+#include "atlas/texels/cluster_graph.h"
 #include "stroke/painting/painting.h"
 
 /// The eyedropper.
 namespace tuft::stroke {
 
-Pick Painting::pick(const Vec3& point) const { return pick_at(point, *model_, shown_layers()); }
+Pick Document::pick(const Vec3& point) const { return pick_at(point, *model_, shown_layers()); }
 
-Pick Painting::pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const {
+Pick Document::pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const {
     const auto at = model.query->closest_point(point);
     if (!at) throw Error("there is no surface to look at");
     Pick pick;
@@ -36,7 +36,7 @@ Pick Painting::pick_at(const Vec3& point, const Model& model, std::span<const La
     return pick;
 }
 
-std::optional<ink::Ink> Painting::ink_of(const Pick& pick, const std::string& name) const {
+std::optional<ink::Ink> Document::ink_of(const Pick& pick, const std::string& name) const {
     constexpr double kThinnest = 0.05, kThickest = 8;  // film units that a brush leaves
     double all = 0;
     for (const double a : pick.amounts) all += a;

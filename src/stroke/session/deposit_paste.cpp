@@ -65,7 +65,7 @@ class PasteDeposit : public DepositModel {
                                 .dig = pressed(kDig),
                                 .exchange = -std::expm1(-stamp.ds / kMixLength),
                                 .room = area > 0 ? ink::room_left(tuft.brush.reservoir, contact.hair.cells()) / area : 0};
-        params.comb = ink::comb_of(furrows_.advance(tuft, contact.hair, contact.motion.travel),
+        params.furrows = ink::furrow_depths(furrows_.advance(tuft, contact.hair, contact.motion.travel),
                                    {.width = stamp.grid.step.y * (ink::kAcross - 1),
                                     .film = target * ink::kFilmUnit,
                                     .yield = tuft.ink.yield,

@@ -36,8 +36,8 @@ class WetDeposit : public DepositModel {
 
     double deposit(Stamp stamp, TuftInHand& tuft, const DepositContact& contact) override {
         ink::Reservoir& reservoir = tuft.brush.reservoir;
-        const ink::Touch& cells = contact.hair.cells();
-        const std::vector<ink::Tine> bundles = furrows_.advance(tuft, contact.hair, contact.motion.travel);
+        const ink::ContactCells& cells = contact.hair.cells();
+        const std::vector<ink::BundleFirmness> bundles = furrows_.advance(tuft, contact.hair, contact.motion.travel);
         const ink::NodeAreas areas = exposure_.expose(stamp);
         const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
         const double pour = area > 0 ? ink::shed(reservoir, contact.drain, last_step_) / area : 0;
@@ -70,7 +70,7 @@ class WetDeposit : public DepositModel {
     FilmClock film_;
     bool mixed_;
     FurrowProfile furrows_;
-    ink::Skin liquid_;         // on the hair where it touches
+    ink::SurfaceLiquid liquid_;         // on the hair where it touches
     double since_stamp_ = 0;   // seconds since the last stamp
     double last_step_ = 0;     // seconds since the last pose, touching or not
 };

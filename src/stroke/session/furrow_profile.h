@@ -12,7 +12,7 @@ namespace tuft::stroke {
 class FurrowProfile {
   public:
     /// The bundles at the next stamp: place over the patch's width, 0–1, and firmness over the firmest.
-    std::vector<ink::Tine> advance(const TuftInHand& tuft, const HairContact& hair, double travel);
+    std::vector<ink::BundleFirmness> advance(const TuftInHand& tuft, const HairContact& hair, double travel);
 
   private:
     std::vector<double> firmness_;  // [bundles]

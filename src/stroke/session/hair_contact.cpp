@@ -31,7 +31,7 @@ std::vector<footprint::Outline> outlines_of(std::span<const footprint::Trail> tr
 
 }  // namespace
 
-ink::Touch HairContact::take_cells_since() {
+ink::ContactCells HairContact::take_cells_since() {
     float sum = 0;
     for (const float t : cells_since_) sum += t;
     for (float& t : cells_since_) t /= sum;
@@ -56,7 +56,7 @@ HairContact::Wetness HairContact::bundle_wetness(TuftInHand& tuft, const MotionT
         wetness.lack += std::max(0.0, 1 - wet) / static_cast<double>(n);
     }
     soaked_ = wetness.of_bundle;
-    brush::part_bundles(bundles, tuft.preset(), stress, saturation, motion.travel - updated_at_, dt);
+    brush::split_bundles(bundles, tuft.preset(), stress, saturation, motion.travel - updated_at_, dt);
     updated_at_ = motion.travel;
     return wetness;
 }
@@ -93,12 +93,12 @@ void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, std::span<co
         places.push_back(outline.tip);
         places.push_back(outline.tail);
     }
-    stamp.grid = ink::touch_grid(places, axis_);
+    stamp.grid = ink::make_contact_grid(places, axis_);
     std::vector<ink::HairSample> samples;
-    for (const footprint::HairTouch& t :
-         footprint::hair_touches(trails, tuft.brush.tuft.bundles, static_cast<int>(tuft.state.branches.size())))
+    for (const footprint::HairContactPoint& t :
+         footprint::hair_contact_points(trails, tuft.brush.tuft.bundles, static_cast<int>(tuft.state.branches.size())))
         samples.push_back({t.bundle, t.at, t.along, t.length});
-    nodes_ = ink::node_touch(tuft.brush.reservoir, stamp.grid, samples, cells_);
+    nodes_ = ink::node_contact(tuft.brush.reservoir, stamp.grid, samples, cells_);
     if (trails.empty()) return;
     const Vec2 e(trails.front().cuts[trails.front().cuts.size() / 2].e);
     orientation_ = axis_.x * e.y - axis_.y * e.x < 0 ? -1 : 1;
@@ -109,7 +109,7 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     if (!motion.touching) tracks_ = {};
     std::vector<footprint::Trail> trails =
         footprint::trails(contact.tuft, contact.frame, contact.branch_planes, length, kSkinFilm);
-    cells_ = footprint::touched_cells(trails, tuft.brush.tuft.bundles, static_cast<int>(contact.tuft.branches.size()),
+    cells_ = footprint::contact_cells(trails, tuft.brush.tuft.bundles, static_cast<int>(contact.tuft.branches.size()),
                                       tuft.brush.reservoir.layout.cell_ends);
     cells_since_.resize(cells_.size(), 0);
     for (std::size_t i = 0; i < cells_since_.size(); ++i) cells_since_[i] += cells_[i];
@@ -118,15 +118,15 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     by_hair_ = wetness.lack > 0 && !options_.always_closed;
     closed_area_ = 0;
     const double spread = by_hair_ ? std::clamp((1 - wetness.mean) / kSpreadLack, 0.0, 1.0) : 0;
-    footprint::splay(trails, tracks_, motion.hair_travel, length, spread);
+    footprint::spread_trails(trails, tracks_, motion.hair_travel, length, spread);
     std::vector<footprint::Trail> lying;
     if (by_hair_) {
         if (!motion.touching) previous_.clear();
-        footprint::carry(previous_, previous_frame_, contact.frame);
+        footprint::change_frame(previous_, previous_frame_, contact.frame);
         lying = trails;
     }
     if (!contact.planes.empty())
-        footprint::cover_foot(trails, brush::foot_of(tuft.brush.tuft, contact.planes.front()), contact.frame, kSkinFilm);
+        footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()), contact.frame, kSkinFilm);
     const std::vector<footprint::Outline> outlines = outlines_of(trails);
     Stamp stamp;
     if (by_hair_) draw_hairs(stamp, tuft, contact, motion, wetness, trails, outlines);

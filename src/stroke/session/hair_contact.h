@@ -4,7 +4,7 @@
 
 #include "contact/contact.h"
 #include "footprint/cuts.h"
-#include "ink/exchange/touch_nodes.h"
+#include "ink/exchange/contact_nodes.h"
 #include "stroke/session/motion_tracker.h"
 #include "stroke/session/stamp.h"
 #include "stroke/session/tuft_in_hand.h"
@@ -29,10 +29,10 @@ class HairContact {
     Stamp make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion, double dt);
 
     /// Which cells of the hair touch, parts that sum to one; nodes of the stamp's grid, where they were asked for.
-    const ink::Touch& cells() const { return cells_; }
-    const ink::NodeTouch& nodes() const { return nodes_; }
+    const ink::ContactCells& cells() const { return cells_; }
+    const ink::NodeContact& nodes() const { return nodes_; }
     /// The same summed over the stamps since it was last taken, parts that sum to one.
-    ink::Touch take_cells_since();
+    ink::ContactCells take_cells_since();
     /// Unit, of the hair on the surface in the contact frame.
     const Vec2& axis() const { return axis_; }
     /// The section's +x is at the end of the patch's width (1) or at its beginning (-1).
@@ -56,8 +56,8 @@ class HairContact {
                      std::span<const footprint::Outline> outlines);
 
     HairContactOptions options_;
-    ink::Touch cells_, cells_since_;
-    ink::NodeTouch nodes_;
+    ink::ContactCells cells_, cells_since_;
+    ink::NodeContact nodes_;
     std::vector<double> soaked_;              // wetness of each bundle at its last contact
     double updated_at_ = 0;                   // travel at which wetness and splitting were last updated
     footprint::HairTracks tracks_;            // of the hair that lies there

@@ -12,7 +12,7 @@ namespace tuft::stroke {
 struct ForceRecord {
     brush::Pose pose;          ///< that the sample held the brush in, at the sample's time
     Vec3 force{0};             ///< newtons, of the surface on the tuft: normal and friction
-    Vec3 hand_force{0};        ///< newtons, for a haptic device: contact::Result::hand_force (gain,
+    Vec3 device_force{0};        ///< newtons, for a haptic device: contact::Result::device_force (gain,
                                ///< proximity, clamp), which has come through the mass of the wet
                                ///< hair (brush/tuft.h), so that a tip that slips does not knock
     Vec3 torque{0};            ///< N·m, of `force` about the ferrule's mouth

@@ -61,12 +61,12 @@ std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
 }
 
 void StrokeSession::extend(std::span<const brush::Pose> poses) {
-    Trace piece{.flat = false};
+    Trace cluster{.flat = false};
     for (const brush::Pose& pose : poses)
-        piece.samples.push_back({.time = pose.time, .position = pose.position, .rotation = pose.rotation});
+        cluster.samples.push_back({.time = pose.time, .position = pose.position, .rotation = pose.rotation});
     std::vector<TraceSample>& samples = input_.stroke.trace.samples;
-    samples.insert(samples.end(), piece.samples.begin(), piece.samples.end());
-    advance(spatial_poses(piece));  // as a replay will see them, to the bit
+    samples.insert(samples.end(), cluster.samples.begin(), cluster.samples.end());
+    advance(spatial_poses(cluster));  // as a replay will see them, to the bit
 }
 
 void StrokeSession::advance(std::span<const brush::Pose> poses, double done) {
@@ -95,7 +95,7 @@ contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double d
     if (!path_.started && tuft_.brush.tuft.posed) brush::step(tuft_.brush.tuft, pose, {}, 0);
     contact::Result contact =
         contact::step(tuft_.brush.tuft, pose, *input_.model.query, contact_.memory, dt, contact_.options);
-    contact_.device_force = contact.hand_force;
+    contact_.device_force = contact.device_force;
     path_.time = pose.time;
     path_.started = true;
     deposit_->pass_time(dt);
@@ -105,7 +105,7 @@ contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double d
     report_.deepest = std::max(report_.deepest, contact.inside);
     if (input_.record_forces)
         forces_.poses.push_back(
-            {pose, contact.tuft.force, contact.hand_force, contact.tuft.moment, contact.tuft.root_moment});
+            {pose, contact.tuft.force, contact.device_force, contact.tuft.moment, contact.tuft.root_moment});
     return contact;
 }
 
@@ -126,7 +126,7 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
     const ink::StampContact touch{.moment_factor = tuft_.stress(),
                                   .width = hair_.closed_area() > 0 ? area / std::sqrt(hair_.closed_area()) : std::sqrt(area),
                                   .area = area * static_cast<double>(deposit_->stamps_per_batch()),
-                                  .owed = deposit_->pending(),
+                                  .pending = deposit_->pending(),
                                   .by_hair = static_cast<double>(stamp.separation),
                                   .touch = hair_.cells()};
     stamp.ink = ink::stamp_deposit(tuft_.brush.reservoir, tuft_.ink, touch, input_.substrate);
@@ -191,7 +191,7 @@ std::vector<ForceRecord> StrokeSession::forces_at_samples() const {
         const double part = to > from ? std::clamp((places[i] - from) / (to - from), 0.0, 1.0) : 1;
         const ForceRecord &a = poses[k], &b = poses[next];
         records.push_back({forces_.samples[i], glm::mix(a.force, b.force, part),
-                           glm::mix(a.hand_force, b.hand_force, part), glm::mix(a.torque, b.torque, part),
+                           glm::mix(a.device_force, b.device_force, part), glm::mix(a.torque, b.torque, part),
                            std::lerp(a.moment, b.moment, part)});
     }
     return records;

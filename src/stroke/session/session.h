@@ -7,7 +7,7 @@
 
 #include "stroke/hand/hand.h"
 #include "stroke/hand/resample.h"
-#include "stroke/painting/tape.h"
+#include "stroke/painting/surface_stencil.h"
 #include "stroke/session/deposit_model.h"
 #include "stroke/session/report.h"
 
@@ -70,7 +70,7 @@ class StrokeSession {
   private:
     /// From samples to even poses.
     struct Path {
-        SteadyHand steady;
+        GestureFilter steady;
         Resampler resampler;
         std::vector<brush::Pose> poses;  // not painted yet
         double time = 0;                 // of the last pose painted
@@ -104,7 +104,7 @@ class StrokeSession {
     ContactState contact_;
     MotionTracker motion_;
     HairContact hair_;
-    LaidTape stencil_;
+    SurfaceStencil stencil_;
     StampTarget target_;
     std::unique_ptr<DepositModel> deposit_;
     ForceLog forces_;

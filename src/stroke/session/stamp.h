@@ -3,7 +3,7 @@
 #include "footprint/footprint.h"
 #include "footprint/stamp.h"
 #include "ink/exchange/deposit.h"
-#include "ink/exchange/touch_grid.h"
+#include "ink/exchange/contact_grid.h"
 
 /// \file
 /// One stamp: a footprint with the ink it brings. The session makes stamps, deposit models put them onto texels.
@@ -18,7 +18,7 @@ struct Stamp {
     bool by_hair = false;        ///< drawn by single hairs: the surface's grain shows where it is not filled
     float separation = 0;        ///< 0–1: how much of it is single hairs; 0: one closed patch
     double grain_film = 0;       ///< for `by_hair`: metres of ink under the hair over the grain's mean height
-    ink::TouchGrid grid;         ///< over the footprint, for ink that is not the same all over it
+    ink::ContactGrid grid;         ///< over the footprint, for ink that is not the same all over it
 };
 
 /// m² of a footprint, by its coverage.

@@ -18,7 +18,7 @@ StampExposure::StampExposure(StampTarget& target, const footprint::StampOptions&
 struct StampExposure::Scratch {
     footprint::Unpacked unpacked;
     atlas::TexelShape shape;
-    ink::Tents basis;
+    ink::HatBasis basis;
 };
 
 void StampExposure::expose_tile(Tile& tile, const Stamp& stamp, const footprint::TileJob& job, Scratch& scratch) {
@@ -29,10 +29,10 @@ void StampExposure::expose_tile(Tile& tile, const Stamp& stamp, const footprint:
     tile.slot = job.slot;
     if (stamp.by_hair) target_.expose_grain(job.slot, tile.exposure, stamp.grain_film);
     ink::place_texels(tile.places, stamp.grid, stamp.footprint.frame, atlas::shape_of(target_.texels(), job.slot, scratch.shape));
-    ink::Tents& basis = scratch.basis;
-    ink::tents_of(basis, tile.places, tile.exposure);
+    ink::HatBasis& basis = scratch.basis;
+    ink::hat_basis(basis, tile.places, tile.exposure);
     ink::NodeAreas areas;
-    ink::tent_sums(areas, basis, nullptr, target_.texels().tiles[job.slot].area);
+    ink::integrate_hats(areas, basis, nullptr, target_.texels().tiles[job.slot].area);
     for (int k = 0; k < basis.count; ++k) tile.areas[basis.node[k]] = areas[k];
 }
 
@@ -64,10 +64,10 @@ ink::NodeContents StampExposure::act_on_tiles(Act act) {
     for (const Tile& tile : tiles_)
         if (tile.slot != kNone) target_.snapshot(tile.slot);
     parallel_for(tiles_.size(), 2, [&](std::size_t begin, std::size_t end) {
-        ink::Tents basis;
+        ink::HatBasis basis;
         for (std::size_t i = begin; i < end; ++i) {
             if (tiles_[i].slot == kNone) continue;
-            ink::tents_of(basis, tiles_[i].places, tiles_[i].exposure);
+            ink::hat_basis(basis, tiles_[i].places, tiles_[i].exposure);
             act(tiles_[i], basis);
         }
     });
@@ -78,7 +78,7 @@ ink::NodeContents StampExposure::act_on_tiles(Act act) {
 
 ink::NodeContents StampExposure::exchange(const ink::TransferParams& params, double ds, double loose) {
     ink::Canvas& canvas = target_.canvas();
-    return act_on_tiles([&](Tile& tile, const ink::Tents& basis) {
+    return act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
         if (canvas.has_film(tile.slot, ink::kOpenFilm))
             ink::bed_paste(canvas, tile.slot, ink::paste_height(canvas, tile.slot), tile.exposure, loose);
         ink::transfer(canvas, tile.slot, tile.exposure, tile.places, basis, target_.texels().tiles[tile.slot].area, ds, params,
@@ -87,7 +87,7 @@ ink::NodeContents StampExposure::exchange(const ink::TransferParams& params, dou
 }
 
 ink::NodeContents StampExposure::deposit(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds) {
-    return act_on_tiles([&](Tile& tile, const ink::Tents& basis) {
+    return act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
         ink::deposit_mixed(target_.canvas(), tile.slot, tile.exposure, basis, target_.texels().tiles[tile.slot].area, ds, params,
                            mixes, tile.given);
     });
@@ -98,7 +98,7 @@ StampExposure::Exchanged StampExposure::plough(const ink::PasteParams& params, c
         if (tile.slot != kNone && !pastes_.contains(tile.slot))
             pastes_.emplace(tile.slot, std::make_unique<ink::Plane>(ink::open_pigment(target_.canvas(), tile.slot)));
     Exchanged exchanged;
-    exchanged.given = act_on_tiles([&](Tile& tile, const ink::Tents& basis) {
+    exchanged.given = act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
         ink::lay_paste(target_.canvas(), tile.slot, tile.exposure, tile.places, basis, target_.texels().tiles[tile.slot].area, ds,
                        params, mixes, *pastes_.at(tile.slot), tile.given, tile.taken);
     });

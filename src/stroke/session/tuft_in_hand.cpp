@@ -5,7 +5,7 @@
 
 #include "brush/bundles.h"
 #include "ink/exchange/stir.h"
-#include "ink/exchange/touch_nodes.h"
+#include "ink/exchange/contact_nodes.h"
 
 namespace tuft::stroke {
 namespace {

@@ -19,7 +19,7 @@ struct BrushInHand {
 /// 0 dry … 1 wet: hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
 double wetness_of(const ink::Reservoir& reservoir);
 
-/// A new brush's reservoir, empty: a cell for each piece of each bundle of its hair.
+/// A new brush's reservoir, empty: a cell for each cluster of each bundle of its hair.
 ink::Reservoir empty_reservoir(const brush::Tuft& tuft);
 
 /// The brush during one stroke: its hair, its ink, and how it bends.

@@ -1,0 +1,319 @@
+#include "app/input/pointer_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/ease.h"
+#include "stroke/hand/surface_mapping.h"
+#include "stroke/hand/tip_lag.h"
+
+namespace tuft::app {
+namespace {
+
+constexpr double kRise = 0.05;    // seconds in which the pressure follows
+constexpr double kLift = 0.06;    // seconds of the lift
+constexpr double kFrame = 0.004;  // seconds between the poses made between two aims
+constexpr double kReport = 0.01;  // seconds between a tablet's reports while something changes, at most
+constexpr double kJump = 0.004;   // metres between two aims that may be an edge of the outline
+constexpr double kGrazing = 6;    // times further on a slanting surface than across the view
+constexpr double kMaxTilt = 1.2;  // radians
+constexpr double kMostFelt = 0.008, kFeltOfModel = 0.02;  // metres round the aim, and part of the model's diagonal, at most
+constexpr double kShallow = 0.2;  // of how far gaps are felt: what is less deep is relief, and followed
+constexpr double kBent = 0.5;     // of it: how far two sides of a gap may lie out of one plane
+constexpr int kPairs = 12;        // of rays round the aim
+constexpr std::size_t kAgreeing = 3;  // of them that must lie on ground
+constexpr double kKnown = 3;      // pixels after which the direction of a clean stroke is known
+constexpr double kPatience = 0.15;  // seconds after which a hand that rests presses straight down
+constexpr double kSetDown = 0.05; // seconds in which a clean stroke is pressed down
+constexpr double kTouch = 0.7;    // of the pressure, that it is pressed down with; the rest comes along the way
+// Pressed down in place, the tip is pushed back behind the first place by this part of the tuft's length, at pressure 1;
+// the holder goes as far ahead of it there, and loses that over this part of the length. A fast start pulls the tip along.
+constexpr double kSpread = 0.1, kSpreadGone = 0.2;
+constexpr double kTips = 0.12, kTipTurns = 4;  // radians that the holder is tipped ahead at first, over so many `tip_lag_turn`
+constexpr double kSlowest = 0.2;  // seconds in which it arrives at its end, at most
+constexpr double kFlick = 1.5;    // of the working depth: a way to the end on which the brush lifts by the next part
+constexpr double kFlickLift = 0.75;  // of its pressure; the rest goes at the end
+constexpr double kSlanting = 0.35;  // cosine to the line of sight under which no gap is told from an edge
+
+double part(double dt, double constant) { return 1.0 - std::exp(-dt / std::max(constant, 1e-6)); }
+
+}  // namespace
+
+double pen_depth(const PointerSettings& s, double pressure) {
+    return std::pow(std::clamp((pressure - s.pen_least) / std::max(1e-3, s.pen_full - s.pen_least), 0.0, 1.0), s.pen_gamma);
+}
+
+std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, const Aim& aim) {
+    double from = 0;
+    for (int i = 0; i < 64; ++i) {
+        auto hit = surface.ray(aim.ray.origin, aim.ray.direction, from);
+        if (!hit || glm::dot(Vec4(hit->position, 1), Vec4(aim.section)) <= 0) return hit;
+        from = hit->distance + 1e-6;
+    }
+    return std::nullopt;
+}
+
+PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const PointerSettings& settings, TipLag lag)
+    : surface_(surface), hold_(stroke::holder_options(preset, surface.mesh())), settings_(settings),
+      reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {
+    hold_.tip_lag = std::move(lag.upright);
+    hold_.leaned = std::move(lag.leaned);
+}
+
+std::optional<BaseColour> PointerInput::ground(const Aim& aim) const {
+    const auto facing = [&](const mesh::SurfacePoint& p) { return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal; };
+    const auto hit = aim_at(surface_, aim);
+    const double nothing = std::numeric_limits<double>::infinity(), centre = hit ? hit->distance : nothing;
+    struct Pair {
+        double depth;
+        Vec3 normal;
+    };
+    std::vector<Pair> pairs;
+    for (int i = 0; i < kPairs; ++i) {
+        const double angle = std::numbers::pi * i / kPairs;
+        const Vec3 side = reach_ * (std::cos(angle) * aim.view_right + std::sin(angle) * aim.view_up);
+        Aim one = aim, other = aim;
+        one.ray.origin += side;
+        other.ray.origin -= side;
+        const auto a = aim_at(surface_, one), b = aim_at(surface_, other);
+        if (!a || !b) continue;
+        // On one ground, flat or evenly bent: each lies as far out of the other's plane. Else it is a rim or a step.
+        const Vec3 na = facing(*a), nb = facing(*b), way = b->position - a->position;
+        const double out_a = glm::dot(na, way), out_b = glm::dot(nb, way);
+        if (std::abs(out_a + out_b) < kShallow * reach_ && std::abs(out_a) < kBent * reach_) pairs.push_back({0.5 * (a->distance + b->distance), na + nb});
+    }
+    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.depth < b.depth; });
+    const double level = pairs.size() < kAgreeing ? nothing : pairs[pairs.size() / 2].depth;
+    Vec3 normal(0);
+    std::size_t agree = 0;
+    for (const Pair& pair : pairs)
+        if (std::abs(pair.depth - level) < kShallow * reach_) normal += pair.normal, ++agree;
+    const bool gap = agree >= kAgreeing && level < centre - kShallow * reach_ && glm::dot(normal, -aim.ray.direction) > kSlanting * glm::length(normal);
+    if (gap) return BaseColour{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
+    if (!hit) return std::nullopt;
+    return BaseColour{hit->position, facing(*hit), hit->distance, false};
+}
+
+// The smoothed point cuts the corners of a curved surface: it is brought back. Over a gap the nearest
+// place is an edge beside it; there it stays where it is.
+void PointerInput::onto_surface() {
+    const auto on = surface_.closest_point(point_, 5e-3);
+    if (!on) return;
+    const Vec3 way = on->position - point_;
+    const bool sideways = glm::length(way - glm::dot(way, normal_) * normal_) > 0.5 * glm::length(way);
+    if (bridged_ >= 0 && time_ - bridged_ < 5 * settings_.smoothing + 2 * kFrame && sideways) return;
+    const double side = glm::dot(on->normal, normal_) < 0 ? -1 : 1;
+    point_ = on->position;
+    if (settings_.string > 0) normal_ = side * on->normal;
+}
+
+brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const {
+    const Vec2 tilt = glm::clamp(aim.tilt.value_or(settings_.tilt), -kMaxTilt, kMaxTilt);
+    const auto along = [&](const Vec3& v) {
+        const Vec3 d = v - glm::dot(v, normal) * normal;
+        return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
+    };
+    const double tipped = kTips * (1 - smooth_step(gone_ / (kTipTurns * hold_.tip_lag_turn)));
+    const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) + std::tan(tilt.y) * along(aim.view_up) + tipped * string_);
+    const Frame f = make_frame(point, up);
+    const Quat upright = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n)));
+    const double height = hold_.tuft_length + (pressure > 0 ? -pressure * hold_.working_depth : hold_.hover);
+    return {.position = point + ahead_of(aim, normal, pressure) + height * up,
+            .rotation = aim.turn == 0 ? upright : glm::normalize(upright * glm::angleAxis(-aim.turn, Vec3(0, 0, 1))),
+            .time = time};
+}
+
+// Where the holder is for ink at the point: ahead along the string, and under a lean aside.
+Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure) const {
+    const double taut = glm::length(string_);
+    if (hold_.tip_lag.empty() || !(pressure > 0) || taut < 1e-9) return Vec3(0);
+    const stroke::Axes axes = stroke::axes_across(normal, aim.view_right, -aim.view_up);
+    const Vec2 ahead{glm::dot(string_, axes.right), glm::dot(string_, axes.down)};
+    if (glm::length(ahead) < 1e-9) return Vec3(0);
+    const Vec2 lag = taut * stroke::lead_of(hold_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
+    const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * hold_.tuft_length)));
+    return lag.x * axes.right + lag.y * axes.down + spread * string_;
+}
+
+// The point has moved: what it drags follows on the string, along the surface.
+void PointerInput::drag() {
+    Vec3 way = point_ - dragged_;
+    way -= glm::dot(way, normal_) * normal_;
+    if (const double length = glm::length(way); length > hold_.tip_lag_turn) way *= hold_.tip_lag_turn / length;
+    dragged_ = point_ - way;
+    string_ = way / hold_.tip_lag_turn;
+}
+
+double PointerInput::goal_pressure(const Aim& aim) const {
+    if (aim.pressure >= 0) return pen_depth(settings_, aim.pressure);
+    const double slow = 1.0 - settings_.speed_effect * std::min(1.0, speed_ / settings_.fast);
+    const double rested = settings_.dwell_effect * std::min(1.0, rest_ / settings_.dwell);
+    return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
+}
+
+void PointerInput::touch_down(const Aim& aim, const BaseColour& hit, const Vec3& towards, std::vector<HandStep>& steps) {
+    down_ = true;
+    goal_ = point_ = hit.position;
+    normal_ = hit.normal;
+    bridged_ = -1;
+    start_ = aim.time;
+    time_ = speed_ = rest_ = pressure_ = gone_ = 0;
+    spread_ = 0;
+    string_ = towards;
+    dragged_ = point_ - hold_.tip_lag_turn * string_;
+    steps.push_back({HandStep::Kind::begin, {}});
+    steps.push_back({HandStep::Kind::poses, {pose_at(aim, point_, normal_, 0, 0)}});
+}
+
+// A clean stroke is asked for: nothing is touched until its direction is known.
+void PointerInput::wait(const Aim& aim, const BaseColour& hit, std::vector<HandStep>& steps) {
+    waiting_.push_back({aim, hit});
+    aim_ = aim;
+    goal_ = hit.position;
+    goal_normal_ = hit.normal;
+    const bool known = glm::distance(hit.position, waiting_.front().ground.position) >= kKnown * aim.metres_per_pixel;
+    if (known || aim.time - waiting_.front().aim.time > kPatience) set_down(steps);
+}
+
+// Presses the tuft down at the first place, then goes on to where the cursor is by now.
+void PointerInput::set_down(std::vector<HandStep>& steps) {
+    const std::vector<Waiting> waiting = std::move(waiting_);
+    waiting_.clear();
+    const Waiting& first = waiting.front();
+    const Waiting& last = waiting.back();
+    Vec3 way = last.ground.position - first.ground.position;
+    way -= glm::dot(way, first.ground.normal) * first.ground.normal;
+    const double length = glm::length(way);
+    touch_down(first.aim, first.ground, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0), steps);
+    start_ -= kSetDown;  // as if it had begun earlier: it lags no further behind
+    speed_ = length / std::max(kFrame, last.aim.time - first.aim.time);
+    spread_ = kSpread * hold_.tuft_length * (1 - std::min(1.0, speed_ / settings_.fast));
+    const double pressure = (glm::length(string_) > 0 ? kTouch : 1.0) * goal_pressure(first.aim);
+    const int n = static_cast<int>(std::ceil(kSetDown / kFrame));
+    HandStep step;
+    for (int i = 1; i <= n; ++i) {
+        time_ = kSetDown * i / n;
+        pressure_ = pressure * i / n;
+        step.poses.push_back(pose_at(first.aim, point_, normal_, pressure_, time_));
+    }
+    for (std::size_t i = 1; i < waiting.size(); ++i) {
+        if (waiting[i].ground.bridged) bridged_ = time_;
+        follow(waiting[i].aim, waiting[i].ground.position, waiting[i].ground.normal, step.poses);
+        goal_normal_ = waiting[i].ground.normal;
+    }
+    steps.push_back(std::move(step));
+}
+
+void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses) {
+    const double span = std::max(1e-4, aim.time - start_ - time_);
+    const int steps = std::clamp(static_cast<int>(std::ceil(span / kFrame)), 1, 64);
+    const double dt = span / steps;
+    for (int i = 0; i < steps; ++i) {
+        const Vec3 before = point_;
+        Vec3 target = goal_ + static_cast<double>(i + 1) / steps * (goal - goal_), pace = (goal - goal_) / span;
+        if (settings_.string > 0) {
+            const double away = glm::distance(target, point_);
+            target = away > settings_.string ? point_ + (1 - settings_.string / away) * (target - point_) : point_;
+            pace = Vec3(0);
+        }
+        // Low-pass of a goal that moves evenly, solved exactly: y' = (x - y) / τ, x' = pace.
+        const Vec3 behind = target - settings_.smoothing * pace;
+        point_ = behind + (1 - part(dt, settings_.smoothing)) * (point_ - behind + pace * dt);
+        normal_ = glm::normalize(normal_ + part(dt, std::max(0.01, settings_.smoothing)) * (normal - normal_));
+        onto_surface();
+        if (is_clean(aim)) drag();
+        gone_ += glm::distance(before, point_);
+        const double v = glm::distance(before, point_) / dt;
+        speed_ += part(dt, 0.05) * (v - speed_);
+        rest_ = speed_ < 0.004 ? rest_ + dt : 0;
+        pressure_ += part(dt, aim.pressure >= 0 ? 0.004 : kRise) * (goal_pressure(aim) - pressure_);
+        time_ += dt;
+        poses.push_back(pose_at(aim, point_, normal_, pressure_, time_));
+    }
+    goal_ = goal;
+}
+
+std::vector<HandStep> PointerInput::move(const Aim& aim) {
+    std::vector<HandStep> steps;
+    const auto hit = ground(aim);
+    // A small movement of the cursor that goes far on the model crossed an edge of its outline.
+    const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
+                                               glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
+                                         : 0;
+    if (drawing() && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected))
+        steps = lift();
+    if (!hit) return steps;
+    if (!down_ && is_clean(aim)) {
+        wait(aim, *hit, steps);
+        return steps;
+    }
+    if (!down_) {
+        touch_down(aim, *hit, Vec3(0), steps);
+    } else {
+        HandStep step;
+        // A tablet reports what changes: where it was silent, the pen was held still until shortly before.
+        if (aim.pressure >= 0 && aim_.pressure >= 0 && aim.time - aim_.time > 2 * kReport) {
+            Aim still = aim_;
+            still.time = aim.time - kReport;
+            follow(still, goal_, goal_normal_, step.poses);
+        }
+        if (hit->bridged) bridged_ = time_;
+        follow(aim, hit->position, hit->normal, step.poses);
+        steps.push_back(std::move(step));
+    }
+    aim_ = aim;
+    goal_normal_ = hit->normal;
+    return steps;
+}
+
+// What the smoothing, or the string, kept the hand behind the cursor. It slows down evenly from the speed that it has,
+// and the pressure goes as what is left of the way, as far as the way is longer than the hand needs to stop anyway.
+void PointerInput::arrive(std::vector<brush::Pose>& poses) {
+    const Vec3 from = point_;
+    const double way = glm::distance(goal_, from);
+    if (way < 0.25 * aim_.metres_per_pixel) return;
+    const double seconds = std::clamp(2 * way / std::max(speed_, 1e-6), kFrame, kSlowest), start = pressure_;
+    const int n = static_cast<int>(std::ceil(seconds / kFrame));
+    const double flick = std::min(1.0, way / (kFlick * hold_.working_depth));
+    for (int i = 1; i <= n; ++i) {
+        const double t = static_cast<double>(i) / n, left = (1 - t) * (1 - t);
+        const Vec3 before = point_;
+        point_ = from + (1 - left) * (goal_ - from);
+        normal_ = glm::normalize(normal_ + t * (goal_normal_ - normal_));
+        onto_surface();
+        drag();
+        gone_ += glm::distance(before, point_);
+        pressure_ = start * (1 - kFlickLift * flick * (1 - left));
+        time_ += seconds / n;
+        poses.push_back(pose_at(aim_, point_, normal_, pressure_, time_));
+    }
+}
+
+std::vector<HandStep> PointerInput::lift() {
+    std::vector<HandStep> steps;
+    if (!waiting_.empty()) set_down(steps);
+    if (!down_) return steps;
+    constexpr int count = 12;
+    HandStep step;
+    if (is_clean(aim_)) arrive(step.poses);
+    const double start = pressure_;
+    for (int i = 1; i <= count; ++i) {
+        const double s = static_cast<double>(i) / count;
+        time_ += kLift / count;
+        step.poses.push_back(pose_at(aim_, point_, normal_, i == count ? 0.0 : start * (1 - s), time_));
+    }
+    down_ = false;
+    steps.push_back(std::move(step));
+    steps.push_back({HandStep::Kind::end, {}});
+    return steps;
+}
+
+std::optional<brush::Pose> PointerInput::hover(const Aim& aim) const {
+    const auto hit = ground(aim);
+    if (!hit) return std::nullopt;
+    return pose_at(aim, hit->position, hit->normal, 0, aim.time);
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,64 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/panels/panels.h"
+
+namespace tuft::app {
+
+namespace {
+
+// Each of the reasons by itself.
+std::string translated(const Ui& ui, const std::string& reasons) {
+    std::string out;
+    for (std::size_t begin = 0; begin < reasons.size();) {
+        const std::size_t end = std::min(reasons.find("; ", begin), reasons.size());
+        out += (out.empty() ? "" : "; ") + ui.tr_sentence(reasons.substr(begin, end - begin));
+        begin = end + 2;
+    }
+    return out;
+}
+
+}  // namespace
+
+void mismatch_dialog(Session& s) {
+    if (!s.show_mismatches || !s.painter) return;
+    if (!begin_dialog(s, "Strokes that no longer fit", 640)) return end_dialog(s);
+    Ui& ui = s.ui;
+    ui.wrapped(ui.tr("These strokes do not lie on the revised model as they did. They stay in the journal."));
+    for (const std::string& sentence : s.fit) ui.note(ui.tr_sentence(sentence));
+    const float rows = std::min(8.0f, static_cast<float>(s.mismatches.size()));
+    ImGui::BeginChild("mismatches", ImVec2(0, rows * ImGui::GetTextLineHeightWithSpacing() + ui.px(6)));
+    for (const stroke::StrokeMismatch& misfit : s.mismatches) {
+        const auto line = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == misfit.stroke; });
+        if (line == s.strokes.end()) continue;
+        char text[160];
+        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.strokes.begin() + 1, ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
+        const float room = ImGui::GetContentRegionAvail().x;
+        const std::string all = translated(ui, misfit.reason), why = ui.fitted(all, room - ui.px(170));
+        const float right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);
+        ImGui::PushID(static_cast<int>(misfit.stroke));
+        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.journal.holds(misfit.stroke))) select_entries(s, {misfit.stroke});
+        ImGui::PopID();
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - right);
+        ImGui::TextDisabled("%s", why.c_str());
+        if (why != all && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", all.c_str());
+    }
+    ImGui::EndChild();
+    ui.buttons_at_right({{"Back to the former model", 120}, {"Hide them", 120}, {"Keep them", 120}});
+    const bool back = ui.button("Back to the former model", "The revised one is among the recent projects then", 120);
+    ImGui::SameLine();
+    const bool hide = ui.button("Hide them", nullptr, 120);
+    ImGui::SameLine();
+    const bool keep = ui.primary_button("Keep them", 120);
+    end_dialog(s);
+    if (back) return open_former(s);
+    if (hide) {
+        EditStrokes edit{.hidden = true};
+        for (const stroke::StrokeMismatch& misfit : s.mismatches) edit.ids.push_back(misfit.stroke);
+        s.painter->post(std::move(edit));
+    }
+    if (hide || keep) s.show_mismatches = false;
+}
+
+}  // namespace tuft::app

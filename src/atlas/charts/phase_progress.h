@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "core/progress.h"
+
+namespace tuft::atlas {
+
+/// Progress of one phase that several threads advance. Once the listener asks to stop,
+/// every call throws `Cancelled`.
+class PhaseProgress {
+  public:
+    PhaseProgress(ProgressFn progress, std::string phase, double all)
+        : progress_(std::move(progress)), phase_(std::move(phase)), all_(all) {}
+
+    void advance(double work) {
+        if (!progress_ || !(work >= 0)) return;
+        const std::lock_guard lock(mutex_);
+        done_ += work;
+        stopped_ = stopped_ || !progress_(phase_, all_ > 0 ? std::min(done_ / all_, 1.0) : 1.0);
+        if (stopped_) throw Cancelled();
+    }
+
+  private:
+    ProgressFn progress_;
+    std::string phase_;
+    double all_, done_ = 0;
+    bool stopped_ = false;
+    std::mutex mutex_;
+};
+
+/// One task's part of a phase, reported bit by bit and never more than it is.
+class TaskProgress {
+  public:
+    TaskProgress(PhaseProgress& phase, double work) : phase_progress_(phase), left_(work) {}
+
+    void advance(double work) {
+        work = std::min(work, left_);
+        left_ -= work;
+        phase_progress_.advance(work);
+    }
+    void finish() { advance(left_); }
+
+  private:
+    PhaseProgress& phase_progress_;
+    double left_;
+};
+
+}  // namespace tuft::atlas

@@ -1,0 +1,179 @@
+#include "app/document/autosave.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "models.h"
+
+namespace tuft::app {
+namespace {
+
+/// No file may grow beyond `bytes` while it lives, as on a full disk.
+class FullDisk {
+  public:
+    explicit FullDisk(std::uintmax_t bytes) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        rlimit full = before_;
+        full.rlim_cur = bytes;
+        setrlimit(RLIMIT_FSIZE, &full);
+    }
+    ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+
+  private:
+    rlimit before_{};
+};
+
+class KeeperTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::signal(SIGXFSZ, SIG_IGN);
+        folder_ = std::filesystem::path(testing::TempDir()) / ("tuft_keeper_" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder_);
+        path_ = folder_ / "work.tuft";
+        ASSERT_EQ(keeper_.start(path_, "sheet.ply", {}, painting_), "");
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    void paint(double y) {
+        keeper_.prepare(painting_, "wolf-small", "carbon");
+        stroke::Stroke stroke;
+        stroke.trace.flat = false;
+        stroke.trace.brush = "wolf-small";
+        stroke.trace.ink = "carbon";
+        painting_.begin(std::move(stroke));
+        painting_.extend(test::poses_above(model_, painting_.brush("wolf-small"), 0.02, y));
+        painting_.end();
+        keeper_.add(painting_.journal().strokes().back());
+    }
+    const stroke::Model model_ = test::shipped_model("sheet.ply", 256);
+    stroke::Document painting_{model_};
+    Autosave keeper_;
+    std::filesystem::path folder_, path_;
+};
+
+TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
+    paint(0);
+    EXPECT_EQ(keeper_.trouble(), "");
+
+    {
+        const FullDisk disk(std::filesystem::file_size(path_));
+        for (int i = 1; i <= 6; ++i) paint(0.002 * i);
+    }
+    EXPECT_NE(keeper_.trouble(), "");
+    EXPECT_GE(keeper_.waiting(), 1u);
+
+    paint(0.02);
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(keeper_.waiting(), 0u);
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), painting_.journal().strokes().size());
+}
+
+TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
+    EXPECT_NE(keeper_.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting_), "");
+    EXPECT_EQ(keeper_.path(), path_);
+    paint(0);
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), 1u);
+}
+
+// No folder can be written into when the work begins: it waits in memory, and is in its file as soon as there can be one.
+TEST_F(KeeperTest, WorkThatHasNoFileYetWaitsForOne) {
+    Autosave keeper;
+    const auto file = folder_ / "later" / "work.tuft";
+    const std::string fault = keeper.start(file, "sheet.ply", {}, painting_);
+    ASSERT_NE(fault, "");
+    keeper.start_later(file, "sheet.ply", {}, fault);
+    std::swap(keeper, keeper_);
+    for (int i = 0; i < 3; ++i) paint(0.002 * i);
+    const std::uint64_t gone = painting_.journal().strokes().back().id;
+    painting_.undo();
+    keeper_.remove(gone);
+    EXPECT_EQ(keeper_.trouble(), fault);
+    EXPECT_EQ(keeper_.waiting(), 2u);
+    EXPECT_TRUE(keeper_.path().empty());
+
+    std::filesystem::create_directories(file.parent_path());
+    paint(0.02);
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(keeper_.waiting(), 0u);
+    EXPECT_EQ(keeper_.path(), file);
+    const auto kept = io::Project::open(file).strokes();
+    ASSERT_EQ(kept.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(kept[i].id, painting_.journal().strokes()[i].id);
+}
+
+// Texels are never stored beside a journal that they do not show.
+TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
+    for (int i = 0; i < 3; ++i) paint(0.002 * i);
+    const std::uint64_t gone = painting_.journal().strokes().back().id;
+    painting_.undo();
+    {
+        const FullDisk disk(0);
+        keeper_.remove(gone);
+    }
+    EXPECT_TRUE(keeper_.behind());
+    paint(0.02);
+    EXPECT_NE(keeper_.trouble(), "") << "one stroke too many is in the file";
+    keeper_.store_canvas(painting_);
+    EXPECT_FALSE(io::Project::open(path_).load_canvas(model_.texels.n_slots()));
+    keeper_.rewrite("sheet.ply", {}, painting_);
+    EXPECT_FALSE(keeper_.behind());
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), 3u);
+    EXPECT_TRUE(io::Project::open(path_).load_canvas(model_.texels.n_slots()));
+}
+
+// A change of a stroke in the middle writes the file anew: when the disk gets full over that, the strokes of before
+// must still be in it.
+TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
+    for (int i = 0; i < 8; ++i) paint(0.002 * i);
+    std::string fault, elsewhere;
+    {
+        // Room for the model, and for the strokes but for two pages of the file.
+        const FullDisk disk(std::filesystem::file_size(path_) - 8192);
+        fault = keeper_.start(path_, "sheet.ply", {}, painting_);
+        elsewhere = keeper_.start(folder_ / "other.tuft", "sheet.ply", {}, painting_);
+    }
+    EXPECT_NE(fault.find("work.tuft"), std::string::npos) << fault;
+    EXPECT_EQ(fault.find(".part"), std::string::npos) << fault;
+    EXPECT_NE(elsewhere, "");
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), 8u);
+    // Nothing half done lies about.
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+        EXPECT_TRUE(entry.path() == path_ || entry.path().extension() == ".lock") << entry.path();
+    }
+    paint(0.02);
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), 9u);
+}
+
+TEST_F(KeeperTest, WhatGoesAlongWithTheWorkIsInEachOfItsFiles) {
+    const io::Attachment image{"0001", R"({"name":"leaf.png"})", {'a', 'b'}}, other{"0002", "{}", {}};
+    keeper_.attach(io::kReferences, image);
+    keeper_.attach(io::kReferences, other);
+    keeper_.attach(io::kSnapshots, image);
+    keeper_.detach(io::kReferences, "0002");
+    EXPECT_EQ(keeper_.start(folder_ / "named.tuft", "sheet.ply", {}, painting_), "");
+    for (const auto& file : {path_, folder_ / "named.tuft"}) {
+        EXPECT_EQ(io::Project::open(file).attachments(io::kReferences), std::vector<io::Attachment>{image}) << file;
+        EXPECT_EQ(io::Project::open(file).attachments(io::kSnapshots), std::vector<io::Attachment>{image}) << file;
+    }
+    // A full disk keeps it out of the file until there is room.
+    std::vector<char> noise(100'000);  // which does not compress
+    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<char>(i * i * 2654435761u >> 13);
+    {
+        const FullDisk disk(std::filesystem::file_size(folder_ / "named.tuft"));
+        keeper_.attach(io::kReferences, {"0003", "{}", noise});
+    }
+    EXPECT_NE(keeper_.trouble(), "");
+    EXPECT_TRUE(keeper_.behind());
+    keeper_.rewrite("sheet.ply", {}, painting_);
+    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(io::Project::open(folder_ / "named.tuft").attachments(io::kReferences).size(), 2u);
+}
+
+}  // namespace
+}  // namespace tuft::app

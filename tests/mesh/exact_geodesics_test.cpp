@@ -1,0 +1,139 @@
+#include "mesh/exact_geodesics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/random.h"
+#include "mesh/repair.h"
+#include "mesh/surface_query.h"
+
+namespace tuft::mesh {
+namespace {
+
+constexpr std::size_t kMost = 1'000'000;
+
+/// n × n squares of side 1/n metre in the plane, each halved, put into space; without those that
+/// `gone` names.
+TriangleMesh sheet(int n, const std::function<Vec3(Vec2)>& place,
+                   const std::function<bool(Vec2)>& gone = {}) {
+    PolygonSoup soup;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) soup.points.push_back(1000.0 * place(Vec2(i, j) / double(n)));
+    soup.polygon_start.push_back(0);
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            if (gone && gone(Vec2(i + 0.5, j + 0.5) / double(n))) continue;
+            const auto at = [&](int x, int y) {
+                return static_cast<std::uint32_t>(y * (n + 1) + x);
+            };
+            for (const std::uint32_t c : {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j),
+                                          at(i + 1, j + 1), at(i, j + 1)})
+                soup.corners.push_back(c);
+            soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()) - 3);
+            soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+        }
+    return build_surface(std::move(soup), {.metres_per_unit = 1e-3}).mesh;
+}
+
+Vec3 flat(Vec2 p) {
+    return Vec3(p, 0);
+}
+
+/// Bent along parallel lines into a zigzag of right angles, four pleats: lengths on it stay as they
+/// were.
+Vec3 pleated(Vec2 p) {
+    const double x = 8 * p.x, pleat = std::floor(x / 2), in = x - 2 * pleat;
+    return {(pleat + std::min(in, 1.0)) / 8, p.y,
+            std::fmod(pleat, 2) == 0 ? std::max(in - 1, 0.0) / 8 : (1 - std::max(in - 1, 0.0)) / 8};
+}
+
+struct Stand {
+    TriangleMesh mesh;
+    SurfaceQuery query{mesh};
+    ExactGeodesics ways;
+
+    explicit Stand(TriangleMesh m) : mesh(std::move(m)) {}
+    bool from(const Vec3& p, double radius = 2) {
+        const auto at = query.closest_point(p);
+        return ways.spread(mesh, at->triangle, at->position, radius, kMost);
+    }
+    ExactGeodesics::Geodesic to(const Vec3& p) const {
+        const auto at = query.closest_point(p);
+        return ways.to(at->triangle, at->position);
+    }
+};
+
+TEST(ExactGeodesics, AreStraightLinesOnWhatUnrollsToAPlane) {
+    // Positions are kept in single precision, 6e-8 of a metre; origins lie a millionth of a
+    // triangle off.
+    for (Vec3 (*place)(Vec2) : {flat, pleated}) {
+        Stand stand(sheet(16, place));
+        Random random(3);
+        for (int i = 0; i < 20; ++i) {
+            const Vec2 a{random.uniform(0, 1), random.uniform(0, 1)};
+            ASSERT_TRUE(stand.from(place(a)));
+            for (int k = 0; k < 50; ++k) {
+                const Vec2 b{random.uniform(0, 1), random.uniform(0, 1)};
+                const auto way = stand.to(place(b));
+                EXPECT_NEAR(way.length, glm::length(b - a), 1e-6);
+                EXPECT_FALSE(way.bent);
+                EXPECT_NEAR(glm::length(way.leaves), 1, 1e-9);
+                EXPECT_NEAR(glm::length(way.arrives), 1, 1e-9);
+                if (place == flat) {
+                    EXPECT_LT(glm::length(way.leaves - flat(b - a) / glm::length(b - a)), 1e-4);
+                }
+            }
+        }
+    }
+}
+
+TEST(ExactGeodesics, BendRoundTheCornerOfANotch) {
+    // A quarter of the sheet is missing: from one arm to the other the way bends where its corner
+    // stands.
+    Stand stand(sheet(8, flat, [](Vec2 p) { return p.x > 0.5 && p.y > 0.5; }));
+    const Vec2 corner{0.5, 0.5};
+    ASSERT_TRUE(stand.from(flat({0.9, 0.3})));
+    for (const Vec2 p : {Vec2{0.45, 0.95}, Vec2{0.4, 0.9}, Vec2{0.49, 0.6}}) {
+        const auto way = stand.to(flat(p));
+        EXPECT_TRUE(way.bent);
+        EXPECT_NEAR(way.length, glm::length(corner - Vec2{0.9, 0.3}) + glm::length(p - corner),
+                    1e-6);
+        EXPECT_LT(glm::length(way.arrives - flat(p - corner) / glm::length(p - corner)), 1e-5);
+    }
+    const auto straight = stand.to(flat({0.1, 0.5}));
+    EXPECT_FALSE(straight.bent);
+    EXPECT_NEAR(straight.length, std::hypot(0.8, 0.2), 1e-6);
+}
+
+TEST(ExactGeodesics, AreAsLongThereAsBack) {
+    // Over a field of hills and hollows, with ways round many vertices of either kind.
+    const auto hills = [](Vec2 p) {
+        return Vec3(p, 0.06 * std::sin(19 * p.x) * std::cos(17 * p.y));
+    };
+    Stand stand(sheet(32, hills));
+    Random random(5);
+    for (int i = 0; i < 60; ++i) {
+        const Vec3 a = hills({random.uniform(0, 1), random.uniform(0, 1)}),
+                   b = hills({random.uniform(0, 1), random.uniform(0, 1)});
+        ASSERT_TRUE(stand.from(a));
+        const double there = stand.to(b).length;
+        ASSERT_TRUE(stand.from(b));
+        // Flat vertices throw no shadow, whose ways would be longer by 1e-8 of an edge each.
+        EXPECT_NEAR(stand.to(a).length / there, 1, 1e-5);
+        EXPECT_GE(there, glm::length(a - b) * (1 - 1e-3));
+    }
+}
+
+TEST(ExactGeodesics, EndAtTheRadiusAndAtTheMostWindows) {
+    Stand stand(sheet(32, flat));
+    ASSERT_TRUE(stand.from(flat({0.5, 0.5}), 0.2));
+    EXPECT_NEAR(stand.to(flat({0.6, 0.6})).length, std::hypot(0.1, 0.1), 1e-6);
+    EXPECT_TRUE(std::isinf(stand.to(flat({0.9, 0.5})).length));
+    EXPECT_FALSE(stand.ways.spread(stand.mesh, 0, stand.mesh.position(0, 0), 10, 100));
+    EXPECT_FALSE(stand.ways.spread(stand.mesh, kNone, Vec3{0}, 10, kMost));
+}
+
+}  // namespace
+}  // namespace tuft::mesh
