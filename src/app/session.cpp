@@ -34,8 +34,8 @@ void take_picked(Session& s, const std::string& name) {
 }
 
 std::unique_ptr<PaintThread> start_painter(Session& s, PaintThread::Work work) {
-    const fs::path project = work.keeper.path();
-    if (project.empty() || work.keeper.viewing()) s.note.clear();  // it is in memory only, or another program's
+    const fs::path project = work.autosave.path();
+    if (project.empty() || work.autosave.viewing()) s.note.clear();  // it is in memory only, or another program's
     else s.note.write(project, work.source);
     if (!project.empty() && !is_unnamed(project)) remember_project(project);
     work.spare = s.note.new_project(fs::path(work.source).stem().string());

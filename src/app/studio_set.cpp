@@ -55,7 +55,7 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "writing-width") s.writing.scale = number * kMillimetre / std::max(1e-6, s.writing.width);
     else if (name == "writing-turn") s.writing.turn = -number * kDegree;
     else if (name == "writing-mirror") s.writing.mirrored = on;
-    else if (name == "writing-laying") s.writing.mapping = static_cast<stroke::SurfaceMapping>(one_of({"wrap", "drape", "project"}));
+    else if (name == "writing-mapping") s.writing.mapping = static_cast<stroke::SurfaceMapping>(one_of({"wrap", "drape", "project"}));
     else if (name == "export-size") s.export_choice.size = static_cast<std::uint32_t>(std::clamp(number, 0.0, 16384.0));
     else if (name == "export-picture-width") s.export_choice.picture_width = std::clamp(static_cast<int>(number), 16, 8192);
     else if (name == "export-pictures") s.export_choice.picture = std::clamp(static_cast<int>(number), 0, 360);

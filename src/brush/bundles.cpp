@@ -134,7 +134,7 @@ BranchPlace in_branch(const Vec2& place, int count) {
 }
 
 HairCells hair_cells(const Preset& p) {
-    HairCells cells{.ends = {0.45, 0.7, 0.88, 1}, .rooms = {}};
+    HairCells cells{.ends = {0.45, 0.7, 0.88, 1}, .capacities = {}};
     constexpr int kPerCell = 64;
     double begin = 0, sum = 0;
     for (const double end : cells.ends) {
@@ -143,11 +143,11 @@ HairCells hair_cells(const Preset& p) {
             const double r = rest_radius(p, begin + (end - begin) * (i + 0.5) / kPerCell) / p.radius;
             volume += r * r * (end - begin) / kPerCell;
         }
-        cells.rooms.push_back(volume);
+        cells.capacities.push_back(volume);
         sum += volume;
         begin = end;
     }
-    for (double& v : cells.rooms) v /= sum;
+    for (double& v : cells.capacities) v /= sum;
     return cells;
 }
 

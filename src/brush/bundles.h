@@ -62,7 +62,7 @@ BranchPlace in_branch(const Vec2& place, int count);
 /// Division of a bundle along its length for its ink: where cells end (part of the length from
 /// the root) and the part of the hair's volume in each.
 struct HairCells {
-    std::vector<double> ends, rooms;
+    std::vector<double> ends, capacities;
 };
 HairCells hair_cells(const Preset& preset);
 

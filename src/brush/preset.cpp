@@ -49,7 +49,7 @@ constexpr std::array kFields = {
     Field{"contact", "transverse_stiffness_n_m2", &Preset::transverse_stiffness, 1, 10, 1e7},
     Field{"contact", "core_stiffness", &Preset::core_stiffness, 1, 0, 1000},
     Field{"contact", "core_start", &Preset::core_start, 1, 0, 1},
-    Field{"contact", "end_give_mm", &Preset::end_compliance, kMillimetre, 0, 20},
+    Field{"contact", "end_compliance_mm", &Preset::end_compliance, kMillimetre, 0, 20},
     Field{"contact", "adhesion_n_m", &Preset::adhesion, 1, 0, 10},
     Field{"contact", "adhesion_range_mm", &Preset::adhesion_range, kMillimetre, 0.01, 20},
     Field{"contact", "friction_wet", &Preset::friction_wet, 1, 0, 2},
@@ -131,8 +131,14 @@ double number_of(const toml::node& node, const std::string& source, const std::s
     return *v;
 }
 
-void read_value(Preset& p, const std::string& table, const std::string& key, const toml::node& node,
+/// Key that took the place of one in earlier files.
+std::string current_key(const std::string& table, const std::string& key) {
+    return table == "contact" && key == "end_give_mm" ? "end_compliance_mm" : key;
+}
+
+void read_value(Preset& p, const std::string& table, const std::string& written, const toml::node& node,
                 const std::string& source) {
+    const std::string key = current_key(table, written);
     const std::string full = table + "." + key;
     if (full == "bending.spine") {
         const std::string v = text_of(node, source, full);

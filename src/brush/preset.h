@@ -49,7 +49,7 @@ struct Preset {
     double transverse_stiffness = 1.2e4;  ///< k_c, N/m²: force per length per indentation of the tuft's side
     double core_stiffness = 150;  ///< times k_c once the hair is packed
     double core_start = 0.65;     ///< indentation over radius at which it is packed
-    double end_compliance = 5e-4;       ///< m, scatter of the hairs' ends: by so much the point gives before
+    double end_compliance = 5e-4; ///< m, scatter of the hairs' ends: by so much the point gives before
                                   ///< the tuft, pressed end-on, buckles
     double adhesion = 0.5;        ///< N/m, pull of the wet film per length of hair; none when dry
     double adhesion_range = 1e-3; ///< m, gap at which the film breaks
@@ -60,9 +60,9 @@ struct Preset {
     double stick = 40;            ///< tangential over normal stiffness of a sticking contact
 
     // Sections.
-    double flatten_moment = 0.8;  ///< κ1 of a = r (1 + κ1 |m|/M_e0 + κ2 k_F + κ3 squash)
+    double flatten_moment = 0.8;  ///< κ1 of a = r (1 + κ1 |m|/M_e0 + κ2 k_F + κ3 i)
     double flatten_force = 0.6;   ///< κ2
-    double flatten_contact = 1;   ///< κ3; squash is 1 where the hair is pressed flat
+    double flatten_contact = 1;   ///< κ3; the indentation i is 1 where the hair is pressed flat
     double flatten_max = 3;       ///< a <= flatten_max r
 
     // Ink and splitting.

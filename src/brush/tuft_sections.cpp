@@ -72,10 +72,10 @@ double cubic(double p, double q, double u, double v, double f) {
     return g * g * (1 + 2 * f) * p + f * f * (1 + 2 * g) * q + f * g * (g * u - f * v);
 }
 
-/// How far the contact squashes the hair round each node, 0 to 1, root first: indentation over radius, mean
+/// Relative indentation of the hair round each node, 0 to 1, root first: indentation over radius, mean
 /// over the hair that the node stands for (its hat function), along the cubic through the nodes; hair that stands
 /// on the surface is not pressed flat. A contact that comes in between two nodes so begins smoothly at both.
-std::vector<double> squash(const SectionInput& in, const std::vector<Vec3>& t) {
+std::vector<double> indentation_of(const SectionInput& in, const std::vector<Vec3>& t) {
     constexpr int kPoints = 6;  // per segment
     const std::size_t count = in.node.size();
     std::vector<double> out(count, 0);
@@ -93,9 +93,9 @@ std::vector<double> squash(const SectionInput& in, const std::vector<Vec3>& t) {
             const double depth = r - cubic(z[j], z[j + 1], l * c[j], l * c[j + 1], f);
             if (r <= 0 || depth <= 0) continue;
             const double lean = std::lerp(c[j], c[j + 1], f);
-            const double squashed = std::min(depth / r, 1.0) * (1 - lean * lean) * l / kPoints;
-            out[j] += (1 - f) * squashed / in.spine.rod.weight[j];
-            out[j + 1] += f * squashed / in.spine.rod.weight[j + 1];
+            const double indentation = std::min(depth / r, 1.0) * (1 - lean * lean) * l / kPoints;
+            out[j] += (1 - f) * indentation / in.spine.rod.weight[j];
+            out[j + 1] += f * indentation / in.spine.rod.weight[j + 1];
         }
     }
     out.front() = 0;
@@ -174,14 +174,14 @@ double clearance(const SectionInput& in, std::size_t node, const ContactPlane& w
 }
 
 /// What pushes the side nodes out, as if it worked against the wet stretch springs alone:
-/// r (κ1 |m|/M_e0 + κ2 k_F + κ3 squash); and the shift by the friction of the surface along e.
+/// r (κ1 |m|/M_e0 + κ2 k_F + κ3 i); and the shift by the friction of the surface along e.
 Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e) {
     const Preset& p = in.preset;
     const std::size_t count = e.size();
     const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
     const double newton = p.stiffness / (p.length * p.length);
     const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * newton / p.force_limit);
-    const std::vector<double> squashed = squash(in, t);
+    const std::vector<double> indentation = indentation_of(in, t);
     const double wet = kSides * p.transverse_stiffness;
     LateralSprings springs{.stretch = wet * (kDry + (1 - kDry) * in.wetness),
                            .bend = wet,
@@ -202,7 +202,7 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
         const double out_of_ferrule = at[i] / (2.5 * p.radius);
         const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
         const double widen = held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
-                                     p.flatten_contact * squashed[i]);
+                                     p.flatten_contact * indentation[i]);
         const Vec3 wall = in.result.wall_force.empty() ? Vec3{0} : in.result.wall_force[i];
         friction.most[i] = kSides * kSideDrag * std::abs(glm::dot(in.result.contact_force[i] - wall, e[i])) * newton /
                            (in.spine.rod.weight[i] * p.length);

@@ -37,7 +37,7 @@ struct SectionOutput {
 double side_stiffness(double wetness);
 
 /// Half-widths to both sides from the side nodes (lateral.h), pushed by the bending moment, the
-/// force and the squash of the contact and dragged by its friction; a is their mean, the centre
+/// force and the indentation of the contact and dragged by its friction; a is their mean, the centre
 /// lies midway, b = r²/a.
 ///
 /// Energy. The stiffnesses of a tuft, B and k_c, are those of hair that is free to spread: with the

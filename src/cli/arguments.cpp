@@ -277,7 +277,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("--stabilise", paint.stabilise_mm, "pull the tip on a string of so many millimetres")
         ->check(number_in(0.0, 1000.0))
         ->type_name("MM");
-    p->add_option("--habit", paint.habit, "undo a writer's habit (.toml, made by 'tuft habit')");
+    p->add_option("--bias,--habit", paint.bias, "correct a writer's bias (.toml, made by 'tuft bias')");
     p->add_option_function<std::string>(
          "--place",
          [&paint](const std::string& text) {
@@ -313,10 +313,10 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
          },
          "where a person stands who reads the drawing: front, back, left, right, top, bottom, or a "
          "direction X,Y,Z from the model; "
-         "it stands upright for them, and --laying project goes straight away from them (default: "
+         "it stands upright for them, and --mapping project goes straight away from them (default: "
          "before the surface)")
         ->type_name("DIRECTION");
-    p->add_option("--laying", paint.mapping,
+    p->add_option("--mapping,--laying", paint.mapping,
                   "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap (round its very "
                   "triangles, into each groove), project (straight, as seen from before the place); default: as their file says, "
                   "drape where it names no place")
@@ -455,12 +455,12 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_common(b, brush.common);
     fit->fallthrough();  // options of 'brush' also stand behind 'calibrate'
 
-    BiasCorrection habit;
-    auto* h = app.add_subcommand("habit", "learn how a writer's strokes differ from those that were meant");
-    h->add_option("INTENDED", habit.intended, "strokes as they should be (.inkml)")->required();
-    h->add_option("WRITTEN", habit.written, "the same strokes as the writer makes them (.inkml)")->required();
-    h->add_option("-o,--output", habit.output, "habit to write (.toml)")->required();
-    add_common(h, habit.common);
+    BiasCorrection bias;
+    auto* h = app.add_subcommand("bias", "learn how a writer's strokes differ from those that were meant")->alias("habit");
+    h->add_option("INTENDED", bias.intended, "strokes as they should be (.inkml)")->required();
+    h->add_option("WRITTEN", bias.written, "the same strokes as the writer makes them (.inkml)")->required();
+    h->add_option("-o,--output", bias.output, "bias correction to write (.toml)")->required();
+    add_common(h, bias.common);
 
     InkWork ink;
     auto* inks = app.add_subcommand("ink", "list the inks, or find the mix of pigments nearest to a colour");
@@ -518,7 +518,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     else if (e->parsed()) command = exported;
     else if (d->parsed()) command = render;
     else if (b->parsed()) command = brush;
-    else if (h->parsed()) command = habit;
+    else if (h->parsed()) command = bias;
     else if (l->parsed()) command = layer;
     else if (f->parsed()) command = fill;
     else if (k->parsed()) command = mask;

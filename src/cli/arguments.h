@@ -66,7 +66,7 @@ struct Paint {
     std::string pressure = "none";  ///< none | speed | dwell | speed+dwell, for strokes without any
     double smooth = 0;              ///< strength of the hand's filter; 0: off
     double stabilise_mm = 0;        ///< length of the string; 0: off
-    std::filesystem::path habit;    ///< habit to undo, or empty
+    std::filesystem::path bias;    ///< bias to correct, or empty
     std::vector<double> place_mm;   ///< x,y,z of the placement for flat strokes, or empty
     std::string on;                 ///< side of the model (stroke::side_name) for flat strokes, or empty
     std::vector<double> read_from;  ///< direction of who reads the drawing, three numbers, or empty
@@ -169,7 +169,7 @@ struct Brush {
     Common common;
 };
 
-/// `tuft habit INTENDED.inkml WRITTEN.inkml -o HABIT.toml`
+/// `tuft bias INTENDED.inkml WRITTEN.inkml -o BIAS.toml`
 struct BiasCorrection {
     std::filesystem::path intended, written, output;
     Common common;

@@ -32,7 +32,7 @@ struct PlacedDrawing {
 /// drawing, its middle at the point nearest to the place, else in the middle of the largest calm area of a side
 /// (stroke::find_free_area), upright unless the arguments say who reads it. Without a width given, a drawing without a place that takes
 /// more than 0.9 or less than 0.15 of that area is scaled to 0.6 of it, with a note. Scaling keeps the hand's speed; the brushes that the
-/// files name grow and shrink with the drawing. What had no place is draped; `--laying` says how all flat strokes lie.
+/// files name grow and shrink with the drawing. What had no place is draped; `--mapping` says how all flat strokes lie.
 /// Nothing when no stroke is flat. Throws `Error` when a side that was asked for has no such area.
 std::optional<PlacedDrawing> place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& arguments, Console& console);
 

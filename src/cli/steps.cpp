@@ -147,15 +147,15 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     settings.down = {a.down[0], a.down[1], a.down[2]};
     stroke::EntryOptions options{.settings = settings, .brush = a.brush, .ink = a.ink, .pressure = a.pressure, .erases = a.erases};
     for (const std::string& text : a.prepare) options.prepare.push_back(stroke::action_of_text(text));
-    std::optional<stroke::BiasCorrection> habit;
-    if (!a.habit.empty()) habit = stroke::load_bias(a.habit);
+    std::optional<stroke::BiasCorrection> bias;
+    if (!a.bias.empty()) bias = stroke::load_bias(a.bias);
 
     std::vector<stroke::Stroke> strokes;
     std::set<std::string> told;  // a file that is painted twice is told of once
     for (const fs::path& file : a.strokes) {
         const std::size_t first = strokes.size();
         std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) { if (told.insert(line).second) console.note(line); }});
-        if (habit) traces = stroke::correct_bias(*habit, std::move(traces));
+        if (bias) traces = stroke::correct_bias(*bias, std::move(traces));
         stroke::append_entries(strokes, std::move(traces), options);
         for (std::size_t i = first; i < strokes.size(); ++i)
             strokes[i].group = {static_cast<std::uint64_t>(1 + (&file - a.strokes.data())), stroke::group_name(file)};

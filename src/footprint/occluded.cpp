@@ -76,7 +76,7 @@ class Seating {
     TriangleCache& entries_;
 };
 
-struct Folds {
+struct OccludedClusters {
     const mesh::TriangleMesh& mesh;
     const mesh::ExactGeodesics& ways;
     const Frame& from;
@@ -121,7 +121,7 @@ void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Fram
     if (!ways.spread(surface.mesh, triangle, from.origin, radius, kMostWindows)) return;
     Seating seating(surface, scratch.triangle_cache);
     for (std::size_t i = 0; i < ways.n_faces(); ++i) seating.look(ways.triangle(i));
-    const Folds folds{surface.mesh, ways, from, face_normal(surface.mesh, triangle)};
+    const OccludedClusters occluded_clusters{surface.mesh, ways, from, face_normal(surface.mesh, triangle)};
     const atlas::ClusterGraph& graph = surface.clusters;
     begin_walk(scratch, graph.n_clusters());
     std::vector<std::uint32_t> open{start.cluster};
@@ -131,7 +131,7 @@ void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Fram
         const std::uint32_t index = open[i];
         const atlas::TexelCluster& cluster = graph.clusters[index];
         PlanScratch::Node& n = node_of(scratch, index);
-        const bool placed = folds.place(cluster, scratch.triangle_cache.of(index), n);
+        const bool placed = occluded_clusters.place(cluster, scratch.triangle_cache.of(index), n);
         const float distance = std::sqrt(n.u * n.u + n.v * n.v);
         if (index != start.cluster &&
             (!placed || distance - kPieceSlack * cluster.radius > reach.radius ||

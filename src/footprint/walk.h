@@ -31,7 +31,7 @@ struct Start {
 std::size_t walk_clusters(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start,
                         PlanScratch& scratch);
 
-/// What the walk over clusters and that over folds (folds.h) have in common: states of a cluster,
+/// What the walk over clusters and that over folds (occluded.h) have in common: states of a cluster,
 enum : std::uint8_t { kOpen, kFinal, kOutside };
 /// all nodes open again, those of no cluster visited yet,
 void begin_walk(PlanScratch& scratch, std::size_t n_clusters);

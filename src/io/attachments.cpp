@@ -42,10 +42,10 @@ stroke::Stroke entry_of(const nlohmann::json& j) {
     s.trace.seed = j.at("seed").get<std::uint64_t>();
     s.trace.label = j.at("label").get<std::string>();
     s.trace.flat = j.at("flat").get<bool>();
-    const auto laying = stroke::surface_mapping_named(j.at("laying").get<std::string>());
+    const auto mapping = stroke::surface_mapping_named(j.at("laying").get<std::string>());
     const auto p = j.at("placement").get<std::array<double, 9>>();
-    if (!laying || !std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); })) throw Error("its place on the model cannot be read");
-    s.trace.placement = {.origin = {p[0], p[1], p[2]}, .right = {p[3], p[4], p[5]}, .down = {p[6], p[7], p[8]}, .mapping = *laying};
+    if (!mapping || !std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); })) throw Error("its place on the model cannot be read");
+    s.trace.placement = {.origin = {p[0], p[1], p[2]}, .right = {p[3], p[4], p[5]}, .down = {p[6], p[7], p[8]}, .mapping = *mapping};
     stroke::read_entry_json(j.at("entry").get<std::string>(), s);
     s.hidden = j.at("hidden").get<bool>();
     return s;

@@ -45,7 +45,7 @@ struct InkmlOptions {
 ///     tuft:brush    preset name          tuft:origin  "x y z" in mm, model frame
 ///     tuft:ink      preset name          tuft:right   "x y z" direction of +x
 ///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
-///     tuft:label    any text             tuft:laying  wrap | project
+///     tuft:label    any text             tuft:mapping wrap | project
 ///     tuft:mask     name of a mask that the project has
 ///     tuft:stencil edge     edges that no ink of a trace gets over: X Y X Y each, metres, what may be painted to the right of
 ///                   their way where Y points down

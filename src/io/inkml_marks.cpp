@@ -248,10 +248,10 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
             marks.placement.right = direction_of(file, node, text);
         else if (type == "down")
             marks.placement.down = direction_of(file, node, text);
-        else if (type == "laying") {
-            const auto laying = stroke::surface_mapping_named(text);
-            if (!laying) file.fail(node, "tuft:laying is neither wrap, drape nor project");
-            marks.placement.mapping = *laying;
+        else if (type == "mapping" || type == "laying") {  // its name before
+            const auto mapping = stroke::surface_mapping_named(text);
+            if (!mapping) file.fail(node, "tuft:mapping is neither wrap, drape nor project");
+            marks.placement.mapping = *mapping;
         } else if (type == "seed") {
             const auto [end, error] =
                 std::from_chars(text.data(), text.data() + text.size(), marks.seed);

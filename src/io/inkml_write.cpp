@@ -193,7 +193,7 @@ void add_group_marks(std::string& out, const Trace& first, const Style& style) {
     add_annotation(out, "    ", "origin", point_text(first.placement.origin, style));
     add_annotation(out, "    ", "right", vector_text(first.placement.right, style, 10));
     add_annotation(out, "    ", "down", vector_text(first.placement.down, style, 10));
-    add_annotation(out, "    ", "laying", std::string(stroke::surface_mapping_name(first.placement.mapping)));
+    add_annotation(out, "    ", "mapping", std::string(stroke::surface_mapping_name(first.placement.mapping)));
 }
 
 }  // namespace

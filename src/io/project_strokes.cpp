@@ -116,9 +116,9 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         stroke::read_entry_json(text(5, kMostSettings, "the settings of a stroke"), stroke);
         stroke.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
-        const auto laying = stroke::surface_mapping_named(text(8, kMostWord, "how a stroke is laid"));
-        if (!laying) throw Error(what + " is laid onto the model in a way that is not known");
-        t.placement.mapping = *laying;
+        const auto mapping = stroke::surface_mapping_named(text(8, kMostWord, "how a stroke is laid"));
+        if (!mapping) throw Error(what + " is laid onto the model in a way that is not known");
+        t.placement.mapping = *mapping;
         const SQLite::Column placement = select.getColumn(9);
         std::array<double, 9> p{};
         if (placement.getBytes() != static_cast<int>(sizeof p))

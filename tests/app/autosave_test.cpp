@@ -34,12 +34,12 @@ class KeeperTest : public testing::Test {
         folder_ = std::filesystem::path(testing::TempDir()) / ("tuft_keeper_" + std::to_string(getpid()));
         std::filesystem::create_directories(folder_);
         path_ = folder_ / "work.tuft";
-        ASSERT_EQ(keeper_.start(path_, "sheet.ply", {}, painting_), "");
+        ASSERT_EQ(autosave_.start(path_, "sheet.ply", {}, painting_), "");
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
     void paint(double y) {
-        keeper_.prepare(painting_, "wolf-small", "carbon");
+        autosave_.prepare(painting_, "wolf-small", "carbon");
         stroke::Stroke stroke;
         stroke.trace.flat = false;
         stroke.trace.brush = "wolf-small";
@@ -47,60 +47,60 @@ class KeeperTest : public testing::Test {
         painting_.begin(std::move(stroke));
         painting_.extend(test::poses_above(model_, painting_.brush("wolf-small"), 0.02, y));
         painting_.end();
-        keeper_.add(painting_.journal().strokes().back());
+        autosave_.add(painting_.journal().strokes().back());
     }
     const stroke::Model model_ = test::shipped_model("sheet.ply", 256);
     stroke::Document painting_{model_};
-    Autosave keeper_;
+    Autosave autosave_;
     std::filesystem::path folder_, path_;
 };
 
 TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
     paint(0);
-    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(autosave_.trouble(), "");
 
     {
         const FullDisk disk(std::filesystem::file_size(path_));
         for (int i = 1; i <= 6; ++i) paint(0.002 * i);
     }
-    EXPECT_NE(keeper_.trouble(), "");
-    EXPECT_GE(keeper_.waiting(), 1u);
+    EXPECT_NE(autosave_.trouble(), "");
+    EXPECT_GE(autosave_.waiting(), 1u);
 
     paint(0.02);
-    EXPECT_EQ(keeper_.trouble(), "");
-    EXPECT_EQ(keeper_.waiting(), 0u);
+    EXPECT_EQ(autosave_.trouble(), "");
+    EXPECT_EQ(autosave_.waiting(), 0u);
     EXPECT_EQ(io::Project::open(path_).strokes().size(), painting_.journal().strokes().size());
 }
 
 TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
-    EXPECT_NE(keeper_.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting_), "");
-    EXPECT_EQ(keeper_.path(), path_);
+    EXPECT_NE(autosave_.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting_), "");
+    EXPECT_EQ(autosave_.path(), path_);
     paint(0);
-    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_EQ(autosave_.trouble(), "");
     EXPECT_EQ(io::Project::open(path_).strokes().size(), 1u);
 }
 
 // No folder can be written into when the work begins: it waits in memory, and is in its file as soon as there can be one.
 TEST_F(KeeperTest, WorkThatHasNoFileYetWaitsForOne) {
-    Autosave keeper;
+    Autosave autosave;
     const auto file = folder_ / "later" / "work.tuft";
-    const std::string fault = keeper.start(file, "sheet.ply", {}, painting_);
+    const std::string fault = autosave.start(file, "sheet.ply", {}, painting_);
     ASSERT_NE(fault, "");
-    keeper.start_later(file, "sheet.ply", {}, fault);
-    std::swap(keeper, keeper_);
+    autosave.start_later(file, "sheet.ply", {}, fault);
+    std::swap(autosave, autosave_);
     for (int i = 0; i < 3; ++i) paint(0.002 * i);
     const std::uint64_t gone = painting_.journal().strokes().back().id;
     painting_.undo();
-    keeper_.remove(gone);
-    EXPECT_EQ(keeper_.trouble(), fault);
-    EXPECT_EQ(keeper_.waiting(), 2u);
-    EXPECT_TRUE(keeper_.path().empty());
+    autosave_.remove(gone);
+    EXPECT_EQ(autosave_.trouble(), fault);
+    EXPECT_EQ(autosave_.waiting(), 2u);
+    EXPECT_TRUE(autosave_.path().empty());
 
     std::filesystem::create_directories(file.parent_path());
     paint(0.02);
-    EXPECT_EQ(keeper_.trouble(), "");
-    EXPECT_EQ(keeper_.waiting(), 0u);
-    EXPECT_EQ(keeper_.path(), file);
+    EXPECT_EQ(autosave_.trouble(), "");
+    EXPECT_EQ(autosave_.waiting(), 0u);
+    EXPECT_EQ(autosave_.path(), file);
     const auto kept = io::Project::open(file).strokes();
     ASSERT_EQ(kept.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(kept[i].id, painting_.journal().strokes()[i].id);
@@ -113,16 +113,16 @@ TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
     painting_.undo();
     {
         const FullDisk disk(0);
-        keeper_.remove(gone);
+        autosave_.remove(gone);
     }
-    EXPECT_TRUE(keeper_.behind());
+    EXPECT_TRUE(autosave_.behind());
     paint(0.02);
-    EXPECT_NE(keeper_.trouble(), "") << "one stroke too many is in the file";
-    keeper_.store_canvas(painting_);
+    EXPECT_NE(autosave_.trouble(), "") << "one stroke too many is in the file";
+    autosave_.store_canvas(painting_);
     EXPECT_FALSE(io::Project::open(path_).load_canvas(model_.texels.n_slots()));
-    keeper_.rewrite("sheet.ply", {}, painting_);
-    EXPECT_FALSE(keeper_.behind());
-    EXPECT_EQ(keeper_.trouble(), "");
+    autosave_.rewrite("sheet.ply", {}, painting_);
+    EXPECT_FALSE(autosave_.behind());
+    EXPECT_EQ(autosave_.trouble(), "");
     EXPECT_EQ(io::Project::open(path_).strokes().size(), 3u);
     EXPECT_TRUE(io::Project::open(path_).load_canvas(model_.texels.n_slots()));
 }
@@ -135,8 +135,8 @@ TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
     {
         // Room for the model, and for the strokes but for two pages of the file.
         const FullDisk disk(std::filesystem::file_size(path_) - 8192);
-        fault = keeper_.start(path_, "sheet.ply", {}, painting_);
-        elsewhere = keeper_.start(folder_ / "other.tuft", "sheet.ply", {}, painting_);
+        fault = autosave_.start(path_, "sheet.ply", {}, painting_);
+        elsewhere = autosave_.start(folder_ / "other.tuft", "sheet.ply", {}, painting_);
     }
     EXPECT_NE(fault.find("work.tuft"), std::string::npos) << fault;
     EXPECT_EQ(fault.find(".part"), std::string::npos) << fault;
@@ -152,11 +152,11 @@ TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
 
 TEST_F(KeeperTest, WhatGoesAlongWithTheWorkIsInEachOfItsFiles) {
     const io::Attachment image{"0001", R"({"name":"leaf.png"})", {'a', 'b'}}, other{"0002", "{}", {}};
-    keeper_.attach(io::kReferences, image);
-    keeper_.attach(io::kReferences, other);
-    keeper_.attach(io::kSnapshots, image);
-    keeper_.detach(io::kReferences, "0002");
-    EXPECT_EQ(keeper_.start(folder_ / "named.tuft", "sheet.ply", {}, painting_), "");
+    autosave_.attach(io::kReferences, image);
+    autosave_.attach(io::kReferences, other);
+    autosave_.attach(io::kSnapshots, image);
+    autosave_.detach(io::kReferences, "0002");
+    EXPECT_EQ(autosave_.start(folder_ / "named.tuft", "sheet.ply", {}, painting_), "");
     for (const auto& file : {path_, folder_ / "named.tuft"}) {
         EXPECT_EQ(io::Project::open(file).attachments(io::kReferences), std::vector<io::Attachment>{image}) << file;
         EXPECT_EQ(io::Project::open(file).attachments(io::kSnapshots), std::vector<io::Attachment>{image}) << file;
@@ -166,12 +166,12 @@ TEST_F(KeeperTest, WhatGoesAlongWithTheWorkIsInEachOfItsFiles) {
     for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<char>(i * i * 2654435761u >> 13);
     {
         const FullDisk disk(std::filesystem::file_size(folder_ / "named.tuft"));
-        keeper_.attach(io::kReferences, {"0003", "{}", noise});
+        autosave_.attach(io::kReferences, {"0003", "{}", noise});
     }
-    EXPECT_NE(keeper_.trouble(), "");
-    EXPECT_TRUE(keeper_.behind());
-    keeper_.rewrite("sheet.ply", {}, painting_);
-    EXPECT_EQ(keeper_.trouble(), "");
+    EXPECT_NE(autosave_.trouble(), "");
+    EXPECT_TRUE(autosave_.behind());
+    autosave_.rewrite("sheet.ply", {}, painting_);
+    EXPECT_EQ(autosave_.trouble(), "");
     EXPECT_EQ(io::Project::open(folder_ / "named.tuft").attachments(io::kReferences).size(), 2u);
 }
 

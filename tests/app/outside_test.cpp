@@ -36,7 +36,7 @@ class OutsideTest : public testing::Test {
         work.painting = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
         work.spare = folder_ / "spare.tuft";
-        ASSERT_EQ(work.keeper.start(path_, "sheet.ply", {}, *work.painting), "");
+        ASSERT_EQ(work.autosave.start(path_, "sheet.ply", {}, *work.painting), "");
         painter_ = std::make_unique<PaintThread>(std::move(work));
     }
     void TearDown() override {
@@ -149,8 +149,8 @@ TEST_F(OutsideTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
     {
         const stroke::Model other = test::shipped_model("sphere.ply", 256);
         stroke::Document painting(other);
-        Autosave keeper;
-        ASSERT_EQ(keeper.start(folder_ / "other.tuft", "sphere.ply", {}, painting), "");
+        Autosave autosave;
+        ASSERT_EQ(autosave.start(folder_ / "other.tuft", "sphere.ply", {}, painting), "");
     }
     const auto size = fs::file_size(folder_ / "other.tuft");
     fs::rename(folder_ / "other.tuft", path_);

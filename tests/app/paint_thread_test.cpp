@@ -23,7 +23,7 @@ class PainterTest : public testing::Test {
         work.model = std::make_unique<stroke::Model>(test::shipped_model("sheet.ply", 256));
         work.painting = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
-        ASSERT_EQ(work.keeper.start(folder_ / "work.tuft", "sheet.ply", {}, *work.painting), "");
+        ASSERT_EQ(work.autosave.start(folder_ / "work.tuft", "sheet.ply", {}, *work.painting), "");
         painter_ = std::make_unique<PaintThread>(std::move(work));
         preset_ = brush::load_preset("wolf-small");
     }

@@ -63,7 +63,7 @@ class WritingOnModel : public ::testing::Test {
         work.painting = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
         work.source = source_folder() + "/models/" + name;
-        EXPECT_EQ(work.keeper.start(project, work.source, {}, *work.painting), "");
+        EXPECT_EQ(work.autosave.start(project, work.source, {}, *work.painting), "");
         const mesh::SurfaceQuery& query = *work.model->query;
         const auto at = query.ray(from, along);
         EXPECT_TRUE(at);

@@ -127,13 +127,13 @@ TEST(Bundles, CellsHoldWhatTheHairHolds) {
     for (const char* name : {"wolf-small", "goat-large", "robot-2020"}) {
         const HairCells cells = hair_cells(load_preset(name));
         double sum = 0;
-        for (const double r : cells.rooms) {
+        for (const double r : cells.capacities) {
             EXPECT_GT(r, 0);
             sum += r;
         }
         EXPECT_NEAR(sum, 1, 1e-12) << name;
         EXPECT_EQ(cells.ends.back(), 1);
-        EXPECT_LT(cells.rooms.back(), cells.rooms.front()) << "the point holds little";
+        EXPECT_LT(cells.capacities.back(), cells.capacities.front()) << "the point holds little";
     }
 }
 

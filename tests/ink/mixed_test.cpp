@@ -30,7 +30,7 @@ HatBasis tents_over(const Texels& coverage) {
 
 /// Two inks side by side, the second half water, with places of the hair as far as they are.
 Reservoir two_inks(double millilitres = 0.5) {
-    ReservoirLayout l{.bundles = {}, .cell_ends = {0.5, 1}, .cell_rooms = {0.5, 0.5}};
+    ReservoirLayout l{.bundles = {}, .cell_ends = {0.5, 1}, .cell_capacities = {0.5, 0.5}};
     for (int k = 0; k < 16; ++k) l.bundles.push_back({(k + 0.5) / 8 - 1, 0});
     Reservoir tuft = make_reservoir(millilitres, l);
     dip(tuft, Mix{1}, {.side = -0.5});

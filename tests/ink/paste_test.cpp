@@ -250,7 +250,7 @@ TEST(Levelling, ItGoesOverSeamsAndNotOntoBareTexels) {
 }
 
 TEST(Stirring, BendingMixesNeighboursAndKeepsEachPlane) {
-    Reservoir tuft = make_reservoir(0.5, {.bundles = {{-0.5, 0}, {0, 0}, {0.5, 0}, {0, 0.5}}, .cell_ends = {0.5, 1}, .cell_rooms = {0.5, 0.5}});
+    Reservoir tuft = make_reservoir(0.5, {.bundles = {{-0.5, 0}, {0, 0}, {0.5, 0}, {0, 0.5}}, .cell_ends = {0.5, 1}, .cell_capacities = {0.5, 0.5}});
     Mix red{}, blue{};
     red[0] = 1;
     blue[1] = 1;

@@ -26,7 +26,7 @@ Ink plain(const std::string& name, double fraction = 1) {
 }
 
 ReservoirLayout layout_of(int bundles) {
-    ReservoirLayout l{.bundles = {}, .cell_ends = {0.4, 0.7, 0.9, 1}, .cell_rooms = {0.5, 0.3, 0.15, 0.05},
+    ReservoirLayout l{.bundles = {}, .cell_ends = {0.4, 0.7, 0.9, 1}, .cell_capacities = {0.5, 0.3, 0.15, 0.05},
                       .refill_time = 0.3, .side_time = 3};
     for (int k = 0; k < bundles; ++k) {
         const double r = std::sqrt((k + 0.5) / bundles), w = 2.4 * k;
@@ -42,7 +42,7 @@ constexpr std::size_t kCells = 4;
 Reservoir uneven(int bundles = 24) {
     Reservoir tuft = make_reservoir(0.5, layout_of(bundles));
     for (std::size_t i = 0; i < tuft.content.size(); ++i) {
-        const double q = tuft.room[i] * uniform(3, i), part = uniform(4, i);
+        const double q = tuft.cell_capacity[i] * uniform(3, i), part = uniform(4, i);
         tuft.content[i][0] = q * part;
         tuft.content[i][1] = 0.5 * q * (1 - part);
         tuft.content[i][kMaxPigments] = 0.5 * q * (1 - part);
@@ -168,11 +168,11 @@ TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
     EXPECT_NEAR(on_texels + tuft.remaining(), start, 1e-6 * start);
 }
 
-TEST(Reservoir, RoomsAreTheCapacityAndALayoutThatIsNoneIsRefused) {
+TEST(Reservoir, CellCapacitiesAddUpToTheCapacityAndABadLayoutIsRefused) {
     const Reservoir tuft = make_reservoir(0.5, layout_of(40));
-    EXPECT_NEAR(std::accumulate(tuft.room.begin(), tuft.room.end(), 0.0), tuft.capacity, 1e-12 * tuft.capacity);
+    EXPECT_NEAR(std::accumulate(tuft.cell_capacity.begin(), tuft.cell_capacity.end(), 0.0), tuft.capacity, 1e-12 * tuft.capacity);
     ReservoirLayout bad = layout_of(4);
-    bad.cell_rooms[0] = 0.4;
+    bad.cell_capacities[0] = 0.4;
     EXPECT_THROW(make_reservoir(0.5, bad), Error);
     bad = layout_of(4);
     std::swap(bad.cell_ends[0], bad.cell_ends[1]);
@@ -244,7 +244,7 @@ TEST(Reservoir, FlowToNowGoesOnByEvenParts) {
 
 TEST(Reservoir, HalfTheStepMakesHalfTheError) {
     // Against the closed form of two cells: the difference falls by e^{−t (g/r1 + g/r2)}.
-    ReservoirLayout l{.bundles = {Vec2{0}}, .cell_ends = {0.5, 1}, .cell_rooms = {0.8, 0.2}, .refill_time = 0.3, .mix_time = 1e9};
+    ReservoirLayout l{.bundles = {Vec2{0}}, .cell_ends = {0.5, 1}, .cell_capacities = {0.8, 0.2}, .refill_time = 0.3, .mix_time = 1e9};
     Reservoir tuft = make_reservoir(0.5, l);
     dip(tuft, kBlack, {.depth = 0.5});
     flow(tuft, 0.3);

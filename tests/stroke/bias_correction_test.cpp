@@ -67,10 +67,10 @@ double misplaced(const std::vector<Trace>& a, const std::vector<Trace>& b) {
 
 TEST(BiasCorrection, IsUndoneOnStrokesNotTrainedOn) {
     const auto intended = random_strokes(1, 24);
-    const BiasCorrection habit = learn_bias(intended, slanted(intended));
+    const BiasCorrection bias = learn_bias(intended, slanted(intended));
     const auto meant = random_strokes(2, 12);
     const auto written = slanted(meant);
-    const auto corrected = correct_bias(habit, written);
+    const auto corrected = correct_bias(bias, written);
     // The pull to the identity is 1e-3 of the scatter; unlike strokes lend their small mismatch.
     EXPECT_LT(misplaced(corrected, meant), 0.05 * misplaced(written, meant));
     for (std::size_t t = 0; t < meant.size(); ++t)
@@ -85,8 +85,8 @@ TEST(BiasCorrection, IsUndoneOnStrokesNotTrainedOn) {
 
 TEST(BiasCorrection, OfNoneChangesNothing) {
     const auto intended = random_strokes(3, 10);
-    const BiasCorrection habit = learn_bias(intended, intended);
-    const auto strokes = random_strokes(4, 5), same = correct_bias(habit, strokes);
+    const BiasCorrection bias = learn_bias(intended, intended);
+    const auto strokes = random_strokes(4, 5), same = correct_bias(bias, strokes);
     for (std::size_t t = 0; t < strokes.size(); ++t)
         for (std::size_t i = 0; i < strokes[t].samples.size(); ++i) {
             // Rounding only: all that is learned is the identity.
@@ -117,8 +117,8 @@ TEST(BiasCorrection, DependsOnTheKindOfStroke) {
         intended.push_back(straight(1.5 + 0.02 * i, from, 0.01 + 0.001 * i, 0.6));
         written.push_back(straight(1.5 + 0.02 * i, from, 0.01 + 0.001 * i, 0.6 * 0.7));
     }
-    const BiasCorrection habit = learn_bias(intended, written);
-    const auto out = correct_bias(habit, {straight(0.05, Vec2(0.02, 0.02), 0.0125, 0.5 * 1.25),
+    const BiasCorrection bias = learn_bias(intended, written);
+    const auto out = correct_bias(bias, {straight(0.05, Vec2(0.02, 0.02), 0.0125, 0.5 * 1.25),
                                         straight(1.55, Vec2(0.05, 0.01), 0.0125, 0.6 * 0.7)});
     for (const TraceSample& s : out[0].samples) EXPECT_NEAR(s.pressure, 0.5, 0.01);
     for (const TraceSample& s : out[1].samples) EXPECT_NEAR(s.pressure, 0.6, 0.01);
@@ -131,22 +131,22 @@ TEST(BiasCorrection, StaysWithinItsBounds) {
         intended.push_back(straight(i, Vec2(0.01 * i, 0), 0.02, 0.9));
         written.push_back(straight(i, Vec2(0.01 * i, 0) / 3.0, 0.02 / 3, 0.09));
     }
-    const BiasCorrection habit = learn_bias(intended, written);
-    for (const BiasPiece& p : habit.pieces)
+    const BiasCorrection bias = learn_bias(intended, written);
+    for (const BiasPiece& p : bias.pieces)
         for (const double r : p.pressure_ratio) EXPECT_NEAR(r, 2, 1e-12);
     for (const double angle : {0.0, 1.0, 2.0, 3.0})
-        EXPECT_LE(glm::length(habit.linear * Vec2(std::cos(angle), std::sin(angle))), 2 + 1e-12);
-    for (const Trace& t : correct_bias(habit, written))
+        EXPECT_LE(glm::length(bias.linear * Vec2(std::cos(angle), std::sin(angle))), 2 + 1e-12);
+    for (const Trace& t : correct_bias(bias, written))
         for (const TraceSample& s : t.samples) EXPECT_LE(s.pressure, 0.18 + 1e-12);
 }
 
 TEST(BiasCorrection, ComesBackFromItsFile) {
     const auto intended = random_strokes(5, 4);
-    const BiasCorrection habit = learn_bias(intended, slanted(intended));
-    const BiasCorrection back = parse_bias(bias_toml(habit), "habit.toml");
-    ASSERT_EQ(back.pieces.size(), habit.pieces.size());
+    const BiasCorrection bias = learn_bias(intended, slanted(intended));
+    const BiasCorrection back = parse_bias(bias_toml(bias), "habit.toml");
+    ASSERT_EQ(back.pieces.size(), bias.pieces.size());
     const auto written = random_strokes(6, 3);
-    const auto a = correct_bias(habit, written), b = correct_bias(back, written);
+    const auto a = correct_bias(bias, written), b = correct_bias(back, written);
     for (std::size_t t = 0; t < a.size(); ++t)
         for (std::size_t i = 0; i < a[t].samples.size(); ++i) {
             // Twelve digits are written.
@@ -176,8 +176,8 @@ TEST(BiasCorrection, DotsAndSingleSamplesAreTaken) {
     auto heavier = dots;
     for (Trace& t : heavier)
         for (TraceSample& s : t.samples) s.pressure *= 1.5;
-    const BiasCorrection habit = learn_bias(heavier, dots);
-    const auto out = correct_bias(habit, dots);
+    const BiasCorrection bias = learn_bias(heavier, dots);
+    const auto out = correct_bias(bias, dots);
     for (const Trace& t : out)
         for (const TraceSample& s : t.samples) {
             EXPECT_TRUE(std::isfinite(s.position.x) && std::isfinite(s.pressure));

@@ -19,7 +19,7 @@ namespace tuft::app {
 
 namespace {
 
-// What a person reads while the rooms below report, and how far that part is of the whole: as it takes for a model
+// What a person reads while the modules below report, and how far that part is of the whole: as it takes for a model
 // of 100,000 triangles that is looked at and unwrapped, and for a project.
 struct Stage {
     std::string_view name;
@@ -98,8 +98,8 @@ void carry_strokes(const fs::path& former, PaintThread::Work& work, const Progre
     const io::Project project = io::Project::open(former, {.access = io::Access::read, .progress = progress});
     work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
     io::use_presets(project, *work.painting);
-    work.keeper.take_presets(project);
-    work.keeper.take_attachments(project);
+    work.autosave.take_presets(project);
+    work.autosave.take_attachments(project);
     const std::vector<stroke::Stroke> strokes = project.strokes();
     const std::vector<stroke::StrokeReport> reports = work.painting->replay(strokes, progress);
     const mesh::TriangleMesh mesh = project.model().mesh;
@@ -114,8 +114,8 @@ void carry_strokes(const fs::path& former, PaintThread::Work& work, const Progre
 
 // In a file from now on, or in memory until there can be one.
 void keep(PaintThread::Work& work, const fs::path& file) {
-    const std::string fault = work.keeper.start(file, work.source, work.frame, *work.painting);
-    if (!fault.empty()) work.keeper.start_later(file, work.source, work.frame, fault, !work.painting->journal().empty());
+    const std::string fault = work.autosave.start(file, work.source, work.frame, *work.painting);
+    if (!fault.empty()) work.autosave.start_later(file, work.source, work.frame, fault, !work.painting->journal().empty());
 }
 
 PaintThread::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
@@ -173,12 +173,12 @@ PaintThread::Work load_project(const fs::path& path, const fs::path& session, Op
     project.listen({});
     std::vector<stroke::EntryMark> marks = stroke::marks_of(work.painting->journal().strokes());
     if (as == OpenAs::view) {
-        work.keeper.view(std::move(project), std::move(marks));
+        work.autosave.view(std::move(project), std::move(marks));
     } else if (as == OpenAs::work && why.empty()) {
-        work.keeper.adopt(std::move(project), std::move(marks));
+        work.autosave.adopt(std::move(project), std::move(marks));
     } else {
-        work.keeper.take_presets(project);
-        work.keeper.take_attachments(project);
+        work.autosave.take_presets(project);
+        work.autosave.take_attachments(project);
         keep(work, session);
         work.note = why.empty() ? "This is a copy; it has no name yet." : "This is a copy that has no name yet: " + why;
     }

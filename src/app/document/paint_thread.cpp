@@ -28,7 +28,7 @@ Overloaded(Fs...) -> Overloaded<Fs...>;  // clang 14 does not find it by itself
 PaintThread::PaintThread(Work work) : work_(std::move(work)) {
     work_.painting->take_dirty();
     const std::vector<std::string> shipped = ink::list_inks();
-    for (const std::string& name : work_.keeper.inks())
+    for (const std::string& name : work_.autosave.inks())
         if (std::find(shipped.begin(), shipped.end(), name) == shipped.end()) own_inks_.push_back(work_.painting->ink(name));
     update_.own_inks = own_inks_;
     publish_looks();
@@ -36,7 +36,7 @@ PaintThread::PaintThread(Work work) : work_(std::move(work)) {
         refresh(palette_, *work_.painting);
         update_.palette = palette_;
     }
-    carried_ = work_.keeper.attachments(io::kReferences);
+    carried_ = work_.autosave.attachments(io::kReferences);
     publish_snapshots();
     steps_.assign(work_.painting->journal().strokes().size(), Step{.made = 1});
     publish(true);
@@ -146,14 +146,14 @@ void PaintThread::run() {
             publish(true);
         }
         draw_thumbnails();
-        if (work_.keeper.unkept()) look_outside();
+        if (work_.autosave.unkept()) look_outside();
     }
     if (work_.painting->in_stroke()) end();
     look_outside();
-    Autosave& keeper = work_.keeper;
-    keeper.retry(work_.source, work_.frame, *work_.painting);
-    if (keeper.unkept() && !work_.spare.empty() && keeper.start(work_.spare, work_.source, work_.frame, *work_.painting).empty()) spared_ = work_.spare;
-    keeper.store_canvas(*work_.painting);
+    Autosave& autosave = work_.autosave;
+    autosave.retry(work_.source, work_.frame, *work_.painting);
+    if (autosave.unkept() && !work_.spare.empty() && autosave.start(work_.spare, work_.source, work_.frame, *work_.painting).empty()) spared_ = work_.spare;
+    autosave.store_canvas(*work_.painting);
 }
 
 namespace {
@@ -173,7 +173,7 @@ bool changes_work(const Command& command) {
 
 void PaintThread::perform(Command& command) {
     stop_ = false;
-    if (work_.keeper.viewing() && changes_work(command)) return say("This project is only looked at; File > Save as... makes a copy to work on.");
+    if (work_.autosave.viewing() && changes_work(command)) return say("This project is only looked at; File > Save as... makes a copy to work on.");
     std::visit(Overloaded{[this](BeginStroke& c) { begin(c); }, [this](ExtendStroke& c) { extend(c); },
                           [this](EndStroke&) { end(); },
                           [this](ActOnBrush& c) { care(c); }, [this](PaintDrawing& c) { paint_drawing(c); },
@@ -181,7 +181,7 @@ void PaintThread::perform(Command& command) {
                           [this](UndoStroke&) { undo(); }, [this](RedoStroke&) { redo(); },
                           [this](SaveProject& c) {
                               const std::string fault =
-                                  work_.keeper.start(c.path, work_.source, work_.frame, *work_.painting);
+                                  work_.autosave.start(c.path, work_.source, work_.frame, *work_.painting);
                               say(fault.empty() ? "Saved as " + c.path.string() : fault);
                               publish();
                               if (fault.empty()) return;
@@ -189,7 +189,7 @@ void PaintThread::perform(Command& command) {
                               update_.not_saved = {c.path, fault};
                           },
                           [this](RetryKeeping&) {
-                              work_.keeper.retry(work_.source, work_.frame, *work_.painting);
+                              work_.autosave.retry(work_.source, work_.frame, *work_.painting);
                               publish();
                           },
                           [this](FillModel& c) { fill(c); }, [this](ChangeLayers& c) { change_layers(c); },
@@ -204,9 +204,9 @@ void PaintThread::perform(Command& command) {
                           [this](LookFrom& c) { thumbnails_.look_from(*work_.model, c.camera); },
                           [this](ExportModel& c) { export_model(c); }, [this](EditStrokes& c) { edit(c); },
                           [this](HighlightStrokes& c) { highlight(c); },
-                          [this](AttachToProject& c) { work_.keeper.attach(c.kind, c.attachment); publish(); },
+                          [this](AttachToProject& c) { work_.autosave.attach(c.kind, c.attachment); publish(); },
                           [this](DetachFromProject& c) {
-                              work_.keeper.detach(c.kind, c.name);
+                              work_.autosave.detach(c.kind, c.name);
                               publish_snapshots();
                               publish();
                           },
@@ -265,14 +265,14 @@ void PaintThread::publish(bool strokes_changed) {
     update_.layers = painting.layers();
     update_.masks = painting.masks();
     update_.wet = std::ranges::any_of(painting.canvases(), [](const stroke::LayerTexels& l) { return l.canvas->wet(); });
-    update_.can_undo = !steps_.empty() && !work_.keeper.viewing();
+    update_.can_undo = !steps_.empty() && !work_.autosave.viewing();
     update_.undo_seconds = undo_seconds_;
     update_.can_redo = !undone_.empty();
-    update_.project = work_.keeper.path();
-    update_.trouble = work_.keeper.trouble();
-    update_.unkept = work_.keeper.waiting();
-    update_.behind = work_.keeper.behind();
-    update_.viewing = work_.keeper.viewing();
+    update_.project = work_.autosave.path();
+    update_.trouble = work_.autosave.trouble();
+    update_.unkept = work_.autosave.waiting();
+    update_.behind = work_.autosave.behind();
+    update_.viewing = work_.autosave.viewing();
     last_publish_ = now();
 }
 
@@ -288,7 +288,7 @@ void PaintThread::begin(const BeginStroke& command) {
     cancel();
     current_ = command;
     if (const stroke::BrushInHand* held = work_.painting->held(command.brush); command.as_it_is && held) current_.ink = held->named;
-    work_.keeper.prepare(*work_.painting, command.brush, command.ink);
+    work_.autosave.prepare(*work_.painting, command.brush, command.ink);
     if (!command.tip_ink.empty()) undone_before_ = work_.painting->journal().undone();
     load_tip(command, loads_);
     stroke::Stroke stroke;
@@ -304,7 +304,7 @@ void PaintThread::begin(const BeginStroke& command) {
 }
 
 void PaintThread::care(const ActOnBrush& command) {
-    work_.keeper.prepare(*work_.painting, command.brush, command.ink);
+    work_.autosave.prepare(*work_.painting, command.brush, command.ink);
     stroke::Stroke entry;
     entry.action = command.action;
     entry.trace.flat = false;
@@ -341,7 +341,7 @@ void PaintThread::change_layers(const ChangeLayers& command) {
 
 void PaintThread::fill(const FillModel& command) {
     progress("Filling")("", 0);
-    work_.keeper.prepare(*work_.painting, "", command.ink);
+    work_.autosave.prepare(*work_.painting, "", command.ink);
     stroke::Stroke entry;
     entry.action = stroke::Action::fill;
     entry.trace.flat = false;
@@ -362,7 +362,7 @@ std::uint32_t PaintThread::layer_of(std::uint32_t asked) const {
 void PaintThread::act(stroke::Stroke entry) {
     cancel();
     work_.painting->paint(std::move(entry));
-    work_.keeper.add(work_.painting->journal().strokes().back());
+    work_.autosave.add(work_.painting->journal().strokes().back());
     steps_.push_back({.made = 1});
     undone_.clear();
     publish(true);
@@ -392,14 +392,14 @@ void PaintThread::paint_drawing(PaintDrawing& command) {
     stroke::EntryGroup group;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
-        work_.keeper.prepare(*work_.painting, all[i].trace.brush, all[i].trace.ink);
+        work_.autosave.prepare(*work_.painting, all[i].trace.brush, all[i].trace.ink);
         all[i].layer = layer_of(command.layer);
         all[i].mask = command.mask;
         if (command.wet) all[i].settings.film = "wet";
         if (i % in_group == 0 && !command.name.empty()) group = {work_.painting->journal().next_group_id(), command.name};
         all[i].group = group;
         work_.painting->paint(std::move(all[i]));
-        work_.keeper.add(work_.painting->journal().strokes().back());
+        work_.autosave.add(work_.painting->journal().strokes().back());
         ++steps_.back().made;
         publish(true);
     }
@@ -422,7 +422,7 @@ void PaintThread::end() {
     stroke::Document& painting = *work_.painting;
     if (!painting.in_stroke()) return;
     painting.end();
-    work_.keeper.add(painting.journal().strokes().back());
+    work_.autosave.add(painting.journal().strokes().back());
     const stroke::Stroke original = painting.journal().strokes().back();
     steps_.push_back({.made = 1 + std::exchange(loads_, 0), .joined = current_.joined && !steps_.empty()});
     std::size_t& made = steps_.back().made;
@@ -438,7 +438,7 @@ void PaintThread::end() {
             sample.rotation = pose.rotation;
         }
         painting.paint(std::move(copy));
-        work_.keeper.add(painting.journal().strokes().back());
+        work_.autosave.add(painting.journal().strokes().back());
         ++made;
         publish(true);
     }
@@ -457,7 +457,7 @@ void PaintThread::drop_loads() {
     for (; loads_ > 0; --loads_) {
         const std::uint64_t id = work_.painting->journal().strokes().back().id;
         work_.painting->undo();
-        work_.keeper.remove(id);
+        work_.autosave.remove(id);
     }
     work_.painting->restore_undone(std::move(undone_before_));
 }

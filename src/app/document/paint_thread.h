@@ -244,7 +244,7 @@ class PaintThread {
         std::unique_ptr<stroke::Document> painting;
         std::unique_ptr<Texture> texture;
         render::MapPixels pixels;  ///< what the texture shows at the start, for the graphics card
-        Autosave keeper;
+        Autosave autosave;
         std::string source;
         FileFrame frame;  ///< of the model file
         std::vector<stroke::StrokeMismatch> mismatches;  ///< of a revised model: strokes that do not fit it
@@ -258,7 +258,7 @@ class PaintThread {
     /// Does everything that was asked for first and keeps it: in `Work::spare` where its own file cannot
     /// be written. Returns that path then; empty: all is in its own file, or it is lost, as `unkept` says.
     std::filesystem::path finish();
-    bool unkept() const { return work_.keeper.unkept(); }  ///< after `finish`
+    bool unkept() const { return work_.autosave.unkept(); }  ///< after `finish`
 
     void post(Command command);
     Update take();

@@ -45,7 +45,7 @@ void PaintThread::undo() {
         for (std::size_t i = 0; i < step.made && work_.painting->journal().can_undo(); ++i) {
             const std::uint64_t id = work_.painting->journal().strokes().back().id;
             work_.painting->undo();
-            work_.keeper.remove(id);
+            work_.autosave.remove(id);
         }
         undone_.push_back(std::move(steps_.back()));
         steps_.pop_back();
@@ -61,7 +61,7 @@ void PaintThread::redo() {
         if (!step.changes.empty()) put(step.changes, false);
         if (step.journals) put_journal(step.journals->after);
         for (std::size_t i = 0; i < step.made; ++i)
-            if (work_.painting->redo()) work_.keeper.add(work_.painting->journal().strokes().back());
+            if (work_.painting->redo()) work_.autosave.add(work_.painting->journal().strokes().back());
         steps_.push_back(std::move(undone_.back()));
         undone_.pop_back();
     }
@@ -88,7 +88,7 @@ void PaintThread::edit(const EditStrokes& command) {
             if (command.move) shift(after, *command.move);
             if (command.group) after.group = group;
             if (after.trace.brush != before.trace.brush || after.trace.ink != before.trace.ink)
-                work_.keeper.prepare(*work_.painting, after.trace.brush, after.trace.ink);
+                work_.autosave.prepare(*work_.painting, after.trace.brush, after.trace.ink);
         }
         changes.push_back(std::move(change));
     }
@@ -112,15 +112,15 @@ void PaintThread::put(const std::vector<Change>& changes, bool back) {
     // Rows can only be hidden and taken out: other changes, and several at once, write the file anew, whole or not at all.
     const Change& first = changes.front();
     const bool one_row = changes.size() == 1 && first.in_rows;
-    if (one_row && !first.after && !back) work_.keeper.remove(first.before.id);
-    else if (one_row && first.after) work_.keeper.set_hidden(first.before.id, back ? first.before.hidden : first.after->hidden);
-    else work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
+    if (one_row && !first.after && !back) work_.autosave.remove(first.before.id);
+    else if (one_row && first.after) work_.autosave.set_hidden(first.before.id, back ? first.before.hidden : first.after->hidden);
+    else work_.autosave.rewrite(work_.source, work_.frame, *work_.painting);
 }
 
 // Puts other entries in the place of the whole journal.
 void PaintThread::put_journal(const std::vector<stroke::Stroke>& entries) {
     rewrite(entries);
-    work_.keeper.rewrite(work_.source, work_.frame, *work_.painting);
+    work_.autosave.rewrite(work_.source, work_.frame, *work_.painting);
 }
 
 // BaseColour and looks of the work, and the brushes and inks that its entries and these use.

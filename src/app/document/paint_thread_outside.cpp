@@ -24,7 +24,7 @@ Preset named(Preset preset, const std::string& name) {
 }  // namespace
 
 void PaintThread::look_outside() {
-    if (work_.painting->in_stroke() || !work_.keeper.overtaken()) return;
+    if (work_.painting->in_stroke() || !work_.autosave.overtaken()) return;
     try {
         take_outside();
     } catch (const std::exception& error) {
@@ -35,15 +35,15 @@ void PaintThread::look_outside() {
 
 // Takes in what another program wrote, and writes what it did not know of after that.
 void PaintThread::take_outside() {
-    Autosave& keeper = work_.keeper;
-    const bool viewing = keeper.viewing();
-    std::optional<io::Project> file = keeper.read_again();
+    Autosave& autosave = work_.autosave;
+    const bool viewing = autosave.viewing();
+    std::optional<io::Project> file = autosave.read_again();
     if (!file) return publish();
     if (!has_model(*file, *work_.model)) return leave_file();
     const std::vector<stroke::Stroke> theirs = file->strokes();
     std::vector<stroke::EntryMark> marks = stroke::marks_of(theirs);
-    const bool same_strokes = marks == keeper.on_disk() && !keeper.behind();
-    stroke::MergedJournal merged = stroke::merge_journals(keeper.on_disk(), work_.painting->journal().strokes(), theirs);
+    const bool same_strokes = marks == autosave.on_disk() && !autosave.behind();
+    stroke::MergedJournal merged = stroke::merge_journals(autosave.on_disk(), work_.painting->journal().strokes(), theirs);
     if (!same_strokes) {
         const std::lock_guard lock(mutex_);
         update_.from_outside = true;
@@ -51,11 +51,11 @@ void PaintThread::take_outside() {
     if (!same_strokes) paint_merged(*file, merged);
     else io::show_looks(*file, *work_.painting);
     const bool altered = merged.altered && !same_strokes;
-    if (viewing) keeper.view(std::move(*file), std::move(marks));
-    else keeper.adopt(std::move(*file), std::move(marks));
+    if (viewing) autosave.view(std::move(*file), std::move(marks));
+    else autosave.adopt(std::move(*file), std::move(marks));
     const std::vector<stroke::Stroke>& now = work_.painting->journal().strokes();
-    if (altered) keeper.rewrite(work_.source, work_.frame, *work_.painting);
-    else if (!viewing) keeper.catch_up(std::span(now).subspan(std::min(theirs.size(), now.size())));
+    if (altered) autosave.rewrite(work_.source, work_.frame, *work_.painting);
+    else if (!viewing) autosave.catch_up(std::span(now).subspan(std::min(theirs.size(), now.size())));
     if (merged.news > 0 && !viewing)
         say("Another program changed this project; " + std::to_string(merged.news) + (merged.news == 1 ? " change of it is taken in." : " changes of it are taken in."));
     publish(true);
@@ -130,10 +130,10 @@ bool PaintThread::follow(const io::Project& file, std::span<const stroke::Stroke
 
 // Another model lies where the project was: what is here goes on in a file of its own.
 void PaintThread::leave_file() {
-    const std::string name = work_.keeper.path().filename().string();
-    const bool viewing = work_.keeper.viewing();
-    const std::string fault = work_.keeper.start(work_.spare, work_.source, work_.frame, *work_.painting);
-    if (!fault.empty()) work_.keeper.start_later(work_.spare, work_.source, work_.frame, fault, !work_.painting->journal().empty());
+    const std::string name = work_.autosave.path().filename().string();
+    const bool viewing = work_.autosave.viewing();
+    const std::string fault = work_.autosave.start(work_.spare, work_.source, work_.frame, *work_.painting);
+    if (!fault.empty()) work_.autosave.start_later(work_.spare, work_.source, work_.frame, fault, !work_.painting->journal().empty());
     say(viewing ? "Another program put another model into " + name + "; this is a copy of what was in it."
                 : "Another program put another model into " + name + "; your work goes on in a copy that has no name yet.");
     publish();

@@ -29,14 +29,14 @@ std::string about_text(const SnapshotLine& line) { return nlohmann::json{{"name"
 
 void PaintThread::publish_snapshots() {
     std::vector<SnapshotLine> lines;
-    for (const io::Attachment& a : work_.keeper.attachments(kSnapshotKind)) lines.push_back(line_of(a));
+    for (const io::Attachment& a : work_.autosave.attachments(kSnapshotKind)) lines.push_back(line_of(a));
     const std::lock_guard lock(mutex_);
     update_.snapshots = std::move(lines);
 }
 
 void PaintThread::take_snapshot(const TakeSnapshot& command) {
     stroke::check_name(command.name, "snapshot");
-    const std::vector<io::Attachment> there = work_.keeper.attachments(kSnapshotKind);
+    const std::vector<io::Attachment> there = work_.autosave.attachments(kSnapshotKind);
     if (there.size() >= io::kMostAttachments) return say("There are as many snapshots as a project can hold; delete one first.");
     const std::vector<stroke::Stroke>& entries = work_.painting->journal().strokes();
     SnapshotLine line{.name = command.name, .made = static_cast<std::int64_t>(std::time(nullptr))};
@@ -45,23 +45,23 @@ void PaintThread::take_snapshot(const TakeSnapshot& command) {
     const unsigned long last = there.empty() ? 0 : std::strtoul(there.back().name.c_str(), nullptr, 10);
     char id[24];
     std::snprintf(id, sizeof id, "%08lu", last + 1);
-    work_.keeper.attach(kSnapshotKind, {id, about_text(line), io::pack_entries(entries)});
+    work_.autosave.attach(kSnapshotKind, {id, about_text(line), io::pack_entries(entries)});
     publish();
     publish_snapshots();
 }
 
 void PaintThread::rename_snapshot(const RenameSnapshot& command) {
     stroke::check_name(command.name, "snapshot");
-    const std::optional<io::Attachment> found = work_.keeper.attachment(kSnapshotKind, command.id);
+    const std::optional<io::Attachment> found = work_.autosave.attachment(kSnapshotKind, command.id);
     if (!found) return;
     SnapshotLine line = line_of(*found);
     line.name = command.name;
-    work_.keeper.attach(kSnapshotKind, {found->name, about_text(line), found->bytes});
+    work_.autosave.attach(kSnapshotKind, {found->name, about_text(line), found->bytes});
     publish_snapshots();
 }
 
 std::vector<stroke::Stroke> PaintThread::snapshot_entries(const std::string& id) const {
-    const std::optional<io::Attachment> found = work_.keeper.attachment(kSnapshotKind, id);
+    const std::optional<io::Attachment> found = work_.autosave.attachment(kSnapshotKind, id);
     if (!found) throw Error("there is no such snapshot any more");
     return io::unpack_entries(found->bytes, "the snapshot '" + line_of(*found).name + "'");
 }

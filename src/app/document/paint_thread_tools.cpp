@@ -12,7 +12,7 @@ namespace tuft::app {
 // dipped into the other ink. Counts the entries that this makes.
 void PaintThread::load_tip(const BeginStroke& command, std::size_t& made) {
     if (command.tip_ink.empty() || command.carry || command.erases) return;
-    work_.keeper.prepare(*work_.painting, command.brush, command.tip_ink);
+    work_.autosave.prepare(*work_.painting, command.brush, command.tip_ink);
     const std::pair<stroke::Action, std::string> steps[] = {
         {stroke::Action::dip, command.ink}, {stroke::Action::wipe, ""}, {stroke::Action::dip, command.tip_ink}};
     for (std::size_t i = 0; i < std::size(steps); ++i) {
@@ -24,20 +24,20 @@ void PaintThread::load_tip(const BeginStroke& command, std::size_t& made) {
         entry.settings.dip = i == 0 ? "each" : "carry";
         if (i > 0) entry.extent.depth = command.tip_depth;
         work_.painting->paint(std::move(entry));
-        work_.keeper.add(work_.painting->journal().strokes().back());
+        work_.autosave.add(work_.painting->journal().strokes().back());
         ++made;
     }
 }
 
 void PaintThread::add_ink(ink::Ink ink) {
     const auto known = [&](const std::string& name) {
-        const std::vector<std::string> shipped = ink::list_inks(), kept = work_.keeper.inks();
+        const std::vector<std::string> shipped = ink::list_inks(), kept = work_.autosave.inks();
         return std::find(shipped.begin(), shipped.end(), name) != shipped.end() || std::find(kept.begin(), kept.end(), name) != kept.end();
     };
     const std::string wanted = ink.name;
     for (int n = 2; known(ink.name); ++n) ink.name = wanted + "-" + std::to_string(n);
     work_.painting->use_ink(ink);
-    work_.keeper.prepare(*work_.painting, "", ink.name);
+    work_.autosave.prepare(*work_.painting, "", ink.name);
     own_inks_.push_back(work_.painting->ink(ink.name));
     publish();
     const std::lock_guard lock(mutex_);
@@ -79,7 +79,7 @@ void PaintThread::publish_looks() {
 
 void PaintThread::recolour(const RecolourInk& command) {
     work_.painting->recolour(command.name, command.wanted);
-    work_.keeper.store_looks(*work_.painting);
+    work_.autosave.store_looks(*work_.painting);
     publish();
     publish_looks();
 }
@@ -88,7 +88,7 @@ void PaintThread::preview_substrate(const PreviewSubstrate& command) {
     stroke::Document& painting = *work_.painting;
     if (command.substrate == painting.painted_on().name) painting.preview_substrate(std::nullopt);
     else painting.preview_substrate(ink::load_substrate(command.substrate));
-    work_.keeper.store_looks(painting);
+    work_.autosave.store_looks(painting);
     painting.take_dirty();
     work_.texture->refresh_all(painting);
     thumbnails_.forget();

@@ -104,7 +104,7 @@ std::string place_words(const Writing& w, const stroke::Placement& p) {
                     at.y, at.z, width_mm(w), stroke::turn_of(normal, upright, p.right) / kDegree);
     if (w.mirrored) words += " --place-mirror";
     if (w.mapping != stroke::SurfaceMapping::drape)
-        words += " --laying " + std::string(stroke::surface_mapping_name(w.mapping));
+        words += " --mapping " + std::string(stroke::surface_mapping_name(w.mapping));
     if (project) words += fmt::format(" --read-from {:.6f},{:.6f},{:.6f}", from.x, from.y, from.z);
     return words;
 }

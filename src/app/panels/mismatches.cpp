@@ -29,16 +29,16 @@ void mismatch_dialog(Session& s) {
     for (const std::string& sentence : s.fit) ui.note(ui.tr_sentence(sentence));
     const float rows = std::min(8.0f, static_cast<float>(s.mismatches.size()));
     ImGui::BeginChild("mismatches", ImVec2(0, rows * ImGui::GetTextLineHeightWithSpacing() + ui.px(6)));
-    for (const stroke::StrokeMismatch& misfit : s.mismatches) {
-        const auto line = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == misfit.stroke; });
+    for (const stroke::StrokeMismatch& mismatch : s.mismatches) {
+        const auto line = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == mismatch.stroke; });
         if (line == s.strokes.end()) continue;
         char text[160];
         std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.strokes.begin() + 1, ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
         const float room = ImGui::GetContentRegionAvail().x;
-        const std::string all = translated(ui, misfit.reason), why = ui.fitted(all, room - ui.px(170));
+        const std::string all = translated(ui, mismatch.reason), why = ui.fitted(all, room - ui.px(170));
         const float right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);
-        ImGui::PushID(static_cast<int>(misfit.stroke));
-        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.journal.holds(misfit.stroke))) select_entries(s, {misfit.stroke});
+        ImGui::PushID(static_cast<int>(mismatch.stroke));
+        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.journal.holds(mismatch.stroke))) select_entries(s, {mismatch.stroke});
         ImGui::PopID();
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - right);
         ImGui::TextDisabled("%s", why.c_str());
@@ -55,7 +55,7 @@ void mismatch_dialog(Session& s) {
     if (back) return open_former(s);
     if (hide) {
         EditStrokes edit{.hidden = true};
-        for (const stroke::StrokeMismatch& misfit : s.mismatches) edit.ids.push_back(misfit.stroke);
+        for (const stroke::StrokeMismatch& mismatch : s.mismatches) edit.ids.push_back(mismatch.stroke);
         s.painter->post(std::move(edit));
     }
     if (hide || keep) s.show_mismatches = false;

@@ -234,15 +234,15 @@ void writing_section(Session& s) {
     if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", "Wheel over the model", kMillimetre)) w.scale = width / w.width;
     ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
     ui.toggle("Mirrored", w.mirrored);
-    const std::tuple<stroke::SurfaceMapping, const char*, const char*> layings[] = {
+    const std::tuple<stroke::SurfaceMapping, const char*, const char*> mappings[] = {
         {stroke::SurfaceMapping::drape, "Drape", "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
         {stroke::SurfaceMapping::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
         {stroke::SurfaceMapping::project, "Straight", "Straight through the picture plane"}};
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
-    for (const auto& [laying, name, hint] : layings) {
-        if (laying != stroke::SurfaceMapping::drape) ImGui::SameLine();
-        if (ui.choice(name, w.mapping == laying, hint, third)) w.mapping = laying;
+    for (const auto& [mapping, name, hint] : mappings) {
+        if (mapping != stroke::SurfaceMapping::drape) ImGui::SameLine();
+        if (ui.choice(name, w.mapping == mapping, hint, third)) w.mapping = mapping;
     }
     ImGui::PopStyleVar();
     const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });

@@ -27,7 +27,7 @@
 ///   right-click LABEL       the same with the right button, for its menu
 ///   set NAME VALUE          texels (of the model asked about), brush, brush-size, ink, colour (#rrggbb), clean-ends, shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
-///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise), writing-mirror, writing-laying, string, radial, mirror, carry, tool, language, theme, scale, left-handed, keymap, section, section-axis,
+///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise), writing-mirror, writing-mapping, string, radial, mirror, carry, tool, language, theme, scale, left-handed, keymap, section, section-axis,
 ///                           see-through, atlas, draw-every (frames of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png

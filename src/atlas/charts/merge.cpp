@@ -50,9 +50,9 @@ std::pair<RigidMotion, double> fit_sides(const FlatChart& a, const FlatChart& b,
         pairs.push_back({corner_uv(a, next_half(h)), corner_uv(b, g)});
     }
     const RigidMotion m = fit_motion(pairs);
-    double misfit = 0;
-    for (const auto& [p, q] : pairs) misfit += glm::dot(p - m(q), p - m(q));
-    return {m, std::sqrt(misfit / double(pairs.size()))};
+    double fit_error = 0;
+    for (const auto& [p, q] : pairs) fit_error += glm::dot(p - m(q), p - m(q));
+    return {m, std::sqrt(fit_error / double(pairs.size()))};
 }
 
 /// Both charts where they lie, b moved, and the corners that they share in the middle.
@@ -205,10 +205,10 @@ class Merger {
     void attempt(Trial& t, TaskProgress& part) {
         const FlatChart& a = cut_.charts[chart_at_[t.a]];
         const FlatChart& b = cut_.charts[chart_at_[t.b]];
-        const auto [motion, misfit] = fit_sides(a, b, cut_.twin, t);
+        const auto [motion, fit_error] = fit_sides(a, b, cut_.twin, t);
         double length = 0;
         for (std::size_t i = 0; i < t.n_chain; ++i) length += patch_.length[t.halves[i]];
-        if (misfit > merge_.largest_gap * length) return;
+        if (fit_error > merge_.largest_gap * length) return;
 
         std::vector<std::uint32_t> triangles(a.mesh.triangles.size() + b.mesh.triangles.size());
         std::merge(a.mesh.triangles.begin(), a.mesh.triangles.end(), b.mesh.triangles.begin(),

@@ -73,7 +73,7 @@ NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::sp
         for (std::uint32_t i = 0; i < n; ++i) {
             const double part = from >= 0          ? weight[static_cast<std::size_t>(from) * n + i] / sums[from]
                                 : touch.size() == n ? static_cast<double>(touch[i])
-                                                    : tuft.room[i] / tuft.capacity;
+                                                    : tuft.cell_capacity[i] / tuft.capacity;
             if (part > 0) out.shares.push_back({i, static_cast<float>(part)});
         }
         out.begin[node + 1] = static_cast<std::uint32_t>(out.shares.size());
@@ -103,7 +103,7 @@ NodeMixes mixes_at(const Reservoir& tuft, const NodeContact& nodes) {
         Content sum{};
         for (const NodeContact::Share& s : nodes.of(node))
             for (int p = 0; p < kPlanes; ++p)
-                sum[p] += static_cast<double>(s.part) / tuft.room[s.cell] * tuft.content[s.cell][p];
+                sum[p] += static_cast<double>(s.part) / tuft.cell_capacity[s.cell] * tuft.content[s.cell][p];
         const double left = sum_of(sum);
         for (int p = 0; p < kPlanes; ++p) mixes[p][node] = static_cast<float>(left > 0 ? sum[p] / left : whole[p]);
     }
@@ -120,7 +120,7 @@ void spend(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes)
             lacking += given[node][p];
             double sum = 0;
             const auto held = [&](const NodeContact::Share& s) {
-                return static_cast<double>(s.part) / tuft.room[s.cell] * tuft.content[s.cell][p];
+                return static_cast<double>(s.part) / tuft.cell_capacity[s.cell] * tuft.content[s.cell][p];
             };
             if (!(given[node][p] > 0)) continue;
             for (const NodeContact::Share& s : nodes.of(node)) sum += held(s);
@@ -181,7 +181,7 @@ void absorb(Reservoir& tuft, const NodeContents& lifted, const NodeContact& node
         double lacking = amount;
         for (const NodeContact::Share& s : nodes.of(node)) {
             Content& cell = tuft.content[s.cell];
-            const double room = std::max(0.0, tuft.room[s.cell] - sum_of(cell));
+            const double room = std::max(0.0, tuft.cell_capacity[s.cell] - sum_of(cell));
             const double v = std::min({static_cast<double>(s.part) * amount, room, lacking});
             if (!(v > 0)) continue;
             for (int p = 0; p < kPlanes; ++p) cell[p] += v / amount * lifted[node][p];

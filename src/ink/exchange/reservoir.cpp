@@ -32,11 +32,11 @@ double sum_of(const Content& c) {
 
 void check_layout(const ReservoirLayout& l) {
     double rooms = 0, before = 0;
-    bool good = !l.bundles.empty() && !l.cell_ends.empty() && l.cell_rooms.size() == l.cell_ends.size();
+    bool good = !l.bundles.empty() && !l.cell_ends.empty() && l.cell_capacities.size() == l.cell_ends.size();
     for (std::size_t c = 0; good && c < l.cell_ends.size(); ++c) {
-        good = l.cell_ends[c] > before && l.cell_rooms[c] > 0;
+        good = l.cell_ends[c] > before && l.cell_capacities[c] > 0;
         before = l.cell_ends[c];
-        rooms += l.cell_rooms[c];
+        rooms += l.cell_capacities[c];
     }
     if (!good || std::abs(before - 1) > 1e-9 || std::abs(rooms - 1) > 1e-9)
         throw Error("the hair of a tuft cannot be divided so for its ink");
@@ -90,7 +90,7 @@ void flow_step(Reservoir& tuft, double seconds, std::span<const int> planes, std
     }
     for (const CellLink& link : tuft.links) {
         const double qa = total[link.a], qb = total[link.b];
-        const double net = seconds * link.flow * (qa / tuft.room[link.a] - qb / tuft.room[link.b]);
+        const double net = seconds * link.flow * (qa / tuft.cell_capacity[link.a] - qb / tuft.cell_capacity[link.b]);
         const double exchange = seconds * link.mixing * std::min(qa, qb);
         // Out of a and out of b, each of its own mixture.
         const double out_a = exchange + std::max(net, 0.0), out_b = exchange + std::max(-net, 0.0);
@@ -110,7 +110,7 @@ template <class F>
 void each_touched(const Reservoir& tuft, std::span<const float> touch, F f) {
     const bool all = touch.size() != tuft.content.size();
     for (std::size_t i = 0; i < tuft.content.size(); ++i) {
-        const double part = all ? tuft.room[i] / tuft.capacity : static_cast<double>(touch[i]);
+        const double part = all ? tuft.cell_capacity[i] / tuft.capacity : static_cast<double>(touch[i]);
         if (part > 0) f(i, part);
     }
 }
@@ -118,7 +118,7 @@ void each_touched(const Reservoir& tuft, std::span<const float> touch, F f) {
 Mix mix_over(const Reservoir& tuft, std::span<const float> touch) {
     Content sum{};
     each_touched(tuft, touch, [&](std::size_t i, double part) {
-        const double scale = part / tuft.room[i];
+        const double scale = part / tuft.cell_capacity[i];
         for (int p = 0; p < kPlanes; ++p) sum[p] += scale * tuft.content[i][p];
     });
     const double left = sum_of(sum);
@@ -154,7 +154,7 @@ double Reservoir::pigment(int plane) const {
 double Reservoir::fullness() const { return capacity > 0 ? remaining() / capacity : 0; }
 
 double Reservoir::saturation(std::size_t cell) const {
-    return room[cell] > 0 ? sum_of(content[cell]) / room[cell] : 0;
+    return cell_capacity[cell] > 0 ? sum_of(content[cell]) / cell_capacity[cell] : 0;
 }
 
 Mix Reservoir::mix() const {
@@ -172,12 +172,12 @@ Reservoir make_reservoir(double millilitres, ReservoirLayout layout) {
     const std::size_t bundles = layout.bundles.size(), cells = layout.cell_ends.size();
     tuft.content.assign(bundles * cells, Content{});
     for (std::size_t k = 0; k < bundles; ++k)
-        for (const double part : layout.cell_rooms)
-            tuft.room.push_back(tuft.capacity * part / static_cast<double>(bundles));
+        for (const double part : layout.cell_capacities)
+            tuft.cell_capacity.push_back(tuft.capacity * part / static_cast<double>(bundles));
     const auto link = [&](std::size_t a, std::size_t b, double time, double mixing) {
-        if (!(tuft.room[a] > 0 && tuft.room[b] > 0)) return;
+        if (!(tuft.cell_capacity[a] > 0 && tuft.cell_capacity[b] > 0)) return;
         tuft.links.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                              std::min(tuft.room[a], tuft.room[b]) / time, 1 / mixing});
+                              std::min(tuft.cell_capacity[a], tuft.cell_capacity[b]) / time, 1 / mixing});
     };
     for (std::size_t k = 0; k < bundles; ++k)
         for (std::size_t c = 1; c < cells; ++c)
@@ -195,7 +195,7 @@ double dip(Reservoir& tuft, const Mix& mix, const Dip& how) {
     for (std::size_t i = 0; i < tuft.content.size(); ++i) {
         const double within = part_within(tuft.layout, i, {how.depth, how.side});
         // The dipped part of the cell is filled; what it holds is spread over all of it.
-        const double want = within * (std::min(how.level, kMostLevel) * tuft.room[i] - sum_of(tuft.content[i]));
+        const double want = within * (std::min(how.level, kMostLevel) * tuft.cell_capacity[i] - sum_of(tuft.content[i]));
         if (!(want > 0)) continue;
         for (int p = 0; p < kMaxPigments; ++p) tuft.content[i][p] += want * static_cast<double>(mix[p]);
         tuft.content[i][kMaxPigments] += want * std::max(0.0, 1 - pigments);
@@ -253,7 +253,7 @@ Content take(Reservoir& tuft, double amount, const ContactCells& touch) {
 double room_left(const Reservoir& tuft, const ContactCells& touch) {
     double sum = 0;
     each_touched(tuft, touch, [&](std::size_t i, double) {
-        sum += std::max(0.0, tuft.room[i] - sum_of(tuft.content[i]));
+        sum += std::max(0.0, tuft.cell_capacity[i] - sum_of(tuft.content[i]));
     });
     return sum;
 }
@@ -266,7 +266,7 @@ void absorb(Reservoir& tuft, const Content& lifted, const ContactCells& touch) {
         for (int p = 0; p < kPlanes; ++p) tuft.content[i][p] += v / amount * lifted[p];
         lacking -= v;
     };
-    const auto room = [&](std::size_t i) { return std::max(0.0, tuft.room[i] - sum_of(tuft.content[i])); };
+    const auto room = [&](std::size_t i) { return std::max(0.0, tuft.cell_capacity[i] - sum_of(tuft.content[i])); };
     each_touched(tuft, touch, [&](std::size_t i, double share) {
         put(i, std::min({share * amount, room(i), lacking}));
     });

@@ -16,7 +16,7 @@ struct ReservoirLayout {
     std::vector<Vec2> bundles{Vec2{0}};  ///< places in the section, unit disc
     std::vector<double> cell_ends{1};    ///< where each cell ends, part of the length from the root;
                                          ///< rising, the last one is 1
-    std::vector<double> cell_rooms{1};   ///< part of a bundle's capacity in each cell; sums to one
+    std::vector<double> cell_capacities{1};   ///< part of a bundle's capacity in each cell; sums to one
     double refill_time = 0.04;           ///< s in which a dry cell draws from a wet one above or below it
     double side_time = 0.25;             ///< s the same between neighbouring bundles
     double mix_time = 30;                ///< s in which cells one above the other become one mixture
@@ -30,7 +30,7 @@ struct CellLink {
 };
 
 /// Ink held by the tuft, film·m² of wet ink, in cells. Plane p of a cell is the canvas' pigment
-/// plane p; the last one is water. All amounts are ≥ 0 and no cell holds more than its room,
+/// plane p; the last one is water. All amounts are ≥ 0 and no cell holds more than its capacity,
 /// unless it was dipped dripping wet or `absorb` was given more than fits.
 struct Reservoir {
     static constexpr int kPlanes = kMaxPigments + 1;
@@ -38,7 +38,7 @@ struct Reservoir {
 
     double capacity = film_of_millilitres(0.5);
     ReservoirLayout layout;
-    std::vector<double> room;      ///< [bundles * cells], cell c of bundle k at k * cells + c, root first
+    std::vector<double> cell_capacity;      ///< [bundles * cells], cell c of bundle k at k * cells + c, root first
     std::vector<Content> content;  ///< likewise
     std::vector<CellLink> links;
     double unspent = 0;            ///< s of `flow` that did not fill a step yet
@@ -73,7 +73,7 @@ inline constexpr double kMostLevel = 1.5;  ///< more drips off before the tuft c
 /// How far a tuft is dipped.
 struct Dip {
     double depth = 1;  ///< as `Reach`
-    double level = 1;  ///< part of their room up to which cells are filled; what is above 1 hangs on the
+    double level = 1;  ///< part of their capacity up to which cells are filled; what is above 1 hangs on the
                        ///< hair and runs off it (`shed`), kMostLevel at most
     double side = 0;   ///< as `Reach`
 };
@@ -111,7 +111,7 @@ enum class FlowTo { whole_step, now };
 
 /// Lets the ink move in the hair for `dt` seconds: between linked cells i and j
 ///
-///     F = g (s_i − s_j),   s = content over room,
+///     F = g (s_i − s_j),   s = content over capacity,
 ///
 /// of the giver's mixture, and a slow exchange of equal parts that makes mixtures alike. In
 /// steps of 5 ms on the tuft's own clock, so any division of a time gives the same within a

@@ -111,11 +111,11 @@ std::array<double, 2 * (kFirmnessSamples - 1)> make_wave() {
 std::array<double, kFirmnessSamples> pushed_by(std::span<const BundleFirmness> bundles) {
     std::array<double, kFirmnessSamples> out;
     double firm = 0;
-    for (const BundleFirmness& tine : bundles) firm += tine.weight;
+    for (const BundleFirmness& bundle : bundles) firm += bundle.weight;
     const double half = firm > 0 ? kTine / firm : 1;  // of the width: firm bundles lie 1 / firm apart
     for (int i = 0; i < kFirmnessSamples; ++i) {
         double pushed = 0;
-        for (const BundleFirmness& tine : bundles) pushed += tine.weight * bump((double(i) / (kFirmnessSamples - 1) - tine.at) / half);
+        for (const BundleFirmness& bundle : bundles) pushed += bundle.weight * bump((double(i) / (kFirmnessSamples - 1) - bundle.at) / half);
         out[i] = std::min(pushed, 1.0);
     }
     return out;

@@ -151,9 +151,9 @@ double unlike(const BiasPiece& a, const BiasPiece& b) {
 }
 
 // Gives a piece the corrections of the learned pieces most like it.
-void correct(BiasPiece& piece, const BiasCorrection& habit) {
+void correct(BiasPiece& piece, const BiasCorrection& bias) {
     std::vector<std::pair<double, std::size_t>> near;
-    for (std::size_t i = 0; i < habit.pieces.size(); ++i) near.emplace_back(unlike(piece, habit.pieces[i]), i);
+    for (std::size_t i = 0; i < bias.pieces.size(); ++i) near.emplace_back(unlike(piece, bias.pieces[i]), i);
     const std::size_t n = std::min<std::size_t>(kLike, near.size());
     std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(n), near.end());
     if (n == 0) return;
@@ -162,7 +162,7 @@ void correct(BiasPiece& piece, const BiasCorrection& habit) {
     piece.pressure_ratio.fill(0);
     for (std::size_t i = 0; i < n; ++i) {
         const double w = std::exp(-0.5 * (near[i].first - near[0].first));
-        const BiasPiece& from = habit.pieces[near[i].second];
+        const BiasPiece& from = bias.pieces[near[i].second];
         sum += w;
         for (int k = 0; k < 4; ++k) {
             piece.pressure_ratio[k] += w * from.pressure_ratio[k];
@@ -252,12 +252,12 @@ glm::dmat2 fit_linear(std::span<const Pair> pairs) {
 
 BiasCorrection learn_bias(std::span<const Trace> intended, std::span<const Trace> written) {
     if (intended.size() != written.size())
-        throw Error("a habit is learned from pairs, but " + std::to_string(intended.size()) +
+        throw Error("a bias correction is learned from pairs, but " + std::to_string(intended.size()) +
                     " strokes are intended and " + std::to_string(written.size()) + " written");
-    if (written.empty()) throw Error("there are no strokes to learn a habit from");
+    if (written.empty()) throw Error("there are no strokes to learn a bias from");
     for (const auto& traces : {intended, written})
         for (const Trace& t : traces)
-            if (!t.flat || t.samples.empty()) throw Error("a habit is learned from flat strokes with samples only");
+            if (!t.flat || t.samples.empty()) throw Error("a bias correction is learned from flat strokes with samples only");
 
     std::vector<Pair> pairs;
     const std::vector<std::size_t> groups = groups_of(written);
@@ -266,34 +266,34 @@ BiasCorrection learn_bias(std::span<const Trace> intended, std::span<const Trace
         const Vec2 w = middle_of(written.subspan(first, count)), i = middle_of(intended.subspan(first, count));
         for (std::size_t k = first; k < first + count; ++k) pairs.push_back({&written[k], &intended[k], w, i});
     }
-    BiasCorrection habit;
-    habit.linear = fit_linear(pairs);
+    BiasCorrection bias;
+    bias.linear = fit_linear(pairs);
     for (const Pair& pair : pairs) {
-        const Path w = path_of(*pair.written, habit.linear, pair.written_middle);
+        const Path w = path_of(*pair.written, bias.linear, pair.written_middle);
         const Path i = path_of(*pair.intended, glm::dmat2(1), pair.intended_middle);
         const int n = n_clusters(w.length);
         for (int j = 0; j < n; ++j) {
             BiasPiece piece = cut(w, j, n);
             learn_piece(piece, w, i);
-            habit.pieces.push_back(piece);
+            bias.pieces.push_back(piece);
         }
     }
-    return habit;
+    return bias;
 }
 
-std::vector<Trace> correct_bias(const BiasCorrection& habit, std::vector<Trace> traces) {
+std::vector<Trace> correct_bias(const BiasCorrection& bias, std::vector<Trace> traces) {
     const std::vector<std::size_t> groups = groups_of(traces);
     for (std::size_t g = 0; g + 1 < groups.size(); ++g) {
         const Vec2 middle = middle_of(std::span(traces).subspan(groups[g], groups[g + 1] - groups[g]));
         for (std::size_t t = groups[g]; t < groups[g + 1]; ++t) {
             Trace& trace = traces[t];
             if (!trace.flat || trace.samples.empty()) continue;
-            const Path path = path_of(trace, habit.linear, middle);
+            const Path path = path_of(trace, bias.linear, middle);
             const int n = n_clusters(path.length);
             std::vector<BiasPiece> pieces;
             for (int j = 0; j < n; ++j) {
                 pieces.push_back(cut(path, j, n));
-                correct(pieces.back(), habit);
+                correct(pieces.back(), bias);
             }
             for (std::size_t i = 0; i < trace.samples.size(); ++i) {
                 double ratio = 0, sum = 0;

@@ -9,7 +9,7 @@
 
 #include "stroke/journal/trace.h"
 
-/// A writer's habit: how the strokes they make differ from those they mean, learned from
+/// A writer's bias: how the strokes they make differ from those they mean, learned from
 /// pairs and taken back on strokes to come. After Xu's user manipulability component (Xu et
 /// al., A Solid Model Based Virtual Hairy Brush, and its book chapter, 5.5.1.2), with
 /// ratios for the pressure and differences for position and tilt, so that nothing depends
@@ -37,7 +37,7 @@ struct BiasCorrection {
 
 /// Learns from pairs: `intended[i]` is what `written[i]` was meant to be. Strokes that follow
 /// each other with one placement belong together (a character, a line): where they lie as a
-/// whole is no habit. The linear map (slant, width) is a least-squares fit, paired by arc length
+/// whole is no bias. The linear map (slant, width) is a least-squares fit, paired by arc length
 /// and drawn to the identity where the strokes say nothing; its stretches lie in [1/2, 2].
 /// What it leaves is kept piece by piece, pieces of about 6 mm that overlap by half.
 /// Throws `Error` when the counts differ, there are none, or a stroke is not flat.
@@ -46,11 +46,11 @@ BiasCorrection learn_bias(std::span<const Trace> intended, std::span<const Trace
 /// What was meant by these strokes: linear map, then for every piece the corrections of the
 /// four pieces most like it, weighted by likeness (shape and heading, length, place in the stroke,
 /// pressure, tilt). Strokes in space stay as they are. Times stay.
-std::vector<Trace> correct_bias(const BiasCorrection& habit, std::vector<Trace> traces);
+std::vector<Trace> correct_bias(const BiasCorrection& bias, std::vector<Trace> traces);
 
 /// As a TOML file and back; `source` names it in errors. Throws `Error` with the line for
 /// unknown keys, wrong types and values out of range.
-std::string bias_toml(const BiasCorrection& habit);
+std::string bias_toml(const BiasCorrection& bias);
 BiasCorrection parse_bias(std::string_view text, const std::string& source);
 BiasCorrection load_bias(const std::filesystem::path& path);
 

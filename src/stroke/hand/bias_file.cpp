@@ -75,7 +75,7 @@ BiasPiece read_piece(const toml::table& table, const std::string& source) {
         } else if (name == "tilt_change_deg") {
             read_row(node, source, name, p.tilt_change, kDegree, -360, 360);
         } else {
-            fail(node, source, "unknown key '" + name + "' in a piece of a habit");
+            fail(node, source, "unknown key '" + name + "' in a piece of a bias correction");
         }
     }
     return p;
@@ -83,11 +83,11 @@ BiasPiece read_piece(const toml::table& table, const std::string& source) {
 
 }  // namespace
 
-std::string bias_toml(const BiasCorrection& habit) {
-    std::string out = "# How a writer's strokes differ from those that were meant (tuft habit).\n";
-    const std::array<double, 4> linear{habit.linear[0][0], habit.linear[1][0], habit.linear[0][1], habit.linear[1][1]};
+std::string bias_toml(const BiasCorrection& bias) {
+    std::string out = "# How a writer's strokes differ from those that were meant (tuft bias).\n";
+    const std::array<double, 4> linear{bias.linear[0][0], bias.linear[1][0], bias.linear[0][1], bias.linear[1][1]};
     add_row(out, "linear", linear.data(), 4, 1);
-    for (const BiasPiece& p : habit.pieces) {
+    for (const BiasPiece& p : bias.pieces) {
         out += "\n[[piece]]\n";
         fmt::format_to(std::back_inserter(out), "length_mm = {:.12g}\n", p.length / kMillimetre);
         const std::array<double, 2> place{p.begin, p.end};
@@ -110,22 +110,22 @@ BiasCorrection parse_bias(std::string_view text, const std::string& source) {
     } catch (const toml::parse_error& e) {
         throw Error(source, static_cast<long>(e.source().begin.line), std::string(e.description()));
     }
-    BiasCorrection habit;
+    BiasCorrection bias;
     for (const auto& [key, node] : root) {
         if (key == "linear") {
             std::array<double, 4> m{};
             read_row(node, source, "linear", m.data(), 4, 1, -2, 2);
-            habit.linear = glm::dmat2(m[0], m[2], m[1], m[3]);
-            if (!(std::abs(glm::determinant(habit.linear)) > 1e-3)) fail(node, source, "'linear' folds strokes flat");
+            bias.linear = glm::dmat2(m[0], m[2], m[1], m[3]);
+            if (!(std::abs(glm::determinant(bias.linear)) > 1e-3)) fail(node, source, "'linear' folds strokes flat");
         } else if (key == "piece" && node.is_array_of_tables()) {
-            if (node.as_array()->size() > kMaxPieces) fail(node, source, "a habit has too many pieces");
+            if (node.as_array()->size() > kMaxPieces) fail(node, source, "a bias correction has too many pieces");
             for (const toml::node& piece : *node.as_array())
-                habit.pieces.push_back(read_piece(*piece.as_table(), source));
+                bias.pieces.push_back(read_piece(*piece.as_table(), source));
         } else {
-            fail(node, source, "unknown key '" + std::string(key.str()) + "' in a habit");
+            fail(node, source, "unknown key '" + std::string(key.str()) + "' in a bias correction");
         }
     }
-    return habit;
+    return bias;
 }
 
 BiasCorrection load_bias(const std::filesystem::path& path) {

@@ -90,7 +90,7 @@ bool fit(const std::vector<Height>& heights, double below, std::array<double, N>
 
 /// Median distance of the samples from the fit, in radii.
 template <int N>
-double mismatch_of(const std::vector<Height>& heights, const std::array<double, N>& c) {
+double fit_error_of(const std::vector<Height>& heights, const std::array<double, N>& c) {
     std::vector<double> rests;
     rests.reserve(heights.size());
     for (const Height& h : heights) rests.push_back(std::abs(rest_of<N>(h, c)));
@@ -142,10 +142,10 @@ BaseColour feel(const SurfaceQuery& query, const BaseColour& guess, double radiu
     }
     BaseColour ground = guess;
     const auto part = double(heights.size()) / double(pattern().size());
-    double height = 0, misfit = 0;
+    double height = 0, fit_error = 0;
     Vec2 slope{0};
     if (std::array<double, 6> c; part >= kFit && fit<6>(heights, below, c)) {
-        misfit = mismatch_of<6>(heights, c);
+        fit_error = fit_error_of<6>(heights, c);
         height = c[0];
         slope = {c[1], c[2]};
         const double most = 1.0;  // sharper ground than the disk cannot be told from noise
@@ -156,14 +156,14 @@ BaseColour feel(const SurfaceQuery& query, const BaseColour& guess, double radiu
                    (guess.curvature[0] * h.a * h.a + 2 * guess.curvature[1] * h.a * h.b +
                     guess.curvature[2] * h.b * h.b);
         if (!fit<3>(heights, below, d)) return ground;
-        misfit = mismatch_of<3>(heights, d);
+        fit_error = fit_error_of<3>(heights, d);
         height = d[0];
         slope = {d[1], d[2]};
     } else {
         return ground;
     }
     ground.found = true;
-    ground.misfit = radius * misfit;
+    ground.fit_error = radius * fit_error;
     ground.position += radius * height * guess.normal;
     ground.normal = glm::normalize(guess.normal - slope.x * guess.heading - slope.y * side);
     ground.heading = into_plane(parallel_transport(guess.heading, guess.normal, ground.normal), ground.normal);
@@ -178,10 +178,10 @@ double level_at(const SurfaceQuery& query, const Vec3& position, const Vec3& nor
                                    radius / double(1 << scale), kBelow);
         if (!ground.found) continue;
         const double up = glm::dot(ground.position - position, normal);
-        if (before > 0) left *= smooth_step((kSame - ground.misfit / before) / (kSame - kBetter));
+        if (before > 0) left *= smooth_step((kSame - ground.fit_error / before) / (kSame - kBetter));
         height += left * (up - height);
-        left *= smooth_step((ground.misfit / radius - kTrusted) / (kDoubted - kTrusted));
-        before = ground.misfit;
+        left *= smooth_step((ground.fit_error / radius - kTrusted) / (kDoubted - kTrusted));
+        before = ground.fit_error;
         if (left <= 0) break;
     }
     return height;

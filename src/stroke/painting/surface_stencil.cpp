@@ -36,7 +36,7 @@ struct Nearest {
     double inside() const { return side < 0 ? -distance : distance; }
 };
 
-/// Cuts a footprint's coverage along edges: boxes of cells by quarters, each with the edges that
+/// Cuts a footprint's coverage along edges: boxes of cells by quadrants, each with the edges that
 /// may be the nearest to one of its cells.
 class Cut {
   public:

@@ -25,7 +25,7 @@ ink::Reservoir empty_reservoir(const brush::Tuft& tuft) {
     brush::HairCells cells = brush::hair_cells(tuft.preset);
     return ink::make_reservoir(tuft.preset.capacity * 1e6, {.bundles = tuft.bundles.place,
                                                            .cell_ends = std::move(cells.ends),
-                                                           .cell_rooms = std::move(cells.rooms)});
+                                                           .cell_capacities = std::move(cells.capacities)});
 }
 
 void TuftInHand::update_wetness() {
